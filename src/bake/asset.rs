@@ -1,0 +1,286 @@
+//! An asset baked: all its jobs, and the document that refers to their textures.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use serde_json::Value;
+
+use super::container::{self, ContainerError};
+use super::extension::{EXTENSION, Extension, RangedTexture};
+use super::job::{self, JobError, JobOutput, JobTexture, PyramidUse, describe};
+use super::names::Names;
+use super::plan::{PlanError, plan};
+use super::png::encode_png;
+use super::pyramids::Range;
+use super::report::{AssetReport, TextureReport};
+use super::settings::{Form, Settings};
+use super::source::{Source, SourceError};
+use crate::bump::Frame;
+use crate::gltf::document::{Container, Document, DocumentError};
+use crate::gltf::geometry::layout;
+use crate::gltf::json::JsonError;
+use crate::gltf::material::{MaterialError, materials};
+use crate::gltf::rewrite::{NewImage, NewTexture, add_textures, declare};
+use crate::gltf::texture::ImageLocation;
+use crate::gltf::uri::{encode_path, relative_path};
+use crate::texture::ktx2::{Provenance, SourceDigest, write};
+
+/// Why an asset cannot be baked. Messages name material and texture; the caller adds the file.
+#[derive(Debug, thiserror::Error)]
+pub enum BakeError {
+    /// The document, or its GLB container.
+    #[error(transparent)]
+    Document(#[from] DocumentError),
+    /// The document's JSON.
+    #[error(transparent)]
+    Json(#[from] JsonError),
+    /// A material.
+    #[error(transparent)]
+    Material(#[from] MaterialError),
+    /// A reference between objects of the document.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+    /// An image.
+    #[error(transparent)]
+    Job(#[from] JobError),
+    /// A file beside the document.
+    #[error(transparent)]
+    Source(#[from] SourceError),
+    /// The container asked for.
+    #[error(transparent)]
+    Container(#[from] ContainerError),
+    /// A PNG fallback.
+    #[error("the PNG of {path} cannot be encoded: {reason}; use --gltf strict or dual")]
+    Png {
+        /// Its path without the extension.
+        path: String,
+        /// What the encoder says.
+        reason: String,
+    },
+}
+
+/// A baked asset, ready to be written.
+pub struct Baked {
+    /// The document.
+    pub document: Vec<u8>,
+    /// Which kind of document it is.
+    pub container: Container,
+    /// New files, by their paths relative to the document.
+    pub files: Vec<(PathBuf, Vec<u8>)>,
+    /// Files that the document refers to and that did not change, by their paths relative to the document.
+    pub copies: Vec<PathBuf>,
+    /// What was done.
+    pub report: AssetReport,
+}
+
+/// Bakes every material of `source` that has bumps. `advance` is called after each bump map with the share of the work
+/// that is done. An asset without bumps comes back byte for byte.
+///
+/// # Errors
+/// [`BakeError`] for the first thing that is wrong with the asset; nothing is half done.
+pub fn bake(source: &Source<'_>, settings: &Settings, advance: &dyn Fn(f32)) -> Result<Baked, BakeError> {
+    let root: Value = source.document.json().value("")?.unwrap_or_default();
+    let materials = materials(&root).into_iter().collect::<Result<Vec<_>, _>>()?;
+    // References that cannot be followed are an error before any work is done.
+    container::files(source.document.json())?;
+    let buffers = if settings.frame == Frame::Unit { Vec::new() } else { buffers(&root, source)? };
+    let main_direction = match settings.frame {
+        Frame::MainDirection(m) => m,
+        _ => [0.0, 1.0, 0.0],
+    };
+    let plans = plan(&root, materials, settings, &|material, bumps| {
+        layout(&root, material, &bumps.mapping, main_direction, &|i| buffers.get(i).map(Vec::as_slice))
+    })?;
+    let mut assembly = Assembly::new(source, settings)?;
+    for (done, plan) in plans.iter().enumerate() {
+        assembly.add(job::run(plan, source, settings)?)?;
+        advance((done + 1) as f32 / plans.len() as f32);
+    }
+    if plans.is_empty() { untouched(source) } else { assembly.finish() }
+}
+
+fn buffers(root: &Value, source: &Source<'_>) -> Result<Vec<Vec<u8>>, SourceError> {
+    let count = root.get("buffers").and_then(Value::as_array).map_or(0, Vec::len);
+    (0..count).map(|index| source.buffer(index)).collect()
+}
+
+fn untouched(source: &Source<'_>) -> Result<Baked, BakeError> {
+    Ok(Baked {
+        document: source.document.to_bytes()?,
+        container: source.document.container(),
+        files: Vec::new(),
+        copies: container::files(source.document.json())?,
+        report: AssetReport::default(),
+    })
+}
+
+/// The textures of all jobs, on their way into the document.
+struct Assembly<'a> {
+    source: &'a Source<'a>,
+    settings: &'a Settings,
+    document: Document,
+    names: Names,
+    digests: BTreeMap<ImageLocation, String>,
+    textures: Vec<NewTexture>,
+    ranges: Vec<Option<Range>>,
+    files: Vec<(PathBuf, Vec<u8>)>,
+    unit_factors: Vec<String>,
+    anisotropies: Vec<String>,
+    pyramids: Vec<PyramidUse>,
+    report: AssetReport,
+}
+
+impl<'a> Assembly<'a> {
+    fn new(source: &'a Source<'a>, settings: &'a Settings) -> Result<Self, BakeError> {
+        let (document, bin) =
+            if settings.glb { (container::to_glb(source)?, None) } else { container::to_gltf(source)? };
+        Ok(Self {
+            source,
+            settings,
+            document,
+            names: Names::new(source.stem),
+            digests: BTreeMap::new(),
+            textures: Vec::new(),
+            ranges: Vec::new(),
+            files: bin.into_iter().collect(),
+            unit_factors: Vec::new(),
+            anisotropies: Vec::new(),
+            pyramids: Vec::new(),
+            report: AssetReport::default(),
+        })
+    }
+
+    fn add(&mut self, output: JobOutput) -> Result<(), BakeError> {
+        let first = self.textures.len();
+        for texture in output.textures {
+            self.add_texture(texture)?;
+        }
+        for layer in output.layers {
+            self.unit_factors.extend(layer.unit_factor);
+            self.anisotropies.extend(layer.anisotropy);
+            self.pyramids.extend(layer.pyramid.map(|p| PyramidUse {
+                offset: first + p.offset,
+                roughness: p.roughness.map(|r| first + r),
+                ..p
+            }));
+            self.report.layers.push(layer.report);
+        }
+        Ok(())
+    }
+
+    fn add_texture(&mut self, texture: JobTexture) -> Result<(), BakeError> {
+        let stem = stem(&texture);
+        let path = self.names.unique(&stem, texture.content.name());
+        let chain = &texture.chain;
+        let keys = if self.settings.provenance { self.provenance(&texture)?.keys() } else { Vec::new() };
+        let bytes = write(chain.format, chain.width, chain.height, &chain.levels, &keys);
+        self.report.textures.push(TextureReport {
+            path: format!("{path}.ktx2"),
+            content: texture.content,
+            width: chain.width,
+            height: chain.height,
+            levels: chain.levels.len(),
+            bytes: bytes.len(),
+            range: texture.range.clone(),
+        });
+        let ktx2 = self.add_image(&path, "ktx2", bytes)?;
+        let source = match (&chain.fallback, self.settings.form) {
+            (Some(rgba), _) => {
+                let png = encode_png(rgba, chain.width, chain.height)
+                    .map_err(|reason| BakeError::Png { path: path.clone(), reason })?;
+                Some(self.add_image(&path, "png", png)?)
+            }
+            (None, Form::Dual) => Some(ktx2.clone()),
+            (None, _) => None,
+        };
+        self.ranges.push(texture.range);
+        self.textures.push(NewTexture { ktx2, source, sampler: texture.sampler, slots: texture.slots });
+        Ok(())
+    }
+
+    fn add_image(&mut self, path: &str, extension: &str, bytes: Vec<u8>) -> Result<NewImage, BakeError> {
+        if self.settings.glb {
+            let view = container::embed(&mut self.document, &bytes)?;
+            let mime = if extension == "ktx2" { "image/ktx2" } else { "image/png" };
+            return Ok(NewImage::BufferView { view, mime });
+        }
+        let path = format!("{path}.{extension}");
+        let uri = encode_path(&path);
+        self.files.push((PathBuf::from(path), bytes));
+        Ok(NewImage::File(uri))
+    }
+
+    fn provenance(&mut self, texture: &JobTexture) -> Result<Provenance, BakeError> {
+        let mut sources = Vec::with_capacity(texture.sources.len());
+        for location in &texture.sources {
+            let blake3 = match self.digests.get(location) {
+                Some(digest) => digest.clone(),
+                None => {
+                    let digest = blake3::hash(&self.source.image(location)?).to_hex().to_string();
+                    self.digests.insert(location.clone(), digest.clone());
+                    digest
+                }
+            };
+            sources.push(SourceDigest { uri: describe(location), blake3 });
+        }
+        Ok(Provenance {
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            content: texture.content.name().to_owned(),
+            settings: self.settings.to_json(texture.model),
+            sources,
+        })
+    }
+
+    fn finish(mut self) -> Result<Baked, BakeError> {
+        let json = self.document.json_mut();
+        let indices = add_textures(json, &self.textures)?;
+        for pointer in &self.unit_factors {
+            json.set(pointer, &1)?;
+        }
+        for pointer in &self.anisotropies {
+            json.set(&format!("{pointer}/anisotropyStrength"), &1)?;
+            json.remove(&format!("{pointer}/anisotropyRotation"))?;
+            declare(json, "KHR_materials_anisotropy", false)?;
+        }
+        for pyramid in &self.pyramids {
+            let ranged = |index: usize| RangedTexture {
+                texture: indices[index],
+                range: self.ranges[index].clone().unwrap_or_default().scaled(pyramid.slope_scale),
+            };
+            let extension = Extension::new(
+                ranged(pyramid.offset),
+                pyramid.roughness.map(ranged),
+                self.settings.distribution.correction(),
+                pyramid.frame,
+                &pyramid.mapping,
+            );
+            json.set(&pyramid.pointer, &extension)?;
+            declare(json, EXTENSION, false)?;
+        }
+        if self.settings.glb {
+            container::embed_images(&mut self.document, self.source)?;
+        }
+        let mut copies = container::files(self.document.json())?;
+        copies.retain(|copy| !self.files.iter().any(|(path, _)| path == copy));
+        Ok(Baked {
+            document: self.document.to_bytes()?,
+            container: self.document.container(),
+            files: self.files,
+            copies,
+            report: self.report,
+        })
+    }
+}
+
+/// The part of a texture's name that tells what it was made from.
+fn stem(texture: &JobTexture) -> String {
+    match &texture.named_after {
+        Ok(ImageLocation::Uri(uri)) if uri.starts_with("data:") => "image".to_owned(),
+        Ok(ImageLocation::Uri(uri)) => {
+            let path = relative_path(uri).unwrap_or_else(|_| PathBuf::from(uri));
+            path.file_stem().map_or_else(|| "image".to_owned(), |stem| stem.to_string_lossy().into_owned())
+        }
+        Ok(ImageLocation::BufferView(view)) => format!("image{view}"),
+        Err(material) => material.clone(),
+    }
+}

@@ -1,0 +1,84 @@
+//! A bare map baked: no document, no material.
+
+use super::base::BaseRows;
+use super::chain::{Chain, Encoding, grid};
+use super::fold::Fold;
+use super::normals::bake_normals;
+use super::pyramids::{Quantity, Range, Ranged, bake_quantity};
+use super::relief::Relief;
+use super::report::Content;
+use super::settings::{Model, Settings};
+use crate::bump::FrameTransform;
+use crate::choose::ModelLoss;
+use crate::map::{Image, Rgba};
+use crate::pyramid::{Area, Pyramid, Rows};
+use crate::texture::EncodeError;
+
+/// The roughness that a bare map's surface has by itself.
+pub struct OwnRoughness {
+    /// Green is roughness (a grey image is grey in green); constant 1 when absent.
+    pub image: Option<Image>,
+    /// Multiplies it.
+    pub factor: f32,
+}
+
+/// A texture made from a bare map.
+pub struct BareTexture {
+    /// What its texels are.
+    pub content: Content,
+    /// The encoded levels.
+    pub chain: Chain,
+    /// What texels of 0 and 1 stand for, in the pyramid profile.
+    pub range: Option<Range>,
+}
+
+/// What a bare map became.
+pub struct BareBake {
+    /// The first is the bump map: normals or offsets.
+    pub textures: Vec<BareTexture>,
+    /// What is modelled of the lost bumps.
+    pub model: Model,
+    /// What smaller models would lose, where that decided.
+    pub loss: Option<ModelLoss>,
+    /// Texels steeper than the clamp.
+    pub steep_texels: u64,
+}
+
+/// Bakes `relief`. The portable profile writes roughness only where `own` tells what to fold the bumps into.
+pub fn bake_map(relief: &Relief, own: Option<&OwnRoughness>, settings: &Settings) -> Result<BareBake, EncodeError> {
+    let size = (relief.width(), relief.height());
+    let (width, height) = grid(settings.target, [size]);
+    let moments = Pyramid::new(Area::new(relief, width, height));
+    let mut textures = Vec::new();
+    let plain = |content, chain| BareTexture { content, chain, range: None };
+    if settings.profile.is_portable() {
+        textures.push(plain(Content::Normal, bake_normals(&moments, Encoding::of_normals(settings))?));
+    }
+    let image = own.and_then(|o| o.image.as_ref());
+    let (width, height) = grid(settings.target, image.map(|i| (i.width, i.height)).into_iter().chain([size]));
+    let base = BaseRows::new(width, height, image.map(Rgba), own.map_or(1.0, |o| o.factor), None);
+    let fold = Fold::new(base, relief, 1.0, settings.distribution.correction());
+    // Without a lobe of its own nothing tells how much of the ellipse will be seen: keep all of it.
+    let (model, loss) = match (own, settings.model) {
+        (None, Model::Auto) => (Model::Anisotropic, None),
+        _ => fold.model(settings, Model::Anisotropic),
+    };
+    if own.is_some() && settings.profile.is_portable() && model != Model::None {
+        let folded = fold.bake(model, Encoding::of(settings, 3))?;
+        textures.push(plain(Content::Roughness, folded.roughness));
+        textures.extend(folded.anisotropy.map(|chain| plain(Content::Anisotropy, chain)));
+    }
+    if settings.profile.has_pyramid() {
+        let roughness = match model {
+            Model::Anisotropic => Some((Content::Factor, Quantity::Factor)),
+            Model::Isotropic => Some((Content::Lambda1, Quantity::Lambda1)),
+            Model::None | Model::Auto => None,
+        };
+        for (content, quantity) in [(Content::Offset, Quantity::Offset)].into_iter().chain(roughness) {
+            let encoding = Encoding::of(settings, quantity.channels() as u32);
+            let Ranged { chain, range } = bake_quantity(&moments, FrameTransform::IDENTITY, quantity, encoding)?;
+            textures.push(BareTexture { content, chain, range: Some(range) });
+        }
+    }
+    Ok(BareBake { textures, model, loss, steep_texels: relief.steep_texels() })
+}

@@ -1,0 +1,95 @@
+//! The material's own roughness: what its textures and factors say before any bump is lost.
+
+use crate::lobe::{Anisotropy, Roughness};
+use crate::map::Rgba;
+use crate::pyramid::{Linear, Rows};
+
+/// A texel of the material's own lobe: A (uu, uv, vv), then the red and blue channels, which are only averaged.
+pub type BaseTexel = [f32; 5];
+
+/// The anisotropy that a material has already (`KHR_materials_anisotropy`).
+pub struct BaseAnisotropy<'a> {
+    /// Direction in red and green, strength in blue; constant (1, 1/2, 1) when absent.
+    pub texture: Option<Rgba<'a>>,
+    /// Multiplies the texture's strength.
+    pub strength: f32,
+    /// Cosine and sine of the rotation of the direction, counter-clockwise.
+    pub rotation: [f32; 2],
+}
+
+/// Roughness and anisotropy of a material on one grid.
+pub struct BaseRows<'a> {
+    width: u32,
+    height: u32,
+    roughness_factor: f32,
+    roughness: Option<Linear<Rgba<'a>>>,
+    strength: f32,
+    rotation: [f32; 2],
+    direction: Option<Linear<Rgba<'a>>>,
+}
+
+impl<'a> BaseRows<'a> {
+    /// On a grid of `width` x `height` texels; coarser textures are magnified as a sampler does. The roughness is the
+    /// green channel of `roughness` times `roughness_factor`.
+    pub fn new(
+        width: u32,
+        height: u32,
+        roughness: Option<Rgba<'a>>,
+        roughness_factor: f32,
+        anisotropy: Option<BaseAnisotropy<'a>>,
+    ) -> Self {
+        let on_grid = |rows| Linear::new(rows, width, height);
+        let (strength, rotation, direction) = match anisotropy {
+            None => (0.0, [1.0, 0.0], None),
+            Some(a) => (a.strength, a.rotation, a.texture.map(on_grid)),
+        };
+        Self { width, height, roughness_factor, roughness: roughness.map(on_grid), strength, rotation, direction }
+    }
+}
+
+impl BaseRows<'_> {
+    /// Whether the material is anisotropic by itself.
+    pub fn is_elliptical(&self) -> bool {
+        self.strength > 0.0
+    }
+}
+
+impl Rows for BaseRows<'_> {
+    type Texel = BaseTexel;
+
+    fn width(&self) -> u32 {
+        self.width
+    }
+
+    fn height(&self) -> u32 {
+        self.height
+    }
+
+    fn row(&self, y: u32, out: &mut [BaseTexel]) {
+        let mut surface = vec![[1.0; 4]; out.len()];
+        if let Some(rows) = &self.roughness {
+            rows.row(y, &mut surface);
+        }
+        // The texel that glTF defines for a material without an anisotropy texture.
+        let mut direction = vec![[1.0, 0.5, 1.0, 1.0]; out.len()];
+        if let Some(rows) = &self.direction {
+            rows.row(y, &mut direction);
+        }
+        for ((texel, [red, green, blue, _]), axis) in out.iter_mut().zip(surface).zip(direction) {
+            let lobe = Anisotropy {
+                roughness: Roughness((green * self.roughness_factor).clamp(0.0, 1.0)),
+                strength: (axis[2] * self.strength).clamp(0.0, 1.0),
+                direction: rotated([2.0 * axis[0] - 1.0, 2.0 * axis[1] - 1.0], self.rotation),
+            };
+            let a = lobe.squared_alpha().0;
+            *texel = [a.uu, a.uv, a.vv, red, blue];
+        }
+    }
+}
+
+/// `direction` made a unit vector and turned; (1, 0) turned when it has no length.
+fn rotated([x, y]: [f32; 2], [cos, sin]: [f32; 2]) -> [f32; 2] {
+    let length = (x * x + y * y).sqrt();
+    let (x, y) = if length > 0.0 { (x / length, y / length) } else { (1.0, 0.0) };
+    [x * cos - y * sin, x * sin + y * cos]
+}

@@ -1,0 +1,72 @@
+//! Encoded mip chains.
+
+use super::settings::{Form, Settings};
+use crate::texture::uastc::Effort;
+use crate::texture::{EncodeError, Format, Target, Texels, encode};
+
+/// A texture with all its levels encoded.
+pub struct Chain {
+    /// How texels are stored.
+    pub format: Format,
+    /// Columns of level 0.
+    pub width: u32,
+    /// Rows of level 0.
+    pub height: u32,
+    /// Bytes of each level, level 0 first, not supercompressed.
+    pub levels: Vec<Vec<u8>>,
+    /// Level 0 as opaque RGBA8, where a PNG fallback is asked for.
+    pub fallback: Option<Vec<u8>>,
+}
+
+/// How to encode a chain.
+#[derive(Clone, Copy)]
+pub struct Encoding {
+    /// How texels are stored.
+    pub format: Format,
+    /// Search effort of block encoders.
+    pub effort: Effort,
+    /// Whether level 0 is kept for a PNG.
+    pub fallback: bool,
+}
+
+impl Encoding {
+    /// What `settings` ask for, for texels of `channels` channels.
+    pub fn of(settings: &Settings, channels: u32) -> Self {
+        Self {
+            format: settings.target.format(channels),
+            effort: settings.effort,
+            fallback: settings.form == Form::Fallback,
+        }
+    }
+
+    /// For normals: two channels where the engine's BC5 path rebuilds z, else three.
+    pub fn of_normals(settings: &Settings) -> Self {
+        Self::of(settings, if settings.target == Target::Bc { 2 } else { 3 })
+    }
+}
+
+/// The smallest grid that holds all of `sizes` and that the target's blocks allow: KHR_texture_basisu and BCn want
+/// multiples of 4.
+pub fn grid(target: Target, sizes: impl IntoIterator<Item = (u32, u32)>) -> (u32, u32) {
+    let (width, height) = sizes.into_iter().fold((1, 1), |a, b| (a.0.max(b.0), a.1.max(b.1)));
+    if target.format(3).is_block() { (width.next_multiple_of(4), height.next_multiple_of(4)) } else { (width, height) }
+}
+
+/// Encodes all levels. `row` writes row y of a level to a slice of values.
+pub fn encode_chain(
+    sizes: &[(u32, u32)],
+    encoding: Encoding,
+    row: &(dyn Fn(usize, u32, &mut [[f32; 4]]) + Sync),
+) -> Result<Chain, EncodeError> {
+    let mut levels = Vec::with_capacity(sizes.len());
+    for (level, &(width, height)) in sizes.iter().enumerate() {
+        let row = |y: u32, out: &mut [[f32; 4]]| row(level, y, out);
+        levels.push(encode(&Texels { width, height, row: &row }, encoding.format, encoding.effort)?);
+    }
+    let (width, height) = sizes[0];
+    let fallback = encoding.fallback.then(|| {
+        let row = |y: u32, out: &mut [[f32; 4]]| row(0, y, out);
+        Texels { width, height, row: &row }.to_rgba8()
+    });
+    Ok(Chain { format: encoding.format, width, height, levels, fallback })
+}

@@ -1,0 +1,153 @@
+//! Roughness mips: the lost bumps folded into the material's own lobe, texel by texel (DESIGN: portable profile).
+
+use rayon::prelude::*;
+
+use super::base::{BaseRows, BaseTexel};
+use super::chain::{Chain, Encoding, encode_chain};
+use super::settings::{Model, Settings};
+use crate::choose::ModelLoss;
+use crate::lobe::{Anisotropy, Roughness, SquaredAlpha};
+use crate::pyramid::{Area, Moments, Pyramid, Rows};
+use crate::symmetric::Symmetric2;
+use crate::texture::EncodeError;
+
+/// A material's lobe and the moments of its bumps on one grid.
+pub struct Fold<'a, R: Rows<Texel = Moments>> {
+    base: Pyramid<BaseRows<'a>>,
+    moments: Pyramid<Area<&'a R>>,
+    /// 2 c s^2 is what K is multiplied by; this is c s^2, with s the scale of the normal texture.
+    weight: f32,
+    /// Whether the material's own lobe is anisotropic.
+    is_elliptical: bool,
+}
+
+/// Textures that hold a folded lobe.
+pub struct Folded {
+    /// Roughness in green; red and blue as in the material's own texture, averaged.
+    pub roughness: Chain,
+    /// Direction in red and green, strength in blue; only for the anisotropic model.
+    pub anisotropy: Option<Chain>,
+}
+
+impl<'a, R: Rows<Texel = Moments>> Fold<'a, R> {
+    /// Joins `base` with the bumps of `relief` on the grid of `base`. `slope_scale` multiplies offsets
+    /// (`normalTexture.scale`), `correction` is c.
+    pub fn new(base: BaseRows<'a>, relief: &'a R, slope_scale: f32, correction: f32) -> Self {
+        let area = Area::new(relief, base.width(), base.height());
+        let is_elliptical = base.is_elliptical();
+        Self {
+            base: Pyramid::new(base),
+            moments: Pyramid::new(area),
+            weight: correction * slope_scale * slope_scale,
+            is_elliptical,
+        }
+    }
+
+    /// Sizes of all levels, level 0 first.
+    pub fn sizes(&self) -> Vec<(u32, u32)> {
+        self.base.sizes()
+    }
+
+    /// What each smaller model would lose, at the worst of the levels that hold lost bumps (1 and coarser).
+    pub fn loss(&self) -> ModelLoss {
+        let sizes = self.sizes();
+        let levels = sizes.iter().enumerate().skip(1).map(|(level, &(width, height))| {
+            ModelLoss::of_level(width, height, |y, out| {
+                self.row(level, y, out.len(), |x, bare, full, _| out[x] = (bare, full));
+            })
+        });
+        levels.fold(ModelLoss::default(), ModelLoss::worst)
+    }
+
+    /// Texels over all levels whose lobe is wider than an engine can show.
+    pub fn texels_above_one(&self) -> u64 {
+        let levels = self.sizes().into_iter().enumerate();
+        let in_level = |(level, (width, height)): (usize, (u32, u32))| -> u64 {
+            let in_row = |y| {
+                let mut count = 0;
+                self.row(level, y, width as usize, |_, _, full, _| count += u64::from(full.exceeds_one()));
+                count
+            };
+            (0..height).into_par_iter().map(in_row).sum()
+        };
+        levels.map(in_level).sum()
+    }
+
+    /// The model that `settings` ask for, at most `widest`; under [`Model::Auto`] the smallest within the error bound,
+    /// with the losses that decided. A lobe that is elliptical already stays so.
+    pub fn model(&self, settings: &Settings, widest: Model) -> (Model, Option<ModelLoss>) {
+        match settings.model {
+            Model::Auto => {
+                let loss = self.loss();
+                let model = if loss.none <= settings.max_error {
+                    Model::None
+                } else if loss.isotropic <= settings.max_error && !self.is_elliptical {
+                    Model::Isotropic
+                } else {
+                    widest
+                };
+                (model, Some(loss))
+            }
+            Model::Anisotropic => (widest, None),
+            model => (model, None),
+        }
+    }
+
+    /// The textures under `model`, which is [`Model::Isotropic`] or [`Model::Anisotropic`]; anything else counts as
+    /// isotropic.
+    pub fn bake(&self, model: Model, encoding: Encoding) -> Result<Folded, EncodeError> {
+        let sizes = self.sizes();
+        let anisotropic = model == Model::Anisotropic;
+        // Directions agree with the axis of the whole map.
+        let reference = {
+            let whole = self.base.whole();
+            lobe(&whole).fold(self.moments.whole().covariance, self.weight).0.eigen().axis
+        };
+        let parameters = |a: SquaredAlpha| {
+            if anisotropic {
+                Anisotropy::of(a, reference)
+            } else {
+                let roughness = Roughness::from(a.closest_isotropic()).0.min(1.0);
+                Anisotropy { roughness: Roughness(roughness), strength: 0.0, direction: [1.0, 0.0] }
+            }
+        };
+        let roughness = encode_chain(&sizes, encoding, &|level, y, out| {
+            self.row(level, y, out.len(), |x, _, full, [red, blue]| {
+                out[x] = [red, parameters(full).roughness.0, blue, 1.0];
+            });
+        })?;
+        let anisotropy = anisotropic
+            .then(|| {
+                encode_chain(&sizes, encoding, &|level, y, out| {
+                    self.row(level, y, out.len(), |x, _, full, _| {
+                        let Anisotropy { strength, direction: [u, v], .. } = parameters(full);
+                        out[x] = [0.5 * u + 0.5, 0.5 * v + 0.5, strength, 1.0];
+                    });
+                })
+            })
+            .transpose()?;
+        Ok(Folded { roughness, anisotropy })
+    }
+
+    /// Calls `visit(x, bare lobe, folded lobe, [red, blue])` for each texel of a row.
+    fn row(
+        &self,
+        level: usize,
+        y: u32,
+        width: usize,
+        mut visit: impl FnMut(usize, SquaredAlpha, SquaredAlpha, [f32; 2]),
+    ) {
+        let mut base = vec![BaseTexel::default(); width];
+        let mut moments = vec![Moments::default(); width];
+        self.base.row(level, y, &mut base);
+        self.moments.row(level, y, &mut moments);
+        for (x, (texel, m)) in base.iter().zip(&moments).enumerate() {
+            let bare = lobe(texel);
+            visit(x, bare, bare.fold(m.covariance, self.weight), [texel[3], texel[4]]);
+        }
+    }
+}
+
+fn lobe(texel: &BaseTexel) -> SquaredAlpha {
+    SquaredAlpha(Symmetric2::new(texel[0], texel[1], texel[2]))
+}

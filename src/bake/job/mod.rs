@@ -1,0 +1,195 @@
+//! One bump map baked: its normals or offsets, and every lobe that it roughens.
+
+mod error;
+mod folds;
+mod pyramids;
+
+pub use error::JobError;
+
+use super::chain::{Chain, Encoding, grid};
+use super::normals::bake_normals;
+use super::plan::{LayerPlan, ReliefKind, ReliefPlan};
+use super::pyramids::Range;
+use super::relief::Relief;
+use super::report::{Content, LayerReport};
+use super::settings::{Model, Settings};
+use super::source::Source;
+use crate::bump::{Frame, MAX_SLOPE};
+use crate::gltf::material::Mapping;
+use crate::gltf::rewrite::Slot;
+use crate::gltf::texture::{ImageLocation, TextureSource};
+use crate::map::{DecodeOptions, HeightMap, Image, NormalLayout, NormalMap, decode};
+use crate::pyramid::{Area, Pyramid, Rows};
+use crate::texture::ktx2::{Ktx2, PROVENANCE_KEY};
+
+/// A baked texture and where it belongs.
+pub struct JobTexture {
+    /// What its texels are.
+    pub content: Content,
+    /// The encoded levels.
+    pub chain: Chain,
+    /// What texels of 0 and 1 stand for, in the pyramid profile.
+    pub range: Option<Range>,
+    /// The image that its file is named after; without one, the material is.
+    pub named_after: Result<ImageLocation, String>,
+    /// Images that it was made from.
+    pub sources: Vec<ImageLocation>,
+    /// References of materials to it.
+    pub slots: Vec<Slot>,
+    /// Index into `samplers`.
+    pub sampler: Option<usize>,
+    /// What it models.
+    pub model: Model,
+}
+
+/// What became of a layer.
+pub struct LayerOutcome {
+    /// For the report.
+    pub report: LayerReport,
+    /// JSON pointer of the roughness factor, where the texture now holds it.
+    pub unit_factor: Option<String>,
+    /// JSON pointer of `KHR_materials_anisotropy`, where it was written.
+    pub anisotropy: Option<String>,
+    /// What the vendor extension says, where it is written.
+    pub pyramid: Option<PyramidUse>,
+}
+
+/// A layer's part in the pyramid profile.
+pub struct PyramidUse {
+    /// JSON pointer of the material's extension.
+    pub pointer: String,
+    /// Which of the job's textures holds offsets.
+    pub offset: usize,
+    /// Which holds D or lambda_1; none when the model is none.
+    pub roughness: Option<usize>,
+    /// Multiplies offsets and roughness.
+    pub slope_scale: f32,
+    /// Texture coordinates of both.
+    pub mapping: Mapping,
+    /// The frame in which they are read.
+    pub frame: Frame,
+}
+
+/// What a job produced.
+#[derive(Default)]
+pub struct JobOutput {
+    /// Textures.
+    pub textures: Vec<JobTexture>,
+    /// Layers, in the plan's order.
+    pub layers: Vec<LayerOutcome>,
+}
+
+/// Bakes `plan`.
+pub fn run(plan: &ReliefPlan, source: &Source<'_>, settings: &Settings) -> Result<JobOutput, JobError> {
+    let job = Job { plan, source, settings };
+    let relief = job.relief()?;
+    let mut output = JobOutput::default();
+    let steep = relief.steep_texels();
+    for layer in &plan.layers {
+        let mut notes = layer.notes.clone();
+        if steep > 0 {
+            notes.push(format!(
+                "{steep} of {} texels are steeper than {} or point below the surface: taken as that steep",
+                u64::from(relief.width()) * u64::from(relief.height()),
+                MAX_SLOPE
+            ));
+        }
+        output.layers.push(LayerOutcome {
+            report: LayerReport {
+                material: layer.name.clone(),
+                layer: layer.layer.kind,
+                model: None,
+                loss: None,
+                notes,
+            },
+            unit_factor: None,
+            anisotropy: None,
+            pyramid: None,
+        });
+    }
+    let (width, height) = grid(settings.target, [(relief.width(), relief.height())]);
+    let moments = Pyramid::new(Area::new(&relief, width, height));
+    if settings.profile.is_portable() {
+        output.textures.push(JobTexture {
+            content: Content::Normal,
+            chain: bake_normals(&moments, Encoding::of_normals(settings))?,
+            range: None,
+            named_after: Ok(plan.source.location.clone()),
+            sources: vec![plan.source.location.clone()],
+            slots: plan.layers.iter().map(LayerPlan::normal_slot).collect(),
+            sampler: plan.source.sampler,
+            model: Model::None,
+        });
+    }
+    job.folds(&relief, &mut output)?;
+    if settings.profile.has_pyramid() {
+        job.pyramids(&moments, &mut output)?;
+    }
+    Ok(output)
+}
+
+struct Job<'a> {
+    plan: &'a ReliefPlan,
+    source: &'a Source<'a>,
+    settings: &'a Settings,
+}
+
+impl Job<'_> {
+    fn relief(&self) -> Result<Relief, JobError> {
+        let image = self.image(&self.plan.source)?;
+        let failed =
+            |error| JobError::Map { material: self.material(), texture: describe(&self.plan.source.location), error };
+        match self.plan.kind {
+            ReliefKind::Normals => {
+                Ok(Relief::Normals(NormalMap::new(image, NormalLayout::Auto, false).map_err(failed)?))
+            }
+            ReliefKind::Heights { slope_per_repeat: [across, up], square_texels, wrap } => {
+                let rows = if square_texels { image.width } else { image.height };
+                let slope_per_step = [across * image.width as f32, up * rows as f32];
+                Ok(Relief::Heights { map: HeightMap::new(image).map_err(failed)?, slope_per_step, wrap })
+            }
+        }
+    }
+
+    fn image(&self, texture: &TextureSource) -> Result<Image, JobError> {
+        let (material, name) = (self.material(), describe(&texture.location));
+        let read = |location: &ImageLocation| {
+            self.source.image(location).map_err(|error| JobError::Source {
+                material: material.clone(),
+                texture: describe(location),
+                error,
+            })
+        };
+        let bytes = read(&texture.location)?;
+        // A form that cannot be read is no reason to fail: it is not needed.
+        let form_is_baked = |form| read(form).is_ok_and(|bytes| is_baked(&bytes));
+        if is_baked(&bytes) || texture.other_forms.iter().any(form_is_baked) {
+            return Err(JobError::AlreadyBaked { material, texture: name });
+        }
+        let extension = match &texture.location {
+            ImageLocation::Uri(uri) if !uri.starts_with("data:") => uri.rsplit_once('.').map(|(_, e)| e.to_owned()),
+            _ => None,
+        };
+        let options = DecodeOptions { max_pixels: self.settings.max_texels, extension, ..Default::default() };
+        decode(&bytes, &options).map_err(|error| JobError::Decode { material, texture: name, error })
+    }
+
+    fn material(&self) -> String {
+        self.plan.layers.first().map(|l| l.name.clone()).unwrap_or_default()
+    }
+}
+
+fn is_baked(file: &[u8]) -> bool {
+    Ktx2::parse(file).is_ok_and(|file| file.key_values().any(|(key, _)| key == PROVENANCE_KEY))
+}
+
+/// An image's name for a person.
+pub fn describe(location: &ImageLocation) -> String {
+    match location {
+        ImageLocation::Uri(uri) if uri.starts_with("data:") => {
+            format!("{}...", uri.chars().take(32).collect::<String>())
+        }
+        ImageLocation::Uri(uri) => uri.clone(),
+        ImageLocation::BufferView(view) => format!("in bufferViews[{view}]"),
+    }
+}

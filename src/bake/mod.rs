@@ -1,0 +1,31 @@
+//! From a document to baked textures and a rewritten document. The core does no I/O.
+
+mod asset;
+mod bare;
+mod base;
+mod chain;
+mod container;
+mod extension;
+mod fold;
+mod job;
+mod names;
+mod normals;
+mod plan;
+mod png;
+mod publish;
+mod pyramids;
+mod relief;
+pub mod report;
+mod settings;
+mod source;
+
+pub use asset::{BakeError, Baked, bake};
+pub use bare::{BareBake, BareTexture, OwnRoughness, bake_map};
+pub use chain::Chain;
+pub use extension::EXTENSION;
+pub use png::encode_png;
+pub use publish::{PublishError, publish, write_file};
+pub use pyramids::Range;
+pub use relief::Relief;
+pub use settings::{Form, Model, Profile, Settings};
+pub use source::{Source, SourceError};

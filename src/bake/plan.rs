@@ -1,0 +1,231 @@
+//! What is to be baked: bumps grouped by their map, and under each the lobes that they roughen.
+
+use serde_json::Value;
+
+use super::settings::Settings;
+use crate::bump::{Frame, Wrap};
+use crate::gltf::geometry::Layout;
+use crate::gltf::material::{BumpSource, Layer, LayerKind, Material, TextureUse};
+use crate::gltf::rewrite::Slot;
+use crate::gltf::texture::{ImageLocation, TextureError, TextureSource, texture_source};
+
+/// A bump map and all layers that use it.
+#[derive(Debug)]
+pub struct ReliefPlan {
+    /// Where the map is.
+    pub source: TextureSource,
+    /// How it is read.
+    pub kind: ReliefKind,
+    /// Its uses.
+    pub layers: Vec<LayerPlan>,
+}
+
+/// How a bump map is read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ReliefKind {
+    /// As normals.
+    Normals,
+    /// As heights.
+    Heights {
+        /// Slope where the height changes by 1 over one repeat of the texture, across and up.
+        slope_per_repeat: [f32; 2],
+        /// Whether texels are taken to be square, whatever the shape of the map.
+        square_texels: bool,
+        /// The sampler's mode, across and down.
+        wrap: [Wrap; 2],
+    },
+}
+
+/// A use of a bump map by a layer.
+#[derive(Debug)]
+pub struct LayerPlan {
+    /// Index into `materials`.
+    pub material: usize,
+    /// The material's name.
+    pub name: String,
+    /// The layer.
+    pub layer: Layer,
+    /// Multiplies offsets: `normalTexture.scale`.
+    pub slope_scale: f32,
+    /// How the material lies on its meshes, where a frame asks for it.
+    pub layout: Option<Layout>,
+    /// Its own roughness and anisotropy textures, or why nothing can be folded into them.
+    pub own: Result<OwnTextures, String>,
+    /// What the user should know.
+    pub notes: Vec<String>,
+}
+
+/// The textures of a layer's own lobe.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OwnTextures {
+    /// Green is roughness.
+    pub roughness: Option<TextureSource>,
+    /// Direction and strength.
+    pub anisotropy: Option<TextureSource>,
+}
+
+/// A material that cannot be planned.
+#[derive(Debug, thiserror::Error)]
+#[error("material {material}, {part}: {error}")]
+pub struct PlanError {
+    /// Its name.
+    pub material: String,
+    /// Which reference.
+    pub part: &'static str,
+    /// What is wrong with it.
+    pub error: TextureError,
+}
+
+/// Groups the layers of `materials` by bump map, in the order of the file. `layout` measures a material's meshes.
+pub fn plan(
+    root: &Value,
+    materials: Vec<Material>,
+    settings: &Settings,
+    layout: &dyn Fn(usize, &TextureUse) -> Option<Layout>,
+) -> Result<Vec<ReliefPlan>, PlanError> {
+    let mut reliefs: Vec<ReliefPlan> = Vec::new();
+    for Material { index, name, layers } in materials {
+        for layer in layers {
+            let failed = |part| {
+                let material = name.clone();
+                move |error| PlanError { material, part, error }
+            };
+            let bumps = layer.bumps.texture().clone();
+            let source = texture_source(root, bumps.texture).map_err(failed("normal or height texture"))?;
+            let needs_layout = settings.frame != Frame::Unit;
+            let layout = needs_layout.then(|| layout(index, &bumps)).flatten();
+            let mut notes = Vec::new();
+            let (kind, slope_scale) = read_as(&layer.bumps, &source, settings, layout.as_ref(), &mut notes);
+            let own = own_textures(root, &layer, &source).map_err(failed("roughness or anisotropy texture"))?;
+            let plan = LayerPlan { material: index, name: name.clone(), layer, slope_scale, layout, own, notes };
+            match reliefs.iter_mut().find(|r| r.source.location == source.location && r.kind == kind) {
+                Some(relief) => relief.layers.push(plan),
+                None => reliefs.push(ReliefPlan { source, kind, layers: vec![plan] }),
+            }
+        }
+    }
+    Ok(reliefs)
+}
+
+fn read_as(
+    bumps: &BumpSource,
+    source: &TextureSource,
+    settings: &Settings,
+    layout: Option<&Layout>,
+    notes: &mut Vec<String>,
+) -> (ReliefKind, f32) {
+    match bumps {
+        BumpSource::Normals(_, scale) => (ReliefKind::Normals, *scale),
+        BumpSource::Heights(_, scale) => {
+            let scale = settings.height_scale.unwrap_or(*scale);
+            let (slope_per_repeat, square_texels) = match (settings.frame, layout) {
+                // Heights in scene units: the slope is what the geometry makes of them.
+                (Frame::Natural, Some(layout)) => (layout.units_per_repeat.map(|units| scale / units), false),
+                (Frame::Natural, None) => {
+                    notes.push(
+                        "no mesh shows how large a repeat of the height map is: heights are taken in widths of a repeat"
+                            .to_owned(),
+                    );
+                    ([scale; 2], true)
+                }
+                _ => ([scale; 2], true),
+            };
+            (ReliefKind::Heights { slope_per_repeat, square_texels, wrap: source.wrap }, 1.0)
+        }
+    }
+}
+
+/// The textures of the layer's own lobe. The inner error says why bumps cannot be folded into them texel by texel.
+fn own_textures(
+    root: &Value,
+    layer: &Layer,
+    bumps: &TextureSource,
+) -> Result<Result<OwnTextures, String>, TextureError> {
+    let mapping = &layer.bumps.texture().mapping;
+    let mut reason = None;
+    let mut read = |what: &str, texture: Option<&TextureUse>| {
+        let Some(texture) = texture else { return Ok(None) };
+        let source = texture_source(root, texture.texture)?;
+        if texture.mapping != *mapping {
+            reason = Some(format!(
+                "the {what} texture has other texture coordinates or another KHR_texture_transform than the bumps: \
+                 its texels do not lie over theirs, so it was left as it was"
+            ));
+        } else if source.wrap != bumps.wrap {
+            reason = Some(format!(
+                "the sampler of the {what} texture wraps otherwise than that of the bumps, so it was left as it was"
+            ));
+        }
+        Ok(Some(source))
+    };
+    let roughness = read("roughness", layer.roughness.as_ref())?;
+    let anisotropy = read("anisotropy", layer.anisotropy.as_ref().and_then(|a| a.texture.as_ref()))?;
+    Ok(match reason {
+        Some(reason) => Err(reason),
+        None => Ok(OwnTextures { roughness, anisotropy }),
+    })
+}
+
+impl LayerPlan {
+    /// The place of the layer's normal texture.
+    pub fn normal_slot(&self) -> Slot {
+        self.slot(match self.layer.kind {
+            LayerKind::Base => "normalTexture",
+            LayerKind::Clearcoat => "extensions/KHR_materials_clearcoat/clearcoatNormalTexture",
+        })
+    }
+
+    /// The places that read the layer's roughness texture: its own, and occlusion where it is packed with it.
+    pub fn roughness_slots(&self) -> Vec<Slot> {
+        let mut slots = vec![self.slot(match self.layer.kind {
+            LayerKind::Base => "pbrMetallicRoughness/metallicRoughnessTexture",
+            LayerKind::Clearcoat => "extensions/KHR_materials_clearcoat/clearcoatRoughnessTexture",
+        })];
+        if self.layer.occlusion.is_some() && self.layer.occlusion == self.layer.roughness {
+            slots.push(self.slot("occlusionTexture"));
+        }
+        slots
+    }
+
+    /// JSON pointer of the layer's roughness factor.
+    pub fn roughness_factor_pointer(&self) -> String {
+        self.pointer(match self.layer.kind {
+            LayerKind::Base => "pbrMetallicRoughness/roughnessFactor",
+            LayerKind::Clearcoat => "extensions/KHR_materials_clearcoat/clearcoatRoughnessFactor",
+        })
+    }
+
+    /// The place of the anisotropy texture.
+    pub fn anisotropy_slot(&self) -> Slot {
+        self.slot("extensions/KHR_materials_anisotropy/anisotropyTexture")
+    }
+
+    /// A JSON pointer into the material.
+    pub fn pointer(&self, member: &str) -> String {
+        format!("/materials/{}/{member}", self.material)
+    }
+
+    fn slot(&self, member: &str) -> Slot {
+        Slot { pointer: self.pointer(member), mapping: self.layer.bumps.texture().mapping.clone() }
+    }
+
+    /// Whether `other` asks for the same folded lobe.
+    pub fn folds_like(&self, other: &Self) -> bool {
+        let location = |t: &Option<TextureSource>| t.as_ref().map(|t| t.location.clone());
+        let textures = |own: &Result<OwnTextures, String>| {
+            own.as_ref().ok().map(|own| (location(&own.roughness), location(&own.anisotropy)))
+        };
+        let factors = |plan: &Self| {
+            let anisotropy = plan.layer.anisotropy.as_ref().map(|a| (a.strength, a.rotation));
+            (plan.layer.kind, plan.layer.roughness_factor, plan.slope_scale, anisotropy)
+        };
+        self.own.is_ok() && textures(&self.own) == textures(&other.own) && factors(self) == factors(other)
+    }
+
+    /// Where the layer's own textures are.
+    pub fn own_locations(&self) -> Vec<&ImageLocation> {
+        let own = self.own.as_ref().ok();
+        let both = own.map(|own| [own.roughness.as_ref(), own.anisotropy.as_ref()]);
+        both.into_iter().flatten().flatten().map(|t| &t.location).collect()
+    }
+}

@@ -1,0 +1,106 @@
+//! Writing what was baked: beside its place, synced, then renamed, so that nothing half-written is ever visible.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use super::asset::Baked;
+
+/// Why a file cannot be written.
+#[derive(Debug, thiserror::Error)]
+pub enum PublishError {
+    /// The file system refused.
+    #[error("expected to write {}, found: {error}; free space or choose another output folder", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// The system's error.
+        error: io::Error,
+    },
+    /// A file to be copied cannot be read.
+    #[error("expected a readable file at {}, found: {error}; the document refers to it", path.display())]
+    Copy {
+        /// The file.
+        path: PathBuf,
+        /// The system's error.
+        error: io::Error,
+    },
+    /// An output would take the place of an input.
+    #[error("expected an output folder apart from the sources, found that {} is a source; choose another with -o", path.display())]
+    OverSource {
+        /// The file.
+        path: PathBuf,
+    },
+}
+
+impl PublishError {
+    /// The system's error, if there is one.
+    pub fn io(&self) -> Option<&io::Error> {
+        match self {
+            Self::Write { error, .. } | Self::Copy { error, .. } => Some(error),
+            Self::OverSource { .. } => None,
+        }
+    }
+}
+
+/// Writes `baked` to `document`, and its files beside it. Files that it only refers to are copied from `source_folder`.
+/// The document comes last: whoever sees it sees everything that it names. Returns the bytes written.
+///
+/// # Errors
+/// [`PublishError`]; `source` is never overwritten, nor any file that is copied.
+pub fn publish(baked: &Baked, document: &Path, source: &Path) -> Result<u64, PublishError> {
+    let source_folder = source.parent().unwrap_or(Path::new(""));
+    let folder = document.parent().unwrap_or(Path::new(""));
+    let mut sources: BTreeSet<PathBuf> = BTreeSet::new();
+    for path in baked.copies.iter().map(|c| source_folder.join(c)).chain([source.to_owned()]) {
+        sources.extend(fs::canonicalize(path));
+    }
+    let outputs = baked.files.iter().map(|(path, _)| path).chain(&baked.copies).map(|p| folder.join(p));
+    for path in outputs.chain([document.to_owned()]) {
+        if fs::canonicalize(&path).is_ok_and(|p| sources.contains(&p)) {
+            return Err(PublishError::OverSource { path });
+        }
+    }
+    let mut total = 0;
+    for copy in &baked.copies {
+        let from = source_folder.join(copy);
+        let bytes = fs::read(&from).map_err(|error| PublishError::Copy { path: from, error })?;
+        total += write_file(&folder.join(copy), &bytes)?;
+    }
+    for (path, bytes) in &baked.files {
+        total += write_file(&folder.join(path), bytes)?;
+    }
+    Ok(total + write_file(document, &baked.document)?)
+}
+
+/// Writes a file whole or not at all, making its folder; returns its length.
+///
+/// # Errors
+/// [`PublishError::Write`].
+pub fn write_file(path: &Path, bytes: &[u8]) -> Result<u64, PublishError> {
+    let write = || -> io::Result<()> {
+        let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        fs::create_dir_all(folder)?;
+        let mut file = tempfile::Builder::new().prefix(".roughcast-").tempfile_in(folder)?;
+        file.write_all(bytes)?;
+        file.as_file().sync_all()?;
+        set_ordinary_permissions(file.as_file())?;
+        file.persist(path).map_err(|e| e.error)?;
+        Ok(())
+    };
+    write().map_err(|error| PublishError::Write { path: path.to_owned(), error })?;
+    Ok(bytes.len() as u64)
+}
+
+/// Temporary files are private to their user; what is baked is for everyone whom the folder lets in.
+#[cfg(unix)]
+fn set_ordinary_permissions(file: &fs::File) -> io::Result<()> {
+    use std::os::unix::fs::PermissionsExt;
+    file.set_permissions(fs::Permissions::from_mode(0o644))
+}
+
+#[cfg(not(unix))]
+fn set_ordinary_permissions(_: &fs::File) -> io::Result<()> {
+    Ok(())
+}

@@ -1,0 +1,57 @@
+//! The bumps of a material: a normal map or a height map, read as rows of moments.
+
+use crate::bump::{HeightOffsets, NormalOffsets, Wrap};
+use crate::map::{HeightMap, NormalMap};
+use crate::pyramid::{Moments, Rows};
+
+/// A decoded normal or height map.
+pub enum Relief {
+    /// Tangent-space normals.
+    Normals(NormalMap),
+    /// Heights.
+    Heights {
+        /// The map.
+        map: HeightMap,
+        /// Slope where the height changes by 1 between neighbouring texels, across and down.
+        slope_per_step: [f32; 2],
+        /// The sampler's mode, across and down.
+        wrap: [Wrap; 2],
+    },
+}
+
+impl Relief {
+    /// Texels steeper than [`crate::bump::MAX_SLOPE`] or pointing below the surface.
+    pub fn steep_texels(&self) -> u64 {
+        match self {
+            Self::Normals(map) => NormalOffsets::new(map).steep_texels(),
+            Self::Heights { map, slope_per_step, wrap } => {
+                HeightOffsets::new(map, *slope_per_step, *wrap).steep_texels()
+            }
+        }
+    }
+}
+
+impl Rows for Relief {
+    type Texel = Moments;
+
+    fn width(&self) -> u32 {
+        match self {
+            Self::Normals(map) => map.width(),
+            Self::Heights { map, .. } => map.width(),
+        }
+    }
+
+    fn height(&self) -> u32 {
+        match self {
+            Self::Normals(map) => map.height(),
+            Self::Heights { map, .. } => map.height(),
+        }
+    }
+
+    fn row(&self, y: u32, out: &mut [Moments]) {
+        match self {
+            Self::Normals(map) => NormalOffsets::new(map).row(y, out),
+            Self::Heights { map, slope_per_step, wrap } => HeightOffsets::new(map, *slope_per_step, *wrap).row(y, out),
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! What a bake did, as data (`schemas/report.schema.json`).
+
+use serde::Serialize;
+
+use super::pyramids::Range;
+use super::settings::Model;
+use crate::choose::ModelLoss;
+use crate::gltf::material::LayerKind;
+
+/// What was done for one asset.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct AssetReport {
+    /// Layers of materials, in the order of the file.
+    pub layers: Vec<LayerReport>,
+    /// Textures that were written.
+    pub textures: Vec<TextureReport>,
+}
+
+/// What was done for one layer of a material.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct LayerReport {
+    /// Name of the material, or `material <index>`.
+    pub material: String,
+    /// Which of its lobes.
+    pub layer: LayerKind,
+    /// What is modelled of the lost bumps; absent when nothing was baked.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub model: Option<Model>,
+    /// What smaller models would lose.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub loss: Option<ModelLoss>,
+    /// What was left as it was, or is not as exact as it could be, and why.
+    pub notes: Vec<String>,
+}
+
+/// A texture that was written.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct TextureReport {
+    /// Path relative to the asset.
+    pub path: String,
+    /// What its texels are.
+    pub content: Content,
+    /// Columns of level 0.
+    pub width: u32,
+    /// Rows of level 0.
+    pub height: u32,
+    /// Mip levels.
+    pub levels: usize,
+    /// Bytes of the KTX2 file.
+    pub bytes: usize,
+    /// What texels of 0 and 1 stand for; only for the pyramid profile.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub range: Option<Range>,
+}
+
+/// What the texels of a baked texture are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Content {
+    /// Unit normals.
+    Normal,
+    /// Folded roughness in green.
+    Roughness,
+    /// Direction and strength of anisotropy.
+    Anisotropy,
+    /// (f_u, f_v).
+    Offset,
+    /// D.
+    Factor,
+    /// lambda_1.
+    Lambda1,
+}
+
+impl Content {
+    /// As in file names.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Normal => "normal",
+            Self::Roughness => "roughness",
+            Self::Anisotropy => "anisotropy",
+            Self::Offset => "offset",
+            Self::Factor => "factor",
+            Self::Lambda1 => "lambda1",
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! Reading what a document refers to.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use crate::gltf::document::{Document, DocumentError};
+use crate::gltf::texture::ImageLocation;
+use crate::gltf::uri::{Uri, UriError};
+
+/// A document and how to read the files beside it.
+#[derive(Clone, Copy)]
+pub struct Source<'a> {
+    /// File name without extension; output files are named after it.
+    pub stem: &'a str,
+    /// The document.
+    pub document: &'a Document,
+    /// Reads a file, given its path relative to the document.
+    pub read: &'a (dyn Fn(&Path) -> io::Result<Vec<u8>> + Sync),
+}
+
+/// Why bytes cannot be had.
+#[derive(Debug, thiserror::Error)]
+pub enum SourceError {
+    /// The URI is not one that is read.
+    #[error(transparent)]
+    Uri(#[from] UriError),
+    /// The file system refused.
+    #[error("expected a readable file at {}, found: {error}; put it there or fix the URI", path.display())]
+    Read {
+        /// Relative to the document.
+        path: PathBuf,
+        /// The system's error.
+        error: io::Error,
+    },
+    /// A buffer view leads nowhere.
+    #[error(transparent)]
+    Document(#[from] DocumentError),
+    /// A buffer is shorter than it says.
+    #[error(
+        "expected buffer {buffer} to hold the {expected} bytes that its views need, found {found}; export the asset again"
+    )]
+    ShortBuffer {
+        /// Index into `buffers`.
+        buffer: usize,
+        /// Bytes needed.
+        expected: usize,
+        /// Bytes there are.
+        found: usize,
+    },
+    /// A buffer that is neither in the file nor named.
+    #[error("expected buffer {buffer} in a BIN chunk or at a URI, found neither; export the asset again")]
+    NoBuffer {
+        /// Index into `buffers`.
+        buffer: usize,
+    },
+}
+
+/// Largest data URI that is decoded: more than any texture of the largest size allowed.
+const MAX_DATA_URI: usize = 2 << 30;
+
+impl Source<'_> {
+    /// The bytes that `uri` names.
+    pub fn uri(&self, uri: &str) -> Result<Vec<u8>, SourceError> {
+        match Uri::parse(uri)? {
+            Uri::Data(data) => Ok(data.decode(MAX_DATA_URI)?),
+            Uri::Path(path) => (self.read)(&path).map_err(|error| SourceError::Read { path, error }),
+        }
+    }
+
+    /// The bytes of an image file.
+    pub fn image(&self, location: &ImageLocation) -> Result<Vec<u8>, SourceError> {
+        match location {
+            ImageLocation::Uri(uri) => self.uri(uri),
+            ImageLocation::BufferView(view) => {
+                let (buffer, range) = self.document.buffer_view(*view)?;
+                let bytes = self.buffer(buffer)?;
+                let short = SourceError::ShortBuffer { buffer, expected: range.end, found: bytes.len() };
+                bytes.get(range).map(<[u8]>::to_vec).ok_or(short)
+            }
+        }
+    }
+
+    /// The bytes of a buffer.
+    pub fn buffer(&self, index: usize) -> Result<Vec<u8>, SourceError> {
+        let uri: Option<String> =
+            self.document.json().read(&format!("/buffers/{index}/uri")).map_err(DocumentError::from)?;
+        match uri {
+            Some(uri) => self.uri(&uri),
+            None if index == 0 => {
+                self.document.bin().map(<[u8]>::to_vec).ok_or(SourceError::NoBuffer { buffer: index })
+            }
+            None => Err(SourceError::NoBuffer { buffer: index }),
+        }
+    }
+}

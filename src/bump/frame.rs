@@ -1,0 +1,77 @@
+//! The paper's three local frames ("The Local Coordinate System", 1 to 3).
+
+use super::Offset;
+use crate::pyramid::Moments;
+use crate::symmetric::Symmetric2;
+
+/// The frame in which stored offsets are to be read.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Frame {
+    /// Frame 1: offsets are df/du and df/dv in scene units per repeat of the texture; the reader divides by |p_u| and
+    /// |p_v|, so bumps keep their height however the map is scaled.
+    Natural,
+    /// Frame 2: offsets are slopes along unit vectors: glTF's tangent frame. Bumps scale with the map.
+    #[default]
+    Unit,
+    /// Frame 3: slopes along e1 = m x n / |m x n| and e2 = n x e1 for a main direction m, given in the space of the
+    /// mesh. No tangents are needed at run time.
+    MainDirection([f32; 3]),
+}
+
+/// From slopes in glTF's tangent frame to offsets in a [`Frame`], for one material: f' = M f, K' = M K M^T.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrameTransform {
+    /// Rows of M.
+    pub matrix: [[f32; 2]; 2],
+}
+
+impl FrameTransform {
+    /// M = 1: the tangent frame itself.
+    pub const IDENTITY: Self = Self { matrix: [[1.0, 0.0], [0.0, 1.0]] };
+
+    /// To the natural frame of a surface with |p_u| and |p_v| scene units per repeat.
+    pub fn natural(p_u: f32, p_v: f32) -> Self {
+        Self { matrix: [[p_u, 0.0], [0.0, p_v]] }
+    }
+
+    /// To a frame turned against the tangent frame, in which T = `cos` e1 + `sin` e2.
+    pub fn rotation(cos: f32, sin: f32) -> Self {
+        Self { matrix: [[cos, -sin], [sin, cos]] }
+    }
+
+    /// Mean and covariance in the new frame.
+    pub fn apply(&self, moments: Moments) -> Moments {
+        let [[a, b], [c, d]] = self.matrix;
+        let (mean, k) = (moments.mean, moments.covariance);
+        Moments {
+            mean: Offset { u: a * mean.u + b * mean.v, v: c * mean.u + d * mean.v },
+            covariance: Symmetric2::new(
+                a * a * k.uu + 2.0 * a * b * k.uv + b * b * k.vv,
+                a * c * k.uu + (a * d + b * c) * k.uv + b * d * k.vv,
+                c * c * k.uu + 2.0 * c * d * k.uv + d * d * k.vv,
+            ),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn natural_offsets_are_heights_per_repeat() {
+        // Slope 0.5 on a surface where one repeat spans 4 units: the height rises by 2 per repeat.
+        let moments = Moments { mean: Offset { u: 0.5, v: -0.25 }, covariance: Symmetric2::new(0.1, 0.02, 0.3) };
+        let natural = FrameTransform::natural(4.0, 2.0).apply(moments);
+        assert_eq!(natural.mean, Offset { u: 2.0, v: -0.5 });
+        assert_eq!(natural.covariance, moments.covariance.scaled([4.0, 2.0]));
+    }
+
+    #[test]
+    fn a_quarter_turn_moves_u_to_v() {
+        let moments = Moments { mean: Offset { u: 1.0, v: 0.0 }, covariance: Symmetric2::diagonal(0.5, 0.0) };
+        let turned = FrameTransform::rotation(0.0, 1.0).apply(moments);
+        assert_eq!(turned.mean, Offset { u: 0.0, v: 1.0 });
+        assert_eq!(turned.covariance, Symmetric2::diagonal(0.0, 0.5));
+    }
+}

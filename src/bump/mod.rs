@@ -1,0 +1,38 @@
+//! Offsets (f_u, f_v): the slopes of the bumps, from normals or heights, in one of the paper's three local frames.
+//!
+//! In an orthonormal tangent frame n' = N - f_u T - f_v B (paper, "The Local Coordinate System"). B points up the image,
+//! towards row 0, as in glTF. This room knows nothing of mip levels beyond level 0.
+
+mod frame;
+mod height;
+mod normal;
+
+pub use frame::{Frame, FrameTransform};
+pub use height::{HeightOffsets, Wrap};
+pub use normal::{NormalOffsets, normal_from_offset, offset_from_normal};
+
+/// Steepest slope kept: 86.4 degrees. Beyond it one texel of noise would outweigh the whole footprint in K, and the
+/// squared alpha that K stands for (2 * 16^2) is far above 1, the most that an engine can show.
+pub const MAX_SLOPE: f32 = 16.0;
+
+/// Slopes (rise over run) along T and B.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Offset {
+    /// f_u: along the tangent, rightwards in the image.
+    pub u: f32,
+    /// f_v: along the bitangent, upwards in the image.
+    pub v: f32,
+}
+
+impl Offset {
+    /// The same direction, no steeper than [`MAX_SLOPE`].
+    fn clamped(self) -> Self {
+        let length = (self.u * self.u + self.v * self.v).sqrt();
+        if length <= MAX_SLOPE {
+            self
+        } else {
+            let scale = MAX_SLOPE / length;
+            Self { u: self.u * scale, v: self.v * scale }
+        }
+    }
+}

@@ -1,0 +1,193 @@
+//! `roughcast bake`.
+
+use std::fs;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use super::Outcome;
+use super::inputs::{self, Input};
+use super::options::{DocumentOptions, TextureOptions};
+use super::progress::Progress;
+use super::report::{Asset, Report, Status};
+use crate::bake::report::AssetReport;
+use crate::bake::{BakeError, PublishError, Settings, Source, SourceError, bake, publish, write_file};
+use crate::gltf::document::{Container, Document, DocumentError};
+use crate::texture::EncodeError;
+
+/// Bake glTF assets: KTX2 textures with the lost roughness in their mips, and a glTF that refers to them.
+///
+/// Reads .gltf and .glb files and folders of them; writes to another folder and never touches a source.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Example:\n  roughcast bake assets/helmet.gltf -o baked --engine bevy")]
+pub struct Args {
+    /// .gltf or .glb files, or folders that are searched for them.
+    #[arg(required = true, value_name = "INPUT")]
+    inputs: Vec<PathBuf>,
+    /// Output folder.
+    #[arg(short, long, value_name = "DIR")]
+    output: PathBuf,
+    #[command(flatten)]
+    texture: TextureOptions,
+    #[command(flatten)]
+    document: DocumentOptions,
+    /// Write what was done, chosen and skipped to a JSON file.
+    #[arg(long, value_name = "FILE")]
+    report: Option<PathBuf>,
+    /// Print that report instead of a summary.
+    #[arg(long)]
+    json: bool,
+    /// Print errors only.
+    #[arg(short, long, conflicts_with = "json")]
+    quiet: bool,
+}
+
+/// Why an asset is not baked.
+#[derive(Debug, thiserror::Error)]
+enum AssetError {
+    #[error("expected a readable file, found: {0}")]
+    Read(io::Error),
+    #[error(transparent)]
+    Document(#[from] DocumentError),
+    #[error(transparent)]
+    Bake(#[from] BakeError),
+    #[error(transparent)]
+    Publish(#[from] PublishError),
+}
+
+impl AssetError {
+    /// Whether trying again may help: something was busy or away, not missing or wrong.
+    fn is_passing(&self) -> bool {
+        let error = match self {
+            Self::Read(error) | Self::Bake(BakeError::Source(SourceError::Read { error, .. })) => Some(error),
+            Self::Publish(error) => error.io(),
+            _ => None,
+        };
+        error.is_some_and(|e| {
+            use io::ErrorKind as Kind;
+            matches!(
+                e.kind(),
+                Kind::WouldBlock
+                    | Kind::TimedOut
+                    | Kind::Interrupted
+                    | Kind::ResourceBusy
+                    | Kind::StaleNetworkFileHandle
+                    | Kind::NetworkDown
+                    | Kind::HostUnreachable
+            )
+        })
+    }
+}
+
+/// Bakes what `args` name.
+///
+/// # Errors
+/// When `out` or `err` cannot be written to.
+pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<Outcome> {
+    let settings = args.texture.settings(Some(&args.document));
+    if let Err(reason) = check_settings(&settings) {
+        writeln!(err, "error: {reason}")?;
+        return Ok(Outcome::Usage);
+    }
+    let (inputs, input_errors) = inputs::find(&args.inputs, &args.output);
+    let mut outcome = Outcome::Done;
+    for error in &input_errors {
+        writeln!(err, "error: {error}")?;
+        outcome = outcome.and(Outcome::Failed);
+    }
+    let progress = Progress::new(inputs.len(), args.quiet);
+    let mut report = Report {
+        version: env!("CARGO_PKG_VERSION"),
+        settings: settings.to_json(settings.model),
+        assets: Vec::with_capacity(inputs.len()),
+    };
+    for (index, input) in inputs.iter().enumerate() {
+        let start = Instant::now();
+        let name = input.path.display().to_string();
+        progress.set(index, 0.0, &name);
+        let result = bake_one(input, &settings, &|share| progress.set(index, share, &name));
+        let seconds = start.elapsed().as_secs_f64();
+        let asset = match result {
+            Ok((output, bytes, report)) => Asset {
+                input: name,
+                output: Some(output.display().to_string()),
+                status: if report.textures.is_empty() { Status::Copied } else { Status::Baked },
+                seconds,
+                bytes,
+                error: None,
+                report,
+            },
+            Err(error) => {
+                outcome = outcome.and(if error.is_passing() { Outcome::Retry } else { Outcome::Failed });
+                let message = error.to_string();
+                progress.suspend(|| writeln!(err, "error: {name}: {message}"))?;
+                Asset {
+                    input: name,
+                    output: None,
+                    status: Status::Failed,
+                    seconds,
+                    bytes: 0,
+                    error: Some(message),
+                    report: AssetReport::default(),
+                }
+            }
+        };
+        if !args.quiet && !args.json {
+            progress.suspend(|| write!(out, "{}", asset.summary()))?;
+        }
+        report.assets.push(asset);
+    }
+    progress.finish();
+    let mut json = serde_json::to_string_pretty(&report).map_err(io::Error::other)?;
+    json.push('\n');
+    if args.json {
+        out.write_all(json.as_bytes())?;
+    }
+    if let Some(path) = &args.report {
+        if let Err(error) = write_file(path, json.as_bytes()) {
+            writeln!(err, "error: {error}")?;
+            outcome = outcome.and(Outcome::Failed);
+        }
+    }
+    Ok(outcome)
+}
+
+/// Settings that cannot be had together.
+fn check_settings(settings: &Settings) -> Result<(), String> {
+    settings.target.check_available().map_err(|e: EncodeError| e.to_string())?;
+    if settings.glb && settings.form == crate::bake::Form::Dual {
+        return Err("--gltf dual needs external textures, which --glb does not have: leave one of them out".to_owned());
+    }
+    Ok(())
+}
+
+fn bake_one(
+    input: &Input,
+    settings: &Settings,
+    advance: &dyn Fn(f32),
+) -> Result<(PathBuf, u64, AssetReport), AssetError> {
+    let bytes = read_file(&input.path).map_err(AssetError::Read)?;
+    let document = Document::parse(&bytes)?;
+    let folder = input.path.parent().unwrap_or(Path::new(""));
+    let source = Source { stem: &input.stem, document: &document, read: &|path| read_file(&folder.join(path)) };
+    let baked = bake(&source, settings, advance)?;
+    let extension = if baked.container == Container::Glb { "glb" } else { "gltf" };
+    let output = input.folder.join(format!("{}.{extension}", input.stem));
+    let bytes = publish(&baked, &output, &input.path)?;
+    Ok((output, bytes, baked.report))
+}
+
+/// Largest input file: no map within the limits on texels is as large.
+const MAX_FILE_BYTES: u64 = 8 << 30;
+
+/// Reads a file that is one, and not a device that never ends.
+pub fn read_file(path: &Path) -> io::Result<Vec<u8>> {
+    let facts = fs::metadata(path)?;
+    if !facts.is_file() {
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, "not an ordinary file"));
+    }
+    if facts.len() > MAX_FILE_BYTES {
+        return Err(io::Error::new(io::ErrorKind::FileTooLarge, "larger than 8 GiB"));
+    }
+    fs::read(path)
+}

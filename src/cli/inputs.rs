@@ -1,0 +1,154 @@
+//! Which assets a command line names, and where their outputs go.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use walkdir::WalkDir;
+
+/// An asset to bake.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Input {
+    /// The .gltf or .glb file.
+    pub path: PathBuf,
+    /// Its output folder, and its name there without extension.
+    pub folder: PathBuf,
+    /// File name without extension.
+    pub stem: String,
+}
+
+/// An input that cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum InputError {
+    /// Neither a glTF file nor a folder.
+    #[error("{}: expected a .gltf or .glb file or a folder, found {found}; check the path", path.display())]
+    NotAnAsset {
+        /// What was named.
+        path: PathBuf,
+        /// What it is.
+        found: String,
+    },
+    /// A folder without assets.
+    #[error("{}: expected .gltf or .glb files in the folder, found none; check the path", path.display())]
+    EmptyFolder {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// A folder or an entry of it that cannot be read.
+    #[error("{}: expected a folder that can be read, found: {reason}", path.display())]
+    Walk {
+        /// The folder or entry.
+        path: PathBuf,
+        /// What the system says.
+        reason: String,
+    },
+    /// A name that cannot stand in a URI.
+    #[error("{}: expected a file name in UTF-8, found one that is not; rename the file", path.display())]
+    NotUtf8 {
+        /// The file.
+        path: PathBuf,
+    },
+    /// Two inputs for one output.
+    #[error(
+        "{}: expected inputs with outputs of their own, found that {} is baked to the same place; bake them into \
+         different folders",
+        path.display(), other.display()
+    )]
+    SameOutput {
+        /// The later input.
+        path: PathBuf,
+        /// The earlier one.
+        other: PathBuf,
+    },
+    /// The output folder is an input folder.
+    #[error("{}: expected an output folder apart from the inputs, found an input folder; choose another with -o", path.display())]
+    OutputIsInput {
+        /// The folder.
+        path: PathBuf,
+    },
+}
+
+/// The assets that `arguments` name, in a fixed order: files go to `output` itself, folders keep their structure below
+/// it. Inputs that cannot be used do not stop the others.
+pub fn find(arguments: &[PathBuf], output: &Path) -> (Vec<Input>, Vec<InputError>) {
+    let mut inputs: Vec<Input> = Vec::new();
+    let mut errors = Vec::new();
+    for argument in arguments {
+        match find_one(argument, output) {
+            Err(error) => errors.push(error),
+            Ok((found, more)) => {
+                errors.extend(more);
+                for input in found {
+                    match inputs.iter().find(|i| i.folder == input.folder && i.stem == input.stem) {
+                        Some(other) if other.path != input.path => {
+                            errors.push(InputError::SameOutput { path: input.path, other: other.path.clone() });
+                        }
+                        Some(_) => {}
+                        None => inputs.push(input),
+                    }
+                }
+            }
+        }
+    }
+    (inputs, errors)
+}
+
+fn find_one(argument: &Path, output: &Path) -> Result<(Vec<Input>, Vec<InputError>), InputError> {
+    let path = argument.to_owned();
+    let facts =
+        fs::metadata(argument).map_err(|e| InputError::NotAnAsset { path: path.clone(), found: e.to_string() })?;
+    let own_folder = if facts.is_dir() { argument } else { folder_of(argument) };
+    if is_same_folder(own_folder, output) {
+        return Err(InputError::OutputIsInput { path: output.to_owned() });
+    }
+    if facts.is_file() {
+        if !is_asset(argument) {
+            let found = argument.extension().map_or_else(
+                || "a file without extension".to_owned(),
+                |e| format!("a .{} file (bare maps are for `roughcast map`)", e.to_string_lossy()),
+            );
+            return Err(InputError::NotAnAsset { path, found });
+        }
+        return Ok((vec![input(argument, output.to_owned())?], Vec::new()));
+    }
+    let (mut inputs, mut errors) = (Vec::new(), Vec::new());
+    let walk = WalkDir::new(argument).follow_links(true).sort_by_file_name().into_iter();
+    for entry in walk.filter_entry(|e| !(e.file_type().is_dir() && is_same_folder(e.path(), output))) {
+        match entry {
+            Err(error) => {
+                let path = error.path().unwrap_or(argument).to_owned();
+                errors.push(InputError::Walk { path, reason: error.to_string() });
+            }
+            Ok(entry) if entry.file_type().is_file() && is_asset(entry.path()) => {
+                let below = entry.path().strip_prefix(argument).unwrap_or(entry.path());
+                match input(entry.path(), output.join(folder_of(below))) {
+                    Ok(input) => inputs.push(input),
+                    Err(error) => errors.push(error),
+                }
+            }
+            Ok(_) => {}
+        }
+    }
+    if inputs.is_empty() && errors.is_empty() {
+        return Err(InputError::EmptyFolder { path });
+    }
+    Ok((inputs, errors))
+}
+
+fn input(path: &Path, folder: PathBuf) -> Result<Input, InputError> {
+    let stem = path.file_stem().and_then(|s| s.to_str());
+    let stem = stem.ok_or_else(|| InputError::NotUtf8 { path: path.to_owned() })?.to_owned();
+    Ok(Input { path: path.to_owned(), folder, stem })
+}
+
+fn folder_of(path: &Path) -> &Path {
+    path.parent().unwrap_or(Path::new(""))
+}
+
+fn is_asset(path: &Path) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("gltf") || e.eq_ignore_ascii_case("glb"))
+}
+
+fn is_same_folder(a: &Path, b: &Path) -> bool {
+    let real = |path: &Path| fs::canonicalize(if path.as_os_str().is_empty() { Path::new(".") } else { path });
+    matches!((real(a), real(b)), (Ok(a), Ok(b)) if a == b)
+}

@@ -1,0 +1,263 @@
+//! `roughcast map`.
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use clap::ValueEnum;
+use serde_json::json;
+
+use super::Outcome;
+use super::bake::read_file;
+use super::options::{TextureOptions, finite, unit_interval};
+use crate::bake::report::Content;
+use crate::bake::{BareBake, BareTexture, OwnRoughness, PublishError, Relief, Settings, bake_map, write_file};
+use crate::bump::{MAX_SLOPE, Wrap};
+use crate::map::{DecodeError, DecodeOptions, HeightMap, Image, MapError, NormalLayout, NormalMap, decode};
+use crate::texture::EncodeError;
+use crate::texture::ktx2::{Provenance, SourceDigest, write};
+
+/// Bake one bare normal or height map into KTX2 files.
+///
+/// OUT is the bump map: normals, or offsets with --profile pyramid. What belongs to it is written beside it, as
+/// OUT.roughness.ktx2 and so on.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:\n  roughcast map wool_normal.png -o wool.ktx2 --roughness wool_rough.png\n  \
+    roughcast map wool_depth.png -o wool.ktx2 --height --height-scale 0.02 --profile pyramid")]
+pub struct Args {
+    /// PNG, JPEG, EXR, TIFF, TGA, HDR, WebP or KTX2.
+    image: PathBuf,
+    /// The KTX2 file to write.
+    #[arg(short, long, value_name = "OUT.ktx2")]
+    output: PathBuf,
+    /// The image holds heights, not normals.
+    #[arg(long)]
+    height: bool,
+    /// Relief between heights 0 and 1, in widths of the map.
+    #[arg(long, value_parser = finite, default_value_t = 0.05, value_name = "S", allow_hyphen_values = true)]
+    height_scale: f32,
+    /// What lies beyond the border of a height map, across and down: one mode, or two with a comma.
+    #[arg(long, value_parser = wrap_modes, default_value = "repeat", value_name = "MODE")]
+    wrap: [Wrap; 2],
+    /// Which channels hold the normal; auto takes two where the third is missing or empty.
+    #[arg(long, value_enum, default_value_t = Channels::Auto)]
+    channels: Channels,
+    /// Green points down the image (DirectX convention).
+    #[arg(long)]
+    green_down: bool,
+    /// EXR: which layer, or which channel as layer.channel.
+    #[arg(long, value_name = "NAME")]
+    layer: Option<String>,
+    /// The surface's own roughness map (green, or grey), to fold the lost bumps into.
+    #[arg(long, value_name = "IMAGE")]
+    roughness: Option<PathBuf>,
+    /// The surface's own roughness, 0 to 1; multiplies --roughness.
+    #[arg(long, value_parser = unit_interval, value_name = "R")]
+    roughness_factor: Option<f32>,
+    #[command(flatten)]
+    texture: TextureOptions,
+    /// Print what was written as JSON.
+    #[arg(long)]
+    json: bool,
+    /// Print errors only.
+    #[arg(short, long, conflicts_with = "json")]
+    quiet: bool,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Channels {
+    /// x and y where a third channel is missing or empty, else x, y, z
+    Auto,
+    /// x, y, z
+    Xyz,
+    /// x and y
+    Xy,
+}
+
+/// Why a map is not baked.
+#[derive(Debug, thiserror::Error)]
+enum MapCommandError {
+    #[error("{}: expected a readable file, found: {error}", path.display())]
+    Read { path: PathBuf, error: io::Error },
+    #[error("{}: {error}", path.display())]
+    Decode { path: PathBuf, error: DecodeError },
+    #[error("{}: {error}", path.display())]
+    Map { path: PathBuf, error: MapError },
+    #[error(transparent)]
+    Encode(#[from] EncodeError),
+    #[error(transparent)]
+    Publish(#[from] PublishError),
+    #[error("{}: expected an output apart from the source, found the source itself; choose another with -o", path.display())]
+    OverSource { path: PathBuf },
+}
+
+/// Bakes the map that `args` name.
+///
+/// # Errors
+/// When `out` or `err` cannot be written to.
+pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<Outcome> {
+    let settings = args.texture.settings(None);
+    if let Err(reason) = settings.target.check_available() {
+        writeln!(err, "error: {reason}")?;
+        return Ok(Outcome::Usage);
+    }
+    match bake(args, &settings) {
+        Err(error) => {
+            writeln!(err, "error: {error}")?;
+            Ok(Outcome::Failed)
+        }
+        Ok(written) => {
+            if args.json {
+                writeln!(out, "{}", serde_json::to_string_pretty(&written.json()).map_err(io::Error::other)?)?;
+            } else if !args.quiet {
+                write!(out, "{}", written.summary())?;
+            }
+            Ok(Outcome::Done)
+        }
+    }
+}
+
+struct Written {
+    baked: BareBake,
+    files: Vec<(PathBuf, u64)>,
+}
+
+impl Written {
+    fn json(&self) -> serde_json::Value {
+        let textures = self.baked.textures.iter().zip(&self.files).map(|(texture, (path, bytes))| {
+            json!({
+                "path": path.display().to_string(),
+                "content": texture.content,
+                "width": texture.chain.width,
+                "height": texture.chain.height,
+                "levels": texture.chain.levels.len(),
+                "bytes": bytes,
+                "range": texture.range,
+            })
+        });
+        json!({
+            "model": self.baked.model,
+            "loss": self.baked.loss,
+            "steepTexels": self.baked.steep_texels,
+            "textures": textures.collect::<Vec<_>>(),
+        })
+    }
+
+    fn summary(&self) -> String {
+        let mut text = String::new();
+        for (texture, (path, bytes)) in self.baked.textures.iter().zip(&self.files) {
+            let chain = &texture.chain;
+            text += &format!(
+                "{}: {}, {} x {}, {} levels, {:.1} kB\n",
+                path.display(),
+                texture.content.name(),
+                chain.width,
+                chain.height,
+                chain.levels.len(),
+                *bytes as f64 / 1e3
+            );
+        }
+        if self.baked.steep_texels > 0 {
+            text += &format!(
+                "note: {} texels are steeper than {MAX_SLOPE} or point below the surface: taken as that steep\n",
+                self.baked.steep_texels
+            );
+        }
+        text
+    }
+}
+
+fn bake(args: &Args, settings: &Settings) -> Result<Written, MapCommandError> {
+    let (image, digest) = load(&args.image, args.layer.clone(), settings)?;
+    let mut sources = vec![digest];
+    let failed = |error| MapCommandError::Map { path: args.image.clone(), error };
+    let relief = if args.height {
+        let slope = args.height_scale * image.width as f32;
+        Relief::Heights { map: HeightMap::new(image).map_err(failed)?, slope_per_step: [slope; 2], wrap: args.wrap }
+    } else {
+        let layout = match args.channels {
+            Channels::Auto => NormalLayout::Auto,
+            Channels::Xyz => NormalLayout::Xyz,
+            Channels::Xy => NormalLayout::Xy,
+        };
+        Relief::Normals(NormalMap::new(image, layout, args.green_down).map_err(failed)?)
+    };
+    let own = match (&args.roughness, args.roughness_factor) {
+        (None, None) => None,
+        (image, factor) => {
+            let image = image.as_deref().map(|path| load(path, None, settings)).transpose()?;
+            let image = image.map(|(image, digest)| {
+                sources.push(digest);
+                image
+            });
+            Some(OwnRoughness { image, factor: factor.unwrap_or(1.0) })
+        }
+    };
+    let baked = bake_map(&relief, own.as_ref(), settings)?;
+    let mut files = Vec::new();
+    for (index, texture) in baked.textures.iter().enumerate() {
+        let path = if index == 0 { args.output.clone() } else { beside(&args.output, texture.content) };
+        let inputs = [Some(&args.image), args.roughness.as_ref()].into_iter().flatten();
+        for input in inputs {
+            if is_same_file(input, &path) {
+                return Err(MapCommandError::OverSource { path });
+            }
+        }
+        files.push((path, texture_file(texture, &baked, &sources, settings)));
+    }
+    let mut written = Vec::new();
+    for (path, bytes) in files {
+        let length = write_file(&path, &bytes)?;
+        written.push((path, length));
+    }
+    Ok(Written { baked, files: written })
+}
+
+fn load(path: &Path, layer: Option<String>, settings: &Settings) -> Result<(Image, SourceDigest), MapCommandError> {
+    let bytes = read_file(path).map_err(|error| MapCommandError::Read { path: path.to_owned(), error })?;
+    let extension = path.extension().map(|e| e.to_string_lossy().into_owned());
+    let options = DecodeOptions { max_pixels: settings.max_texels, layer, extension };
+    let image = decode(&bytes, &options).map_err(|error| MapCommandError::Decode { path: path.to_owned(), error })?;
+    let uri = path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+    Ok((image, SourceDigest { uri, blake3: blake3::hash(&bytes).to_hex().to_string() }))
+}
+
+fn texture_file(texture: &BareTexture, baked: &BareBake, sources: &[SourceDigest], settings: &Settings) -> Vec<u8> {
+    let chain = &texture.chain;
+    let mut recorded = settings.to_json(baked.model);
+    recorded["range"] = json!(texture.range);
+    let keys = if settings.provenance {
+        Provenance {
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            content: texture.content.name().to_owned(),
+            settings: recorded,
+            sources: sources.to_vec(),
+        }
+        .keys()
+    } else {
+        Vec::new()
+    };
+    write(chain.format, chain.width, chain.height, &chain.levels, &keys)
+}
+
+/// `wool.ktx2` -> `wool.roughness.ktx2`.
+fn beside(output: &Path, content: Content) -> PathBuf {
+    let stem = output.file_stem().unwrap_or_default().to_string_lossy();
+    output.with_file_name(format!("{stem}.{}.ktx2", content.name()))
+}
+
+fn is_same_file(a: &Path, b: &Path) -> bool {
+    matches!((std::fs::canonicalize(a), std::fs::canonicalize(b)), (Ok(a), Ok(b)) if a == b)
+}
+
+fn wrap_modes(text: &str) -> Result<[Wrap; 2], String> {
+    let mode = |name: &str| match name.trim() {
+        "repeat" => Ok(Wrap::Repeat),
+        "mirror" => Ok(Wrap::Mirror),
+        "clamp" => Ok(Wrap::Clamp),
+        other => Err(format!("expected repeat, mirror or clamp, found {other:?}")),
+    };
+    match text.split_once(',') {
+        None => mode(text).map(|m| [m; 2]),
+        Some((across, down)) => Ok([mode(across)?, mode(down)?]),
+    }
+}

@@ -1,0 +1,86 @@
+//! The command line: one file per command, each with its `Args` and a `run`.
+
+mod bake;
+mod inputs;
+mod map;
+mod options;
+mod progress;
+mod report;
+
+use std::io::Write;
+
+use clap::{Parser, Subcommand};
+
+/// Bakes the roughness that mipmapped normal maps lose into KTX2 textures and glTF materials.
+#[derive(Debug, Parser)]
+#[command(name = "roughcast", version, about, max_term_width = 100, arg_required_else_help = true)]
+#[command(after_help = "Exit codes: 0 done, 1 some inputs failed for good (all others are done), 2 wrong usage,\n\
+    3 check found something, 4 failed but worth trying again.")]
+pub struct Cli {
+    #[command(subcommand)]
+    command: Command,
+    /// Worker threads; 0 takes one per core. The bytes do not depend on it.
+    #[arg(long, global = true, default_value_t = 0, value_name = "N")]
+    threads: usize,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Bake(bake::Args),
+    Map(map::Args),
+}
+
+/// How a command ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// Everything asked for is done.
+    Done,
+    /// Some inputs failed, and will fail again.
+    Failed,
+    /// Arguments that make no sense together.
+    Usage,
+    /// `check` found something.
+    Findings,
+    /// Some inputs failed, and may not fail again.
+    Retry,
+}
+
+impl Outcome {
+    /// The exit code.
+    pub fn code(self) -> u8 {
+        match self {
+            Self::Done => 0,
+            Self::Failed => 1,
+            Self::Usage => 2,
+            Self::Findings => 3,
+            Self::Retry => 4,
+        }
+    }
+
+    /// The outcome of two parts: what fails for good outweighs what may be tried again.
+    pub fn and(self, other: Self) -> Self {
+        let weight = |o: Self| match o {
+            Self::Done => 0,
+            Self::Findings => 1,
+            Self::Retry => 2,
+            Self::Failed => 3,
+            Self::Usage => 4,
+        };
+        if weight(other) > weight(self) { other } else { self }
+    }
+}
+
+/// Runs a command line. Results go to `out`, complaints and progress to `err`.
+///
+/// # Errors
+/// When `out` or `err` cannot be written to.
+pub fn run(cli: Cli, out: &mut dyn Write, err: &mut dyn Write) -> std::io::Result<Outcome> {
+    if cli.threads > 0 {
+        // A second pool in one process is refused; the first one stays, and the bytes are the same.
+        let _ = rayon::ThreadPoolBuilder::new().num_threads(cli.threads).build_global();
+    }
+    match cli.command {
+        Command::Bake(args) => bake::run(&args, out, err),
+        Command::Map(args) => map::run(&args, out, err),
+    }
+}

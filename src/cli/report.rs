@@ -1,0 +1,85 @@
+//! The report of a run (`schemas/report.schema.json`) and its summary for a person.
+
+use serde::Serialize;
+use serde_json::Value;
+
+use crate::bake::report::AssetReport;
+
+/// What a run did.
+#[derive(Debug, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct Report {
+    /// Version of the tool.
+    pub version: &'static str,
+    /// Settings, as they stand in the provenance of textures.
+    pub settings: Value,
+    /// Each input, in order.
+    pub assets: Vec<Asset>,
+}
+
+/// What became of an input.
+#[derive(Debug, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct Asset {
+    /// The input file.
+    pub input: String,
+    /// The output document, where there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub output: Option<String>,
+    /// How it ended.
+    pub status: Status,
+    /// Seconds from reading to writing.
+    pub seconds: f64,
+    /// Bytes written.
+    pub bytes: u64,
+    /// What went wrong.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error: Option<String>,
+    /// Layers and textures.
+    #[serde(flatten)]
+    pub report: AssetReport,
+}
+
+/// How an input ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Status {
+    /// Textures were baked.
+    Baked,
+    /// Nothing in it has bumps: copied as it is.
+    Copied,
+    /// See `error`.
+    Failed,
+}
+
+impl Asset {
+    /// One line per asset, then one per layer that has something to say.
+    pub fn summary(&self) -> String {
+        let mut text = match self.status {
+            Status::Failed => return String::new(),
+            Status::Copied => format!("copied {}: no normal or height maps\n", self.input),
+            Status::Baked => format!(
+                "baked {}: {} texture(s), {:.1} MB, {:.2} s\n",
+                self.input,
+                self.report.textures.len(),
+                self.bytes as f64 / 1e6,
+                self.seconds
+            ),
+        };
+        for layer in &self.report.layers {
+            let model = layer.model.map_or_else(|| "left".to_owned(), |m| format!("{m:?}").to_lowercase());
+            let loss = layer.loss.map_or_else(String::new, |l| {
+                format!(" (loss without: {:.3}, as a circle: {:.3})", l.none, l.isotropic)
+            });
+            let which = match layer.layer {
+                crate::gltf::material::LayerKind::Base => "",
+                crate::gltf::material::LayerKind::Clearcoat => ", clearcoat",
+            };
+            text += &format!("  {}{which}: {model}{loss}\n", layer.material);
+            for note in &layer.notes {
+                text += &format!("    note: {note}\n");
+            }
+        }
+        text
+    }
+}

@@ -1,0 +1,162 @@
+//! A glTF asset in memory, text or binary, that is written back byte for byte where it was not edited.
+
+mod error;
+mod glb;
+#[cfg(test)]
+mod tests;
+
+use std::ops::Range;
+
+use serde::Deserialize;
+use serde_json::json;
+
+use super::json::Json;
+use glb::{Chunks, MAGIC};
+
+pub use error::DocumentError;
+
+/// The two forms a glTF asset is stored in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Container {
+    /// JSON text, `.gltf`.
+    Gltf,
+    /// The binary container, `.glb` (glTF 2.0 section 4.4).
+    Glb,
+}
+
+/// A `.gltf` or `.glb` file: its JSON, open to edits, and the chunks of the binary container.
+#[derive(Debug, Clone)]
+pub struct Document {
+    json: Json,
+    /// What a GLB holds behind its JSON.
+    chunks: Option<Chunks>,
+}
+
+/// The fields of a buffer that say how long it is and whose.
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+struct Buffer {
+    uri: Option<String>,
+    byte_length: usize,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+struct BufferView {
+    buffer: usize,
+    #[serde(default)]
+    byte_offset: usize,
+    byte_length: usize,
+}
+
+impl Document {
+    /// Reads a file of either form; which one, its first four bytes tell.
+    ///
+    /// # Errors
+    /// [`DocumentError::Json`] if the JSON is not well formed, and for a GLB whatever is wrong with
+    /// its version, lengths and chunks. What the JSON means is not looked at.
+    pub fn parse(bytes: &[u8]) -> Result<Document, DocumentError> {
+        if !bytes.starts_with(MAGIC) {
+            return Ok(Document::gltf(Json::parse(bytes)?));
+        }
+        let (json, chunks) = Chunks::parse(bytes)?;
+        Ok(Document { json: Json::parse(json)?, chunks: Some(chunks) })
+    }
+
+    /// A `.gltf` file of this JSON.
+    pub fn gltf(json: Json) -> Document {
+        Document { json, chunks: None }
+    }
+
+    /// A `.glb` file of this JSON and, for a buffer 0 without a `uri`, its bytes.
+    pub fn glb(json: Json, bin: Option<Vec<u8>>) -> Document {
+        Document { json, chunks: Some(Chunks::new(bin)) }
+    }
+
+    /// The form that [`to_bytes`](Self::to_bytes) writes.
+    pub fn container(&self) -> Container {
+        if self.chunks.is_some() { Container::Glb } else { Container::Gltf }
+    }
+
+    /// The JSON of the asset.
+    pub fn json(&self) -> &Json {
+        &self.json
+    }
+
+    /// The JSON of the asset, to edit.
+    pub fn json_mut(&mut self) -> &mut Json {
+        &mut self.json
+    }
+
+    /// The BIN chunk of a GLB with its padding: up to 3 bytes more than buffer 0 declares.
+    pub fn bin(&self) -> Option<&[u8]> {
+        self.chunks.as_ref()?.bin()
+    }
+
+    /// The file. Without edits, these are the bytes it was read from; in a GLB an edit of the JSON
+    /// changes only that chunk and the lengths.
+    ///
+    /// # Errors
+    /// [`DocumentError::TooLarge`] for a GLB beyond 4 GiB.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, DocumentError> {
+        match &self.chunks {
+            None => Ok(self.json.to_bytes()),
+            Some(chunks) => chunks.write(self.json.to_bytes()),
+        }
+    }
+
+    /// Adds `data` to the BIN chunk, from a multiple of 4 on, and sets the `byteLength` of buffer 0;
+    /// both are made if the GLB has no buffer yet. Returns the `byteOffset` and `byteLength` that a
+    /// buffer view of the data needs.
+    ///
+    /// # Errors
+    /// [`DocumentError::NotGlb`], [`DocumentError::TooLarge`], and [`DocumentError::NoBinBuffer`] if
+    /// buffer 0 is stored elsewhere. The document is then unchanged.
+    pub fn append_bin(&mut self, data: &[u8]) -> Result<(usize, usize), DocumentError> {
+        let chunks = self.chunks.as_mut().ok_or(DocumentError::NotGlb)?;
+        let buffer: Option<Buffer> = self.json.read("/buffers/0")?;
+        let owned = match &buffer {
+            Some(buffer) => {
+                let held = chunks.bin().is_some_and(|bin| buffer.byte_length <= bin.len());
+                buffer.uri.is_none() && held
+            }
+            None => chunks.bin().is_none(),
+        };
+        if !owned {
+            return Err(DocumentError::NoBinBuffer);
+        }
+        let offset = chunks.bin().unwrap_or_default().len();
+        let length = glb::checked_length(offset, data.len())?;
+        match buffer {
+            Some(_) => self.json.set("/buffers/0/byteLength", &length)?,
+            None => {
+                self.json.push("/buffers", &json!({ "byteLength": length }))?;
+            }
+        }
+        chunks.append_bin(data);
+        Ok((offset, data.len()))
+    }
+
+    /// The buffer that buffer view `index` looks into, and the bytes of it that it covers; they lie
+    /// within the `byteLength` that the buffer declares.
+    ///
+    /// # Errors
+    /// [`DocumentError::Missing`] for an index that does not exist, [`DocumentError::ViewOutside`]
+    /// for a range that leaves its buffer, and [`DocumentError::Json`] for fields of a wrong type.
+    pub fn buffer_view(&self, index: usize) -> Result<(usize, Range<usize>), DocumentError> {
+        let pointer = format!("/bufferViews/{index}");
+        let view: BufferView = self.json.read(&pointer)?.ok_or(DocumentError::Missing { pointer })?;
+        let pointer = format!("/buffers/{}", view.buffer);
+        let buffer: Buffer = self.json.read(&pointer)?.ok_or(DocumentError::Missing { pointer })?;
+        match view.byte_offset.checked_add(view.byte_length) {
+            Some(end) if end <= buffer.byte_length => Ok((view.buffer, view.byte_offset..end)),
+            _ => Err(DocumentError::ViewOutside {
+                view: index,
+                offset: view.byte_offset,
+                length: view.byte_length,
+                buffer: view.buffer,
+                buffer_length: buffer.byte_length,
+            }),
+        }
+    }
+}

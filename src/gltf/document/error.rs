@@ -1,0 +1,92 @@
+//! What can be wrong with a glTF file before its meaning is read.
+
+use crate::gltf::json::JsonError;
+
+/// Why a file is not a glTF asset, or cannot be edited or written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum DocumentError {
+    /// The JSON is malformed, a value in it has a wrong type, or an edit of it failed.
+    #[error("JSON: {0}")]
+    Json(#[from] JsonError),
+    /// The file ends before the length that its GLB header declares.
+    #[error("expected {needed} bytes of GLB, found {found}; the file is cut short")]
+    Truncated {
+        /// Bytes the header asks for.
+        needed: usize,
+        /// Bytes there are.
+        found: usize,
+    },
+    /// Data follow the length that the GLB header declares. (Zeros may: some writers pad files.)
+    #[error("expected {declared} bytes as the GLB header declares, found {found}; export the file again")]
+    Length {
+        /// Length in the header.
+        declared: usize,
+        /// Length of the file.
+        found: usize,
+    },
+    /// A GLB of another version.
+    #[error("expected GLB version 2, found {found}; export the asset as glTF 2.0")]
+    Version {
+        /// Version in the header.
+        found: u32,
+    },
+    /// A chunk reaches over the end of the file.
+    #[error("expected {needed} bytes for the GLB chunk at byte {at}, found {found}; the file is damaged")]
+    Chunk {
+        /// Offset of the chunk's header.
+        at: usize,
+        /// Bytes of its header and data.
+        needed: usize,
+        /// Bytes left in the file.
+        found: usize,
+    },
+    /// A chunk whose length is not a multiple of 4.
+    #[error(
+        "expected a multiple of 4 as the length of the GLB chunk at byte {at}, found {length}; export the file again"
+    )]
+    ChunkAlignment {
+        /// Offset of the chunk's header.
+        at: usize,
+        /// Length in that header.
+        length: u32,
+    },
+    /// The first chunk is not the JSON.
+    #[error("expected a JSON chunk first in the GLB, found {found}; the file is damaged")]
+    NoJsonChunk {
+        /// Type of the first chunk.
+        found: String,
+    },
+    /// Lengths in a GLB have 32 bits.
+    #[error("a GLB holds at most 4 GiB, this one would be larger; write .gltf with external files")]
+    TooLarge,
+    /// Only a GLB has a BIN chunk.
+    #[error("a .gltf file has no BIN chunk to add data to; write an external file")]
+    NotGlb,
+    /// The BIN chunk must be buffer 0, and buffer 0 is something else or larger than the chunk.
+    #[error("buffer 0 is not the BIN chunk, so nothing can be added to it; write an external file")]
+    NoBinBuffer,
+    /// An index names something that does not exist.
+    #[error("nothing at \"{pointer}\": the index is past the end of its array")]
+    Missing {
+        /// Where it should be.
+        pointer: String,
+    },
+    /// A buffer view leaves its buffer.
+    #[error(
+        "buffer view {view}: expected its {length} bytes from byte {offset} on within \
+         the {buffer_length} bytes of buffer {buffer}, found an end beyond them"
+    )]
+    ViewOutside {
+        /// Index of the buffer view.
+        view: usize,
+        /// Its `byteOffset`.
+        offset: usize,
+        /// Its `byteLength`.
+        length: usize,
+        /// Its buffer.
+        buffer: usize,
+        /// That buffer's `byteLength`.
+        buffer_length: usize,
+    },
+}

@@ -1,0 +1,177 @@
+//! A value of a document: its own text, opened into entries only where an edit reaches inside.
+
+use super::JsonError;
+use super::scan::entries;
+use super::style::{Style, colon, is_scalar, leading_blank, line_indent};
+
+/// A value as it is spelled.
+#[derive(Debug, Clone)]
+pub(super) enum Node {
+    Text(String),
+    Open(Container),
+}
+
+/// An object or array whose entries, written one after the other with commas between, are its text.
+#[derive(Debug, Clone)]
+pub(super) struct Container {
+    pub object: bool,
+    pub entries: Vec<Entry>,
+    /// White space between the brackets as long as there are no entries.
+    blank: String,
+}
+
+/// One member or element.
+#[derive(Debug, Clone)]
+pub(super) struct Entry {
+    /// Decoded name of a member.
+    key: Option<String>,
+    /// Text before the value: white space, and for a member its key and colon.
+    head: String,
+    pub value: Node,
+    /// White space between the value and the comma or bracket.
+    tail: String,
+}
+
+impl Entry {
+    /// The indentation of the line the value starts on, inside a line indented by `outer`.
+    pub fn indent<'a>(&'a self, outer: &'a str) -> &'a str {
+        line_indent(leading_blank(&self.head)).unwrap_or(outer)
+    }
+}
+
+impl Node {
+    /// Appends the value's text to `out`.
+    pub fn write(&self, out: &mut String) {
+        let container = match self {
+            Node::Text(text) => return out.push_str(text),
+            Node::Open(container) => container,
+        };
+        out.push(if container.object { '{' } else { '[' });
+        if container.entries.is_empty() {
+            out.push_str(&container.blank);
+        }
+        for (i, entry) in container.entries.iter().enumerate() {
+            if i > 0 {
+                out.push(',');
+            }
+            out.push_str(&entry.head);
+            entry.value.write(out);
+            out.push_str(&entry.tail);
+        }
+        out.push(if container.object { '}' } else { ']' });
+    }
+
+    /// The container that this value is, opened; `None` for a scalar.
+    pub fn open(&mut self) -> Result<Option<&mut Container>, JsonError> {
+        if let Node::Text(text) = self
+            && let Some(container) = Container::read(text)?
+        {
+            *self = Node::Open(container);
+        }
+        Ok(match self {
+            Node::Text(_) => None,
+            Node::Open(container) => Some(container),
+        })
+    }
+}
+
+impl Container {
+    fn read(text: &str) -> Result<Option<Container>, JsonError> {
+        let Some(spans) = entries(text)? else {
+            return Ok(None);
+        };
+        let slice = |range| text.get(range).unwrap_or_default();
+        let mut list = Vec::with_capacity(spans.len());
+        for span in spans {
+            list.push(Entry {
+                key: span.key.map(|key| decode(slice(key))).transpose()?,
+                head: slice(span.start..span.value.start).to_owned(),
+                value: Node::Text(slice(span.value.clone()).to_owned()),
+                tail: slice(span.value.end..span.end).to_owned(),
+            });
+        }
+        let blank = if list.is_empty() { slice(1..text.len() - 1) } else { "" };
+        Ok(Some(Container { object: text.starts_with('{'), entries: list, blank: blank.to_owned() }))
+    }
+
+    /// Index of the entry that one step of a pointer names.
+    pub fn position(&self, step: &str) -> Option<usize> {
+        if self.object {
+            self.entries.iter().rposition(|entry| entry.key.as_deref() == Some(step))
+        } else {
+            array_index(step).filter(|&i| i < self.entries.len())
+        }
+    }
+
+    /// Adds an entry at the end, laid out as its neighbours are, and returns its index. `indent` is
+    /// that of the line the container starts on; the text that was there before stays together.
+    pub fn append(&mut self, key: Option<&str>, value: &str, indent: &str, style: &Style) -> Result<usize, JsonError> {
+        let (lead, colon, tail) = match self.entries.as_mut_slice() {
+            [] if style.wraps(self.object, is_scalar(value)) => {
+                (style.entry_break(indent), style.colon().to_owned(), style.closing_break(indent))
+            }
+            [] => (String::new(), style.colon().to_owned(), String::new()),
+            [.., last] => {
+                let lead = leading_blank(&last.head).to_owned();
+                (lead, colon(&last.head).to_owned(), std::mem::take(&mut last.tail))
+            }
+        };
+        // The blank behind an opening bracket says nothing of the one behind a comma.
+        let lead = if self.entries.len() == 1 && !lead.contains('\n') { style.gap().to_owned() } else { lead };
+        let inner = line_indent(&lead).unwrap_or(indent).to_owned();
+        let mut head = lead;
+        if let Some(key) = key {
+            head.push_str(&encode(key)?);
+            head.push_str(&colon);
+        }
+        let value = Node::Text(style.lay_out(value, &inner)?);
+        self.entries.push(Entry { key: key.map(str::to_owned), head, value, tail });
+        Ok(self.entries.len() - 1)
+    }
+
+    /// Takes out one entry with its comma; the white space beside the brackets stays.
+    pub fn remove(&mut self, index: usize) {
+        if index >= self.entries.len() {
+            return;
+        }
+        let removed = self.entries.remove(index);
+        if index == 0
+            && let Some(first) = self.entries.first_mut()
+        {
+            let lead = leading_blank(&first.head).len();
+            first.head.replace_range(..lead, leading_blank(&removed.head));
+        }
+        if index == self.entries.len()
+            && let Some(last) = self.entries.last_mut()
+        {
+            last.tail = removed.tail;
+        }
+    }
+
+    /// Takes out what one step of a pointer names: an element, or every member of that name.
+    pub fn remove_all(&mut self, step: &str) -> bool {
+        let before = self.entries.len();
+        while let Some(index) = self.position(step) {
+            self.remove(index);
+            if !self.object {
+                break;
+            }
+        }
+        self.entries.len() < before
+    }
+}
+
+/// The index that a step of a pointer spells: decimal, without sign or leading zeros (RFC 6901 section 4).
+pub(super) fn array_index(step: &str) -> Option<usize> {
+    let plain = step == "0" || (!step.starts_with('0') && step.bytes().all(|b| b.is_ascii_digit()));
+    if plain { step.parse().ok() } else { None }
+}
+
+/// The string that a quoted and checked JSON string spells.
+pub(super) fn decode(quoted: &str) -> Result<String, JsonError> {
+    serde_json::from_str(quoted).map_err(JsonError::Value)
+}
+
+fn encode(key: &str) -> Result<String, JsonError> {
+    serde_json::to_string(key).map_err(JsonError::Value)
+}

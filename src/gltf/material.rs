@@ -1,0 +1,254 @@
+//! What the materials of a glTF document say of bumps and roughness.
+
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+
+/// A use of a texture by a material.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TextureUse {
+    /// Index into `textures`.
+    pub texture: usize,
+    /// How texture coordinates come about.
+    pub mapping: Mapping,
+}
+
+/// Texture coordinates: the set and its transform.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mapping {
+    /// Index n of `TEXCOORD_n`.
+    pub tex_coord: u64,
+    /// `KHR_texture_transform` as it stands in the file.
+    pub transform: Option<Value>,
+}
+
+/// Where a layer's bumps come from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum BumpSource {
+    /// A normal texture and its `scale`.
+    Normals(TextureUse, f32),
+    /// A height texture and its scale (`extras.roughcast.heightTexture`).
+    Heights(TextureUse, f32),
+}
+
+impl BumpSource {
+    /// The texture.
+    pub fn texture(&self) -> &TextureUse {
+        match self {
+            Self::Normals(texture, _) | Self::Heights(texture, _) => texture,
+        }
+    }
+}
+
+/// Which of a material's lobes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum LayerKind {
+    /// The metallic-roughness lobe.
+    Base,
+    /// `KHR_materials_clearcoat`.
+    Clearcoat,
+}
+
+/// `KHR_materials_anisotropy` of a material.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AnisotropySource {
+    /// `anisotropyStrength`.
+    pub strength: f32,
+    /// `anisotropyRotation` in radians.
+    pub rotation: f32,
+    /// `anisotropyTexture`.
+    pub texture: Option<TextureUse>,
+}
+
+/// A lobe of a material and the bumps under it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Layer {
+    /// Which lobe.
+    pub kind: LayerKind,
+    /// Its bumps.
+    pub bumps: BumpSource,
+    /// Texture whose green channel is the roughness.
+    pub roughness: Option<TextureUse>,
+    /// Factor of the roughness.
+    pub roughness_factor: f32,
+    /// A texture whose red channel is occlusion; only for the base.
+    pub occlusion: Option<TextureUse>,
+    /// Only for the base.
+    pub anisotropy: Option<AnisotropySource>,
+}
+
+/// A material with its bumpy layers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// Index into `materials`.
+    pub index: usize,
+    /// Its name, or `material <index>`.
+    pub name: String,
+    /// Layers that have bumps; none when the material has neither normal nor height map.
+    pub layers: Vec<Layer>,
+}
+
+/// The materials of `root`, the document's JSON.
+///
+/// # Errors
+/// Per material, what does not have the shape that glTF 2.0 gives it.
+pub fn materials(root: &Value) -> Vec<Result<Material, MaterialError>> {
+    let list = root.get("materials").and_then(Value::as_array);
+    list.into_iter().flatten().enumerate().map(|(index, value)| Material::read(index, value)).collect()
+}
+
+/// A material that cannot be read.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "material {index} ({name}): expected a glTF 2.0 material, found one whose {part} cannot be read: {reason}; fix it in the file"
+)]
+pub struct MaterialError {
+    /// Index into `materials`.
+    pub index: usize,
+    /// Its name, or empty.
+    pub name: String,
+    /// The part of the material.
+    pub part: &'static str,
+    /// What the reader says.
+    pub reason: String,
+}
+
+impl Material {
+    fn read(index: usize, value: &Value) -> Result<Self, MaterialError> {
+        let name = value.get("name").and_then(Value::as_str);
+        let part = |part, value| Part { index, name, part, value };
+        let extension = |key: &str| value.get("extensions").and_then(|e| e.get(key));
+
+        let normal: Option<RawTexture> = part("normalTexture", value.get("normalTexture")).read()?;
+        let height: Option<RawTexture> = part(
+            "extras.roughcast.heightTexture",
+            value.get("extras").and_then(|e| e.get("roughcast")).and_then(|r| r.get("heightTexture")),
+        )
+        .read()?;
+        let occlusion: Option<RawTexture> = part("occlusionTexture", value.get("occlusionTexture")).read()?;
+        let surface: RawSurface =
+            part("pbrMetallicRoughness", value.get("pbrMetallicRoughness")).read()?.unwrap_or_default();
+        let anisotropy: Option<RawAnisotropy> =
+            part("KHR_materials_anisotropy", extension("KHR_materials_anisotropy")).read()?;
+        let coat: Option<RawClearcoat> =
+            part("KHR_materials_clearcoat", extension("KHR_materials_clearcoat")).read()?;
+
+        let mut layers = Vec::new();
+        let bumps = match (normal, height) {
+            (Some(normal), _) => Some(normal.normals()),
+            (None, Some(height)) => Some(height.heights()),
+            (None, None) => None,
+        };
+        if let Some(bumps) = bumps {
+            layers.push(Layer {
+                kind: LayerKind::Base,
+                bumps,
+                roughness: surface.metallic_roughness_texture.map(RawTexture::into_use),
+                roughness_factor: surface.roughness_factor.unwrap_or(1.0),
+                occlusion: occlusion.map(RawTexture::into_use),
+                anisotropy: anisotropy.map(|a| AnisotropySource {
+                    strength: a.anisotropy_strength,
+                    rotation: a.anisotropy_rotation,
+                    texture: a.anisotropy_texture.map(RawTexture::into_use),
+                }),
+            });
+        }
+        if let Some((coat, normal)) = coat.and_then(|c| c.clearcoat_normal_texture.clone().map(|n| (c, n))) {
+            layers.push(Layer {
+                kind: LayerKind::Clearcoat,
+                bumps: normal.normals(),
+                roughness: coat.clearcoat_roughness_texture.map(RawTexture::into_use),
+                roughness_factor: coat.clearcoat_roughness_factor,
+                occlusion: None,
+                anisotropy: None,
+            });
+        }
+        let name = name.map_or_else(|| format!("material {index}"), str::to_owned);
+        Ok(Self { index, name, layers })
+    }
+}
+
+/// A part of a material that may be absent.
+struct Part<'a> {
+    index: usize,
+    name: Option<&'a str>,
+    part: &'static str,
+    value: Option<&'a Value>,
+}
+
+impl Part<'_> {
+    fn read<T: DeserializeOwned>(self) -> Result<Option<T>, MaterialError> {
+        self.value.map(T::deserialize).transpose().map_err(|reason| MaterialError {
+            index: self.index,
+            name: self.name.unwrap_or_default().to_owned(),
+            part: self.part,
+            reason: reason.to_string(),
+        })
+    }
+}
+
+#[derive(Clone, Deserialize)]
+#[serde(rename_all = "camelCase")]
+struct RawTexture {
+    index: usize,
+    #[serde(default)]
+    tex_coord: u64,
+    scale: Option<f32>,
+    #[serde(default)]
+    extensions: RawExtensions,
+}
+
+#[derive(Clone, Default, Deserialize)]
+struct RawExtensions {
+    #[serde(rename = "KHR_texture_transform")]
+    transform: Option<Value>,
+}
+
+impl RawTexture {
+    fn into_use(self) -> TextureUse {
+        TextureUse {
+            texture: self.index,
+            mapping: Mapping { tex_coord: self.tex_coord, transform: self.extensions.transform },
+        }
+    }
+
+    fn normals(self) -> BumpSource {
+        let scale = self.scale.unwrap_or(1.0);
+        BumpSource::Normals(self.into_use(), scale)
+    }
+
+    fn heights(self) -> BumpSource {
+        let scale = self.scale.unwrap_or(DEFAULT_HEIGHT_SCALE);
+        BumpSource::Heights(self.into_use(), scale)
+    }
+}
+
+/// Relief of a height map whose scale no one tells: a twentieth of a repeat.
+pub const DEFAULT_HEIGHT_SCALE: f32 = 0.05;
+
+#[derive(Default, Deserialize)]
+#[serde(rename_all = "camelCase")]
+struct RawSurface {
+    metallic_roughness_texture: Option<RawTexture>,
+    roughness_factor: Option<f32>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+struct RawAnisotropy {
+    #[serde(default)]
+    anisotropy_strength: f32,
+    #[serde(default)]
+    anisotropy_rotation: f32,
+    anisotropy_texture: Option<RawTexture>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+struct RawClearcoat {
+    #[serde(default)]
+    clearcoat_roughness_factor: f32,
+    clearcoat_roughness_texture: Option<RawTexture>,
+    clearcoat_normal_texture: Option<RawTexture>,
+}

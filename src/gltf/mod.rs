@@ -1,0 +1,9 @@
+//! glTF documents: lossless editing, and reading what materials say. This room knows nothing of pixels.
+
+pub mod document;
+pub mod geometry;
+pub mod json;
+pub mod material;
+pub mod rewrite;
+pub mod texture;
+pub mod uri;

@@ -1,0 +1,19 @@
+//! Roughcast bakes the roughness that mipmapped normal maps lose into textures.
+//!
+//! Data flows one way, room by room: source images -> [`map`] -> [`bump`] (offsets) -> [`pyramid`] (mean and
+//! covariance per level) -> [`roughness`] (D, lambda_1, correction) -> [`lobe`] (what shaders make of it).
+//!
+//! The theory is A. Schilling, "Antialiasing of Bump-Maps", WSI-97-15, 1997: "the paper" throughout. Where the code
+//! departs from the paper, a test named `erratum_*` shows why.
+
+pub mod bake;
+pub mod bump;
+pub mod choose;
+pub mod cli;
+pub mod gltf;
+pub mod lobe;
+pub mod map;
+pub mod pyramid;
+pub mod roughness;
+pub mod symmetric;
+pub mod texture;

@@ -1,0 +1,72 @@
+//! What a roughness means to a shader: alphas, folding covariances into them, and the engines' parameters.
+//!
+//! A lobe is a density of slopes with a 2 x 2 matrix A of squared alphas, e.g. GGX:
+//! P22(s) = 1/(pi sqrt|A|) (1 + s^T A^-1 s)^-2 (E. Heitz, "Understanding the masking-shadowing function in
+//! microfacet-based BRDFs", 2014, section 5.3).
+
+mod anisotropy;
+mod distance;
+
+pub use anisotropy::Anisotropy;
+pub use distance::{isotropic_distance, shape_distance};
+
+use crate::symmetric::Symmetric2;
+
+/// Perceptual roughness as glTF stores it, in [0, 1]: the square root of alpha.
+#[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
+pub struct Roughness(pub f32);
+
+/// Width of a lobe in slopes, in [0, 1] for engines: the square of glTF's roughness.
+#[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
+pub struct Alpha(pub f32);
+
+impl From<Roughness> for Alpha {
+    fn from(r: Roughness) -> Self {
+        Self(r.0 * r.0)
+    }
+}
+
+impl From<Alpha> for Roughness {
+    fn from(alpha: Alpha) -> Self {
+        Self(alpha.0.max(0.0).sqrt())
+    }
+}
+
+/// The matrix A of a lobe, in (T, B).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SquaredAlpha(pub Symmetric2);
+
+impl SquaredAlpha {
+    /// A lobe that is as wide in every direction.
+    pub fn isotropic(alpha: Alpha) -> Self {
+        let squared = alpha.0 * alpha.0;
+        Self(Symmetric2::diagonal(squared, squared))
+    }
+
+    /// A' = A + 2 c K: the lobe of a surface whose bumps have covariance `k` and whose own lobe is `self`. Exact for
+    /// Beckmann lobes and normal distributions with c = 1, where P22 is a normal density of covariance A/2.
+    pub fn fold(self, k: Symmetric2, correction: f32) -> Self {
+        Self(self.0 + (2.0 * correction) * k)
+    }
+
+    /// The alpha of the closest isotropic lobe: alpha^4 = |A|. Of all circles, the one with the lobe's own peak: the
+    /// distance to the elliptical lobe is symmetric about it, as stretching slopes by any matrix changes no distance
+    /// between densities (test `the_closest_circle_has_the_determinant`).
+    pub fn closest_isotropic(self) -> Alpha {
+        Alpha(self.0.determinant().sqrt().sqrt())
+    }
+
+    /// Ratio of the larger alpha to the smaller one, at least 1; infinite when only the smaller one is 0.
+    pub fn axis_ratio(self) -> f32 {
+        let e = self.0.eigen();
+        if e.major <= 0.0 { 1.0 } else { (e.major / e.minor).sqrt() }
+    }
+
+    /// Whether a glTF engine cannot show the lobe because an alpha would be above 1.
+    pub fn exceeds_one(self) -> bool {
+        self.0.eigen().major > 1.0
+    }
+}
+
+#[cfg(test)]
+mod tests;

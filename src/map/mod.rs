@@ -1,0 +1,54 @@
+//! Decoded maps: images, and what their channels mean. This room knows nothing of glTF.
+
+mod decode;
+mod error;
+mod exr;
+mod format;
+mod height;
+mod image;
+mod jpeg;
+mod normal;
+mod texels;
+mod tiff;
+
+pub use decode::{DecodeOptions, decode};
+pub use error::DecodeError;
+pub use format::Format;
+pub use height::HeightMap;
+pub use image::{Image, Samples};
+pub use normal::{NormalLayout, NormalMap};
+pub use texels::Rgba;
+
+/// Why an image cannot serve as the map that it is meant to be.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum MapError {
+    /// Too few channels.
+    #[error("expected {expected}, found an image of {found} channel(s); use a map that has them")]
+    Channels {
+        /// What the map needs.
+        expected: &'static str,
+        /// Channels of the image.
+        found: u32,
+    },
+    /// NaN or infinity.
+    #[error(
+        "expected finite values, found NaN or infinity in {count} texel(s), the first at column {x}, row {y}; repair the map or export it again"
+    )]
+    NotFinite {
+        /// How many texels.
+        count: u64,
+        /// Column of the first.
+        x: u32,
+        /// Row of the first.
+        y: u32,
+    },
+}
+
+#[cfg(test)]
+mod decode_tests;
+#[cfg(test)]
+mod exr_tests;
+#[cfg(test)]
+mod hostile_tests;
+#[cfg(test)]
+mod test_files;

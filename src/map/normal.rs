@@ -1,0 +1,190 @@
+//! Normal maps: tangent-space normals in two or three channels of an image.
+
+use rayon::prelude::*;
+
+use super::{Image, MapError, Samples};
+
+/// Which channels of an image hold the normal.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum NormalLayout {
+    /// x and y only when the image has two channels or its third is 0 throughout (as BC5 and RG textures decode), else x,
+    /// y and z.
+    #[default]
+    Auto,
+    /// x, y, z in the first three channels.
+    Xyz,
+    /// x and y in the first two channels; z = sqrt(1 - x^2 - y^2).
+    Xy,
+}
+
+/// A normal map. Integers encode [-1, 1] as 2v - 1, as glTF engines decode them; so do floats unless an x or y is
+/// negative, in which case they are the components themselves. Further channels (alpha) are ignored.
+pub struct NormalMap {
+    image: Image,
+    has_z: bool,
+    signed: bool,
+    green_down: bool,
+}
+
+impl NormalMap {
+    /// Reads `image` as normals. `green_down` tells that y points down the image (DirectX convention); it is turned up.
+    ///
+    /// # Errors
+    /// [`MapError::Channels`] with fewer than two channels, or fewer than three under [`NormalLayout::Xyz`];
+    /// [`MapError::NotFinite`] with NaN or infinity.
+    pub fn new(image: Image, layout: NormalLayout, green_down: bool) -> Result<Self, MapError> {
+        let needed = if layout == NormalLayout::Xyz { 3 } else { 2 };
+        if image.channels < needed {
+            return Err(MapError::Channels {
+                expected: if needed == 3 {
+                    "a normal map with x, y and z"
+                } else {
+                    "a normal map with at least x and y"
+                },
+                found: image.channels,
+            });
+        }
+        image.check_finite()?;
+        let has_z = match layout {
+            NormalLayout::Xyz => true,
+            NormalLayout::Xy => false,
+            NormalLayout::Auto => image.channels > 2 && !image.is_zero(2),
+        };
+        let signed = image.has_negative(2);
+        Ok(Self { image, has_z, signed, green_down })
+    }
+
+    /// Columns.
+    pub fn width(&self) -> u32 {
+        self.image.width
+    }
+
+    /// Rows.
+    pub fn height(&self) -> u32 {
+        self.image.height
+    }
+
+    /// Whether z is stored, and not rebuilt from x and y.
+    pub fn has_z(&self) -> bool {
+        self.has_z
+    }
+
+    /// Writes row `y` (0 is the top) to `out`, which has `width` normals of any length.
+    pub fn row(&self, y: u32, out: &mut [[f32; 3]]) {
+        let channels = self.image.channels as usize;
+        let start = y as usize * out.len() * channels;
+        let samples = start..start + out.len() * channels;
+        match &self.image.samples {
+            Samples::U8(all) => self.decode(&all[samples], out, |v| f32::from(v) * (2.0 / 255.0) - 1.0),
+            Samples::U16(all) => {
+                self.decode(&all[samples], out, |v| f32::from(v) * (2.0 / 65535.0) - 1.0);
+            }
+            Samples::F32(all) if self.signed => self.decode(&all[samples], out, |v| v),
+            Samples::F32(all) => self.decode(&all[samples], out, |v| 2.0 * v - 1.0),
+        }
+    }
+
+    fn decode<T: Copy>(&self, samples: &[T], out: &mut [[f32; 3]], component: impl Fn(T) -> f32) {
+        let texels = samples.chunks_exact(self.image.channels as usize);
+        let up = if self.green_down { -1.0 } else { 1.0 };
+        for (normal, texel) in out.iter_mut().zip(texels) {
+            let (x, y) = (component(texel[0]), up * component(texel[1]));
+            let z = if self.has_z { component(texel[2]) } else { (1.0 - x * x - y * y).max(0.0).sqrt() };
+            *normal = [x, y, z];
+        }
+    }
+}
+
+impl Image {
+    /// Whether channel `c` is 0 in every texel.
+    fn is_zero(&self, c: usize) -> bool {
+        let n = self.channels as usize;
+        match &self.samples {
+            Samples::U8(v) => v.par_chunks_exact(n).all(|t| t[c] == 0),
+            Samples::U16(v) => v.par_chunks_exact(n).all(|t| t[c] == 0),
+            Samples::F32(v) => v.par_chunks_exact(n).all(|t| t[c] == 0.0),
+        }
+    }
+
+    /// Whether one of the first `count` channels is negative somewhere.
+    fn has_negative(&self, count: usize) -> bool {
+        match &self.samples {
+            Samples::F32(v) => v.par_chunks_exact(self.channels as usize).any(|t| t[..count].iter().any(|s| *s < 0.0)),
+            _ => false,
+        }
+    }
+
+    /// # Errors
+    /// [`MapError::NotFinite`] when a sample is NaN or infinite.
+    pub(super) fn check_finite(&self) -> Result<(), MapError> {
+        let Samples::F32(samples) = &self.samples else {
+            return Ok(());
+        };
+        let texels = samples.par_chunks_exact(self.channels as usize);
+        let bad = |texel: &[f32]| texel.iter().any(|s| !s.is_finite());
+        let Some(first) = texels.clone().position_first(bad) else {
+            return Ok(());
+        };
+        Err(MapError::NotFinite {
+            count: texels.filter(|t| bad(t)).count() as u64,
+            x: (first % self.width as usize) as u32,
+            y: (first / self.width as usize) as u32,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn image(channels: u32, samples: Samples) -> Image {
+        Image { width: 1, height: 1, channels, samples }
+    }
+
+    fn only_normal(image: Image, layout: NormalLayout, green_down: bool) -> [f32; 3] {
+        let map = NormalMap::new(image, layout, green_down).unwrap();
+        let mut out = [[0.0; 3]];
+        map.row(0, &mut out);
+        out[0]
+    }
+
+    fn close(a: [f32; 3], b: [f32; 3]) -> bool {
+        a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-4)
+    }
+
+    #[test]
+    fn integers_decode_as_engines_do() {
+        let normal = only_normal(image(3, Samples::U8(vec![255, 0, 128])), NormalLayout::Auto, false);
+        assert!(close(normal, [1.0, -1.0, 1.0 / 255.0]));
+        let normal = only_normal(image(4, Samples::U16(vec![65535, 0, 65535, 0])), NormalLayout::Auto, true);
+        assert!(close(normal, [1.0, 1.0, 1.0]));
+    }
+
+    #[test]
+    fn two_channels_rebuild_z() {
+        for (channels, samples) in [(2, vec![0.6, 0.0]), (3, vec![0.6, -1e-9, 0.0])] {
+            let mut samples = samples;
+            samples[1] = -0.0;
+            samples[0] = -0.6;
+            let normal = only_normal(image(channels, Samples::F32(samples)), NormalLayout::Auto, false);
+            assert!(close(normal, [-0.6, 0.0, 0.8]), "{normal:?}");
+        }
+    }
+
+    #[test]
+    fn floats_without_a_negative_are_biased() {
+        let normal = only_normal(image(3, Samples::F32(vec![0.5, 0.8, 0.9])), NormalLayout::Auto, false);
+        assert!(close(normal, [0.0, 0.6, 0.8]));
+    }
+
+    #[test]
+    fn unusable_images_are_refused() {
+        let grey = image(1, Samples::U8(vec![0]));
+        assert!(matches!(NormalMap::new(grey, NormalLayout::Auto, false), Err(MapError::Channels { found: 1, .. })));
+        let bad = image(3, Samples::F32(vec![0.0, f32::NAN, 1.0]));
+        assert!(matches!(
+            NormalMap::new(bad, NormalLayout::Auto, false),
+            Err(MapError::NotFinite { count: 1, x: 0, y: 0 })
+        ));
+    }
+}

@@ -1,0 +1,80 @@
+//! The bump-roughness pyramid: means and covariances of offsets, level by level (paper, "The roughness pyramid").
+//!
+//! Everything here works on rows of texels ([`Rows`]), so that a level is never held in memory twice and level 0
+//! need not be held at all. This room knows neither files nor engines.
+
+mod merge;
+mod reduce;
+mod resample;
+
+pub use merge::{Merge, Moments};
+pub use reduce::{Level, build, level_size, level_sizes};
+pub use resample::{Area, Linear};
+
+/// A grid of texels that can be read row by row, from any thread.
+pub trait Rows: Sync {
+    /// What a texel holds.
+    type Texel: Merge;
+
+    /// Columns.
+    fn width(&self) -> u32;
+
+    /// Rows.
+    fn height(&self) -> u32;
+
+    /// Writes row `y` (0 is the top) to `out`, which has `width` texels.
+    fn row(&self, y: u32, out: &mut [Self::Texel]);
+}
+
+impl<R: Rows> Rows for &R {
+    type Texel = R::Texel;
+
+    fn width(&self) -> u32 {
+        (**self).width()
+    }
+
+    fn height(&self) -> u32 {
+        (**self).height()
+    }
+
+    fn row(&self, y: u32, out: &mut [R::Texel]) {
+        (**self).row(y, out);
+    }
+}
+
+/// A source with all its coarser levels. Level 0 is read from the source whenever it is needed.
+pub struct Pyramid<R: Rows> {
+    source: R,
+    coarser: Vec<Level<R::Texel>>,
+}
+
+impl<R: Rows> Pyramid<R> {
+    /// The full chain over `source`.
+    pub fn new(source: R) -> Self {
+        let coarser = build(&source);
+        Self { source, coarser }
+    }
+
+    /// Sizes of all levels, level 0 first.
+    pub fn sizes(&self) -> Vec<(u32, u32)> {
+        level_sizes(self.source.width(), self.source.height())
+    }
+
+    /// Writes row `y` of `level` to `out`.
+    pub fn row(&self, level: usize, y: u32, out: &mut [R::Texel]) {
+        match level.checked_sub(1) {
+            None => self.source.row(y, out),
+            Some(coarser) => self.coarser[coarser].row(y, out),
+        }
+    }
+
+    /// The single texel of the coarsest level.
+    pub fn whole(&self) -> R::Texel {
+        let mut texel = [R::Texel::default()];
+        self.row(self.coarser.len(), 0, &mut texel);
+        texel[0]
+    }
+}
+
+#[cfg(test)]
+mod tests;

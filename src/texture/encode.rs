@@ -1,0 +1,152 @@
+//! From rows of values to the bytes of one level.
+
+use half::f16;
+use rayon::prelude::*;
+
+use super::uastc::{self, Channels, Effort};
+use super::{Format, Target};
+
+/// Why a level cannot be encoded.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum EncodeError {
+    /// The `bc` feature is off.
+    #[error(
+        "target `bc` needs the block encoders of cargo feature `bc`, found a build without it; install with `--features bc`"
+    )]
+    WithoutBc,
+    /// The block encoder refused.
+    #[error("the {format:?} encoder failed on a level of {width} x {height}: {reason}; try another target")]
+    Encoder {
+        /// What was to be written.
+        format: Format,
+        /// Columns of the level.
+        width: u32,
+        /// Rows of the level.
+        height: u32,
+        /// What the encoder said.
+        reason: String,
+    },
+}
+
+/// The texels of one level, produced row by row.
+pub struct Texels<'a> {
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Writes row `y` (0 is the top) to a slice of `width` texels; unused channels are ignored.
+    pub row: &'a (dyn Fn(u32, &mut [[f32; 4]]) + Sync),
+}
+
+impl Texels<'_> {
+    /// Opaque RGBA8: values are clamped to [0, 1] and rounded to the nearest step.
+    pub fn to_rgba8(&self) -> Vec<u8> {
+        self.convert(4, |texel, out: &mut [u8]| {
+            for (byte, value) in out.iter_mut().zip(&texel[..3]) {
+                *byte = unorm8(*value);
+            }
+            out[3] = 255;
+        })
+    }
+
+    fn to_half(&self, channels: usize) -> Vec<u8> {
+        let halves = self.convert(channels, |texel, out: &mut [f16]| {
+            for (half, value) in out.iter_mut().zip(texel) {
+                *half = f16::from_f32(*value);
+            }
+            if let Some(alpha) = out.get_mut(3) {
+                *alpha = f16::ONE;
+            }
+        });
+        halves.iter().flat_map(|h| h.to_le_bytes()).collect()
+    }
+
+    fn convert<T: Clone + Default + Send>(
+        &self,
+        channels: usize,
+        quantise: impl Fn(&[f32; 4], &mut [T]) + Sync,
+    ) -> Vec<T> {
+        let width = self.width as usize;
+        let mut out = vec![T::default(); width * self.height as usize * channels];
+        out.par_chunks_mut(width * channels).enumerate().for_each_init(
+            || vec![[0.0; 4]; width],
+            |texels, (y, out)| {
+                (self.row)(y as u32, texels);
+                for (texel, out) in texels.iter().zip(out.chunks_exact_mut(channels)) {
+                    quantise(texel, out);
+                }
+            },
+        );
+        out
+    }
+}
+
+/// The nearest of 256 steps from 0 to 1; NaN counts as 0.
+fn unorm8(value: f32) -> u8 {
+    (value.clamp(0.0, 1.0) * 255.0 + 0.5) as u8
+}
+
+/// The bytes of one level, not supercompressed.
+///
+/// # Errors
+/// [`EncodeError`] for block formats whose encoder is missing or fails.
+pub fn encode(texels: &Texels<'_>, format: Format, effort: Effort) -> Result<Vec<u8>, EncodeError> {
+    match format {
+        Format::UastcRgb => {
+            let rgba = texels.to_rgba8();
+            Ok(uastc::encode_level(&rgba, texels.width, texels.height, Channels::Rgb, effort))
+        }
+        Format::R16Float => Ok(texels.to_half(1)),
+        Format::Rg16Float => Ok(texels.to_half(2)),
+        Format::Rgba16Float => Ok(texels.to_half(4)),
+        #[cfg(feature = "bc")]
+        Format::Bc4 | Format::Bc5 | Format::Bc7 => super::bc::encode(texels, format, effort),
+        #[cfg(not(feature = "bc"))]
+        Format::Bc4 | Format::Bc5 | Format::Bc7 => Err(EncodeError::WithoutBc),
+    }
+}
+
+impl Target {
+    /// Whether this build can encode the target.
+    ///
+    /// # Errors
+    /// [`EncodeError::WithoutBc`] for `bc` without the feature.
+    pub fn check_available(self) -> Result<(), EncodeError> {
+        if self == Self::Bc && !cfg!(feature = "bc") { Err(EncodeError::WithoutBc) } else { Ok(()) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_round_to_the_nearest_step_and_clamp() {
+        let values = [-0.5, 0.0, 0.4999 / 255.0, 0.5001 / 255.0, 1.0, 7.0, f32::NAN];
+        assert_eq!(values.map(unorm8), [0, 0, 0, 1, 255, 255, 0]);
+    }
+
+    #[test]
+    fn halves_keep_the_sign_and_fill_alpha() {
+        let texels = Texels { width: 1, height: 1, row: &|_, out| out[0] = [-1.5, 2.0, 0.25, 9.0] };
+        let bytes = encode(&texels, Format::Rgba16Float, Effort::Fast).unwrap();
+        let halves: Vec<f32> = bytes.chunks(2).map(|b| f16::from_le_bytes([b[0], b[1]]).to_f32()).collect();
+        assert_eq!(halves, [-1.5, 2.0, 0.25, 1.0]);
+        assert_eq!(encode(&texels, Format::Rg16Float, Effort::Fast).unwrap(), bytes[..4]);
+        assert_eq!(encode(&texels, Format::R16Float, Effort::Fast).unwrap(), bytes[..2]);
+    }
+
+    #[test]
+    fn every_format_fills_its_blocks() {
+        let texels = Texels { width: 5, height: 3, row: &|y, out| out.fill([0.1 * y as f32; 4]) };
+        for target in [Target::Basis, Target::Bc, Target::Float] {
+            for channels in 1..=3 {
+                let format = target.format(channels);
+                match encode(&texels, format, Effort::Fast) {
+                    Ok(bytes) => assert_eq!(bytes.len(), format.level_bytes(5, 3), "{format:?}"),
+                    Err(e) => assert!(!cfg!(feature = "bc") && e == EncodeError::WithoutBc, "{e}"),
+                }
+            }
+        }
+    }
+}

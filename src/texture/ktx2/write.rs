@@ -1,0 +1,142 @@
+//! The container writer. KTX File Format Specification 2.0, sections named at the line.
+
+use std::num::NonZeroU8;
+
+use ::ktx2::dfd::{Basic, Block, ChannelTypeQualifiers, DataFormatFlags, SampleInformation};
+use ::ktx2::{ColorModel, ColorPrimaries, Header, Index, LevelIndex, SupercompressionScheme, TransferFunction};
+use rayon::prelude::*;
+
+use crate::texture::Format;
+
+/// zstd level: on UASTC of real normal maps 9 is within 1 % of the size of 18 at a tenth of its time.
+const ZSTD_LEVEL: i32 = 9;
+
+/// An entry of the key/value data whose value is text.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Key {
+    /// UTF-8 without NUL. Keys that start with `KTX` are Khronos's.
+    pub key: String,
+    /// UTF-8; a NUL is added.
+    pub value: String,
+}
+
+/// A KTX2 file of a 2-D texture of `width` x `height` texels with a full chain of `levels`, level 0 first, each as
+/// [`crate::texture::encode`] returns it. UASTC is supercompressed with zstd, other formats are stored as they are.
+/// `keys` are written sorted, beside `KTXorientation` = `rd`.
+pub fn write(format: Format, width: u32, height: u32, levels: &[Vec<u8>], keys: &[Key]) -> Vec<u8> {
+    let supercompressed = format == Format::UastcRgb;
+    let stored: Vec<Vec<u8>> = levels
+        .par_iter()
+        .map(|level| {
+            if supercompressed {
+                zstd::bulk::compress(level, ZSTD_LEVEL).expect("compressing to memory has no way to fail")
+            } else {
+                level.clone()
+            }
+        })
+        .collect();
+    let (descriptor, type_size) = data_format_descriptor(format);
+    let key_values = key_value_data(keys);
+    let dfd_offset = Header::LENGTH + LevelIndex::LENGTH * levels.len();
+    let kvd_offset = dfd_offset + descriptor.len();
+
+    // "Mip Padding": levels are stored smallest first, each aligned to lcm(block bytes, 4) unless supercompressed.
+    let alignment = if supercompressed { 1 } else { format.block_bytes().max(4) };
+    let mut data = Vec::new();
+    let data_offset = kvd_offset + key_values.len();
+    let mut index = Vec::with_capacity(levels.len());
+    for (level, stored) in levels.iter().zip(&stored).rev() {
+        let offset = (data_offset + data.len()).next_multiple_of(alignment);
+        data.resize(offset - data_offset, 0);
+        data.extend_from_slice(stored);
+        index.push(LevelIndex {
+            byte_offset: offset as u64,
+            byte_length: stored.len() as u64,
+            uncompressed_byte_length: level.len() as u64,
+        });
+    }
+
+    let header = Header {
+        format: format.vulkan(),
+        type_size,
+        pixel_width: width,
+        pixel_height: height,
+        pixel_depth: 0,
+        layer_count: 0,
+        face_count: 1,
+        level_count: levels.len() as u32,
+        supercompression_scheme: supercompressed.then_some(SupercompressionScheme::Zstandard),
+        index: Index {
+            dfd_byte_offset: dfd_offset as u32,
+            dfd_byte_length: descriptor.len() as u32,
+            kvd_byte_offset: kvd_offset as u32,
+            kvd_byte_length: key_values.len() as u32,
+            sgd_byte_offset: 0,
+            sgd_byte_length: 0,
+        },
+    };
+    let mut file = Vec::with_capacity(data_offset + data.len());
+    file.extend_from_slice(&header.as_bytes());
+    for level in index.iter().rev() {
+        file.extend_from_slice(&level.as_bytes());
+    }
+    file.extend_from_slice(&descriptor);
+    file.extend_from_slice(&key_values);
+    file.extend_from_slice(&data);
+    file
+}
+
+/// "Data Format Descriptor": total size and one basic block; with it, the header's typeSize.
+fn data_format_descriptor(format: Format) -> (Vec<u8>, u32) {
+    let (mut basic, type_size) = match format.vulkan() {
+        Some(vulkan) => Basic::from_format(vulkan).expect("the crate describes every format that is written"),
+        None => (uastc_rgb(), 1),
+    };
+    // KHR_texture_basisu: data that are not colours have unspecified primaries and a linear transfer.
+    basic.color_primaries = None;
+    basic.transfer_function = Some(TransferFunction::Linear);
+    let block = Block::Basic(basic).to_vec();
+    let total = block.len() as u32 + 4;
+    ([&total.to_le_bytes()[..], &block].concat(), type_size)
+}
+
+/// Khronos Data Format Specification 1.3, UASTC: one sample of 128 bits; channel 0 is RGB. The plane keeps its size under
+/// supercompression since KTX 2.0.4.
+fn uastc_rgb() -> Basic {
+    let four = NonZeroU8::new(4).expect("4 is not 0");
+    Basic {
+        color_model: Some(ColorModel::UASTC),
+        color_primaries: None::<ColorPrimaries>,
+        transfer_function: Some(TransferFunction::Linear),
+        flags: DataFormatFlags::STRAIGHT_ALPHA,
+        texel_block_dimensions: [four, four, NonZeroU8::MIN, NonZeroU8::MIN],
+        bytes_planes: [16, 0, 0, 0, 0, 0, 0, 0],
+        sample_information: vec![SampleInformation {
+            bit_offset: 0,
+            bit_length: NonZeroU8::new(128).expect("128 is not 0"),
+            channel_type: 0,
+            channel_type_qualifiers: ChannelTypeQualifiers::empty(),
+            sample_positions: [0; 4],
+            lower: 0,
+            upper: u32::MAX,
+        }],
+    }
+}
+
+/// "Key/Value Data": sorted by key in Unicode order, values NUL-terminated, entries padded to 4 bytes.
+fn key_value_data(keys: &[Key]) -> Vec<u8> {
+    let mut sorted: Vec<(&str, &str)> = vec![("KTXorientation", "rd")];
+    sorted.extend(keys.iter().map(|k| (k.key.as_str(), k.value.as_str())));
+    sorted.sort_unstable();
+    let mut bytes = Vec::new();
+    for (key, value) in sorted {
+        let length = key.len() + value.len() + 2;
+        bytes.extend_from_slice(&(length as u32).to_le_bytes());
+        bytes.extend_from_slice(key.as_bytes());
+        bytes.push(0);
+        bytes.extend_from_slice(value.as_bytes());
+        bytes.push(0);
+        bytes.resize(bytes.len().next_multiple_of(4), 0);
+    }
+    bytes
+}

@@ -1,0 +1,209 @@
+//! From a fitted block to its sixteen bytes.
+//!
+//! Bit layout: "UASTC LDR 4x4 Texture Specification", sections "Block layout" and "Endpoint
+//! packing". Fields follow each other from bit 0 of byte 0 upwards.
+
+use super::hints::Hints;
+use super::tables::{Mode, PATTERNS, Range, SOLID_CODE};
+
+/// A block of any mode but the solid one.
+#[derive(Clone)]
+pub(super) struct Block {
+    pub mode: &'static Mode,
+    /// Index into [`PATTERNS`]; 0 where the mode has one subset.
+    pub pattern: usize,
+    /// The channel with weights of its own; 0 where the mode has one plane.
+    pub selector: usize,
+    /// Endpoint levels per subset and channel: low, high; each one of the mode's range.
+    pub endpoints: [[[u8; 2]; 4]; 2],
+    /// Weights per plane and texel.
+    pub weights: [[u8; 16]; 2],
+    /// Sum of squared differences to the source over the channels that count.
+    pub error: f32,
+}
+
+impl Block {
+    /// The subset of every texel, bit i for texel i.
+    fn subset_bits(&self) -> u16 {
+        if self.mode.subsets == 2 {
+            PATTERNS[self.pattern]
+        } else {
+            0
+        }
+    }
+
+    /// The plane that channel `c` takes its weights from.
+    fn plane_of(&self, c: usize) -> usize {
+        usize::from(self.mode.planes == 2 && c == self.selector)
+    }
+
+    /// Makes the top bit of every anchor weight 0, which the format leaves out: where it is 1, the
+    /// weights of that subset and plane are mirrored and their endpoints exchanged. The weight
+    /// ramps are symmetric, so the colours stay the same.
+    fn mirror_anchors(&mut self) {
+        let bits = self.subset_bits();
+        let top = (1u8 << self.mode.weight_bits) - 1;
+        for plane in 0..self.mode.planes {
+            for subset in 0..self.mode.subsets {
+                let members = if subset == 1 { bits } else { !bits };
+                let anchor = members.trailing_zeros() as usize & 15;
+                if self.weights[plane][anchor] <= top / 2 {
+                    continue;
+                }
+                for (i, weight) in self.weights[plane].iter_mut().enumerate() {
+                    *weight ^= top * (members >> i & 1) as u8;
+                }
+                for c in 0..self.mode.channels {
+                    if self.plane_of(c) == plane {
+                        self.endpoints[subset][c].swap(0, 1);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The sixteen bytes.
+    pub fn pack(mut self, hints: &Hints) -> [u8; 16] {
+        self.mirror_anchors();
+        let mode = self.mode;
+        let mut out = Bits::default();
+        out.push(mode.code.0.into(), mode.code.1.into());
+        hints.write(mode, &mut out);
+        if mode.subsets == 2 {
+            out.push(self.pattern as u64, 5);
+        }
+        if mode.planes == 2 {
+            out.push(self.selector as u64, 2);
+        }
+        self.write_endpoints(&mut out);
+        self.write_weights(&mut out);
+        out.bits.to_le_bytes()
+    }
+
+    fn write_endpoints(&self, out: &mut Bits) {
+        let Range {
+            bits, base, code, ..
+        } = self.mode.range;
+        let mut codes = [0; 16];
+        let mut count = 0;
+        for subset in &self.endpoints[..self.mode.subsets] {
+            for &level in subset[..self.mode.channels].as_flattened() {
+                codes[count] = u64::from(code[usize::from(level)]);
+                count += 1;
+            }
+        }
+        let codes = &codes[..count];
+        // Trits by fives in 8 bits, quints by threes in 7, as plain numbers of base 3 or 5; a
+        // last, incomplete group takes the bits its largest value needs.
+        let (group, lengths): (usize, &[u32]) = match base {
+            3 => (5, &[0, 2, 4, 5, 7, 8]),
+            5 => (3, &[0, 3, 5, 7]),
+            // Neither: one group of nothing.
+            _ => (16, &[0; 17]),
+        };
+        for group in codes.chunks(group) {
+            let upper = group.iter().rev();
+            let number = upper.fold(0, |sum, code| sum * u64::from(*base) + (code >> bits));
+            out.push(number, lengths[group.len()]);
+        }
+        // By halves, which fit a word: eight endpoints of eight bits at most.
+        for codes in codes.chunks(count / 2) {
+            let lower = codes.iter().rev();
+            let word = lower.fold(0, |word, code| word << bits | (code & ((1 << bits) - 1)));
+            out.push(word, codes.len() as u32 * bits);
+        }
+    }
+
+    fn write_weights(&self, out: &mut Bits) {
+        let bits = self.mode.weight_bits;
+        let mut weights = self.weights[0];
+        let mut width = bits;
+        if self.mode.planes == 2 {
+            for (weight, second) in weights.iter_mut().zip(self.weights[1]) {
+                *weight |= second << bits;
+            }
+            width = 2 * bits;
+        }
+        let (low, high) = weights.split_at(8);
+        let half = 8 * width;
+        let mut all = u128::from(close_up(low, width)) | u128::from(close_up(high, width)) << half;
+        // The top bit of an anchor goes, later ones first.
+        let members = self.subset_bits();
+        if self.mode.subsets == 2 {
+            let second = (members ^ (members & 1).wrapping_neg()).trailing_zeros();
+            all = without_bit(all, second * bits + bits - 1);
+        }
+        if self.mode.planes == 2 {
+            all = without_bit(all, 2 * bits - 1);
+        }
+        all = without_bit(all, bits - 1);
+        out.bits |= all << out.len;
+    }
+}
+
+/// Eight weights of `width` bits in a row, from eight bytes.
+fn close_up(weights: &[u8], mut width: u32) -> u64 {
+    let mut word = weights
+        .iter()
+        .rev()
+        .fold(0, |word, &weight| word << 8 | u64::from(weight));
+    // Odd lanes move down to even ones; lanes double three times.
+    for (lane, ones) in [
+        (8, 0x0001_0001_0001_0001),
+        (16, 0x0000_0001_0000_0001),
+        (32, 1),
+    ] {
+        let even = ((1 << width) - 1) * ones;
+        word = (word & even) | (word >> (lane - width) & (even << width));
+        width *= 2;
+    }
+    word
+}
+
+/// `word` with bit `at` left out and all above it moved down.
+fn without_bit(word: u128, at: u32) -> u128 {
+    let below = (1 << at) - 1;
+    (word & below) | (word >> 1 & !below)
+}
+
+/// One colour for all texels (mode 8), stored exactly.
+pub(super) fn pack_solid(colour: [u8; 4], etc1: SolidEtc1) -> [u8; 16] {
+    let mut out = Bits::default();
+    out.push(SOLID_CODE.0.into(), SOLID_CODE.1.into());
+    out.push(u32::from_le_bytes(colour).into(), 32);
+    out.push(etc1.five_bits.into(), 1);
+    out.push(etc1.table.into(), 3);
+    out.push(etc1.selector.into(), 2);
+    for base in etc1.base {
+        out.push(base.into(), 5);
+    }
+    out.bits.to_le_bytes()
+}
+
+/// The ETC1 block that a solid block turns into.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct SolidEtc1 {
+    /// Whether `base` has 5 bits a channel (differential) or 4 (individual).
+    pub five_bits: bool,
+    /// Intensity table, 0..=7.
+    pub table: u8,
+    /// Selector, 0..=3 from the darkest to the brightest.
+    pub selector: u8,
+    /// Base colour.
+    pub base: [u8; 3],
+}
+
+/// Bits from the lowest upwards.
+#[derive(Default)]
+pub(super) struct Bits {
+    bits: u128,
+    len: u32,
+}
+
+impl Bits {
+    /// Appends the `len` low bits of `value`, whose other bits are 0.
+    pub fn push(&mut self, value: u64, len: u32) {
+        self.bits |= u128::from(value) << self.len;
+        self.len += len;
+    }
+}

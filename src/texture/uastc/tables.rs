@@ -1,0 +1,179 @@
+//! The constants of the UASTC LDR 4x4 format: modes, endpoint ranges and partition patterns.
+//!
+//! Source: "UASTC LDR 4x4 Texture Specification" (BinomialLLC/basis_universal wiki) and, for the
+//! endpoint ranges, the Khronos Data Format Specification 1.3, section 23.12 "Endpoint
+//! unquantization" (ASTC).
+
+/// What a mode stores. Only the modes that this encoder writes have an entry.
+pub(super) struct Mode {
+    /// Prefix code and its length in bits.
+    pub code: (u8, u8),
+    /// Colour channels that the endpoints carry: 3 (RGB) or 4 (RGBA).
+    pub channels: usize,
+    /// Subsets of texels with their own pair of endpoints.
+    pub subsets: usize,
+    /// Weight planes: with two, one channel has weights of its own.
+    pub planes: usize,
+    /// Bits of one weight.
+    pub weight_bits: u32,
+    /// How the endpoints are quantised.
+    pub range: &'static Range,
+    /// Whether the hints hold the BC1 hint 1 bit and the 5-bit ETC1 bias.
+    pub full_hints: bool,
+}
+
+const fn rgb(code: (u8, u8), weight_bits: u32, range: &'static Range) -> Mode {
+    Mode {
+        code,
+        channels: 3,
+        subsets: 1,
+        planes: 1,
+        weight_bits,
+        range,
+        full_hints: true,
+    }
+}
+
+const fn rgba(code: (u8, u8), weight_bits: u32, range: &'static Range, full_hints: bool) -> Mode {
+    Mode {
+        channels: 4,
+        full_hints,
+        ..rgb(code, weight_bits, range)
+    }
+}
+
+/// Mode 0: RGB, 16 weights.
+pub(super) static MODE_0: Mode = rgb((0x1, 4), 4, &RANGE_192);
+/// Mode 1: RGB, 4 weights, exact endpoints.
+pub(super) static MODE_1: Mode = rgb((0x35, 6), 2, &RANGE_256);
+/// Mode 2: RGB, two subsets of 8 weights.
+pub(super) static MODE_2: Mode = Mode {
+    subsets: 2,
+    ..rgb((0x1d, 5), 3, &RANGE_16)
+};
+/// Mode 4: RGB, two subsets of 4 weights.
+pub(super) static MODE_4: Mode = Mode {
+    subsets: 2,
+    ..rgb((0x13, 5), 2, &RANGE_40)
+};
+/// Mode 5: RGB, 8 weights, exact endpoints.
+pub(super) static MODE_5: Mode = rgb((0xb, 5), 3, &RANGE_256);
+/// Mode 6: RGB, two planes of 4 weights.
+pub(super) static MODE_6: Mode = Mode {
+    planes: 2,
+    ..rgb((0x1b, 5), 2, &RANGE_160)
+};
+/// Mode 9: RGBA, two subsets of 4 weights.
+pub(super) static MODE_9: Mode = Mode {
+    subsets: 2,
+    ..rgba((0xf, 5), 2, &RANGE_16, true)
+};
+/// Mode 10: RGBA, 16 weights.
+pub(super) static MODE_10: Mode = rgba((0x2, 3), 4, &RANGE_48, false);
+/// Mode 11: RGBA, two planes of 4 weights.
+pub(super) static MODE_11: Mode = Mode {
+    planes: 2,
+    ..rgba((0x0, 2), 2, &RANGE_48, false)
+};
+/// Mode 12: RGBA, 8 weights.
+pub(super) static MODE_12: Mode = rgba((0x6, 3), 3, &RANGE_192, false);
+/// Mode 14: RGBA, 4 weights, exact endpoints.
+pub(super) static MODE_14: Mode = rgba((0xd, 5), 2, &RANGE_256, true);
+/// Mode 18: RGB, 32 weights.
+pub(super) static MODE_18: Mode = rgb((0x9, 4), 5, &RANGE_32);
+
+/// Prefix code of mode 8, one colour for all texels.
+pub(super) const SOLID_CODE: (u8, u8) = (0x17, 5);
+
+/// One range of quantised endpoints ("BISE" range).
+pub(super) struct Range {
+    /// Plain bits of a value.
+    pub bits: u32,
+    /// 3 with a trit above the bits, 5 with a quint, 1 with neither.
+    pub base: u32,
+    /// Nearest code of every 8-bit level.
+    pub code: [u8; 256],
+    /// The level that the nearest code stands for.
+    pub level: [u8; 256],
+}
+
+static RANGE_16: Range = Range::new(4, 1);
+static RANGE_32: Range = Range::new(5, 1);
+static RANGE_40: Range = Range::new(3, 5);
+static RANGE_48: Range = Range::new(4, 3);
+static RANGE_160: Range = Range::new(5, 5);
+static RANGE_192: Range = Range::new(6, 3);
+static RANGE_256: Range = Range::new(8, 1);
+
+impl Range {
+    const fn new(bits: u32, base: u32) -> Self {
+        let mut range = Self {
+            bits,
+            base,
+            code: [0; 256],
+            level: [0; 256],
+        };
+        let mut target = 0;
+        while target < 256 {
+            let mut best = u32::MAX;
+            let mut code = 0;
+            while code < base << bits {
+                let level = unquantize(code, bits, base);
+                let error = level.abs_diff(target as u32);
+                if error < best {
+                    best = error;
+                    range.code[target] = code as u8;
+                    range.level[target] = level as u8;
+                }
+                code += 1;
+            }
+            target += 1;
+        }
+        range
+    }
+
+    /// The next level above or below one of the range, or that level itself at either end.
+    pub fn neighbour(&self, level: u8, up: bool) -> u8 {
+        let nearest = |v: u8| self.level[usize::from(v)];
+        let beyond = if up {
+            (level..=255).map(nearest).find(|&l| l > level)
+        } else {
+            (0..=level).rev().map(nearest).find(|&l| l < level)
+        };
+        beyond.unwrap_or(level)
+    }
+}
+
+/// Level 0..=255 of an endpoint code (Khronos Data Format 1.3, section 23.12, table 121).
+const fn unquantize(code: u32, bits: u32, base: u32) -> u32 {
+    let low = code & ((1 << bits) - 1);
+    if base == 1 {
+        // Bit replication; the ranges here have 4 or more bits.
+        return if bits == 8 {
+            low
+        } else {
+            (low << (8 - bits)) | (low >> (2 * bits - 8))
+        };
+    }
+    // Names as in the specification: a is bit 0 spread over nine bits, b the scattered upper
+    // bits, c the step of one trit or quint d.
+    let a = if low & 1 == 1 { 0x1ff } else { 0 };
+    let upper = low >> 1;
+    let (b, c) = match (base, bits) {
+        (3, 4) => (upper << 6 | upper, 22),
+        (3, 6) => (upper << 4 | upper >> 4, 5),
+        (5, 3) => (upper << 7 | upper << 1 | upper >> 1, 26),
+        (5, 5) => (upper << 5 | upper >> 3, 6),
+        _ => panic!("not a range of this encoder"),
+    };
+    let d = code >> bits;
+    (a & 0x80) | (((d * c + b) ^ a) >> 2)
+}
+
+/// The two-subset patterns that ASTC and BC7 share, in the order of the format's pattern index:
+/// bit i is the subset of texel i, row 0 first.
+pub(super) static PATTERNS: [u16; 30] = [
+    0xcccc, 0x8888, 0x1111, 0xecc8, 0x377f, 0xfeec, 0x0137, 0x137f, 0xc800, 0x0013, 0xfe80, 0x17ff,
+    0x0017, 0x00ff, 0xfff0, 0x0fff, 0xff71, 0x8eff, 0x08ce, 0x008c, 0x7310, 0xceff, 0x7331, 0x088c,
+    0xceef, 0x6666, 0xf00f, 0x5555, 0x0f0f, 0x36c9,
+];

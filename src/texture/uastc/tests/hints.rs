@@ -1,0 +1,130 @@
+//! Blocks transcode, by their hints, to textures that stay near the source.
+
+use super::super::encode_block;
+use super::*;
+use basisu::etc::{uastc_to_etc1, uastc_to_etc2};
+use basisu::uastc::{astc_pack, bc1, bc3_bc5, bc7};
+
+fn unpack(decode: impl FnOnce(&mut [u32])) -> Texels {
+    let mut texels = [0; 16];
+    decode(&mut texels);
+    texels.map(|texel: u32| {
+        let [b, g, r, a] = texel.to_le_bytes();
+        [r, g, b, a]
+    })
+}
+
+const TARGETS: [&str; 6] = ["ETC1", "ETC2", "BC1", "BC3", "BC7", "ASTC"];
+
+/// What becomes of a block in each of [`TARGETS`].
+fn transcoded(block: &[u8; BLOCK_BYTES]) -> [Texels; 6] {
+    let etc1 = uastc_to_etc1::transcode_uastc_to_etc1(block).unwrap();
+    let etc2 = uastc_to_etc2::transcode_uastc_to_etc2_rgba(block).unwrap();
+    let bc1 = bc1::transcode_uastc_to_bc1(block, false).unwrap();
+    let bc3 = bc3_bc5::transcode_uastc_to_bc3(block, false).unwrap();
+    let bc7 = bc7::transcode_uastc_to_bc7(block).unwrap();
+    let astc = astc_pack::transcode_uastc_to_astc(block).unwrap();
+    [
+        unpack(|out| texture2ddecoder::decode_etc1_block(&etc1, out)),
+        unpack(|out| texture2ddecoder::decode_etc2_rgba8_block(&etc2, out)),
+        unpack(|out| texture2ddecoder::decode_bc1_block(&bc1, out)),
+        unpack(|out| texture2ddecoder::decode_bc3_block(&bc3, out)),
+        unpack(|out| texture2ddecoder::decode_bc7_block(&bc7, out)),
+        unpack(|out| texture2ddecoder::decode_astc_block(&astc, 4, 4, out)),
+    ]
+}
+
+/// PSNR over RGB of each of [`TARGETS`].
+fn ratios(sources: &[Texels], effort: Effort) -> [f64; 6] {
+    let blocks: Vec<[Texels; 6]> = sources
+        .iter()
+        .map(|texels| transcoded(&encode_block(texels, Channels::Rgb, effort)))
+        .collect();
+    std::array::from_fn(|target| {
+        let texels: Vec<Texels> = blocks.iter().map(|b| b[target]).collect();
+        psnr(sources, &texels)
+    })
+}
+
+#[test]
+fn transcoded_normals_stay_near() {
+    // Rather flat and rather rough normals; 1 dB below what was measured.
+    let smooth = [35.8, 35.8, 38.0, 38.0, 44.8, 45.6];
+    let rough = [26.6, 26.6, 28.4, 28.4, 36.0, 36.1];
+    for (noise, floors) in [(0.02, smooth), (0.4, rough)] {
+        let sources = normals(noise, 128);
+        for effort in EFFORTS {
+            let found = ratios(&sources, effort);
+            for target in 0..6 {
+                assert!(
+                    found[target] >= floors[target],
+                    "{}: {:.2} dB, {effort:?}, noise {noise}",
+                    TARGETS[target],
+                    found[target]
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn alpha_stays_near() {
+    let mut random = Random(5);
+    for _ in 0..200 {
+        let (base, range) = (random.byte(), 1 + random.byte() / 2);
+        let texels: Texels = std::array::from_fn(|i| {
+            let alpha = base.saturating_add(random.byte() % range);
+            [i as u8 * 9, 100, 200 - i as u8, alpha]
+        });
+        for effort in EFFORTS {
+            let block = encode_block(&texels, Channels::Rgba, effort);
+            for (target, result) in TARGETS.iter().zip(transcoded(&block)) {
+                if ["ETC1", "BC1"].contains(target) {
+                    continue;
+                }
+                for (a, b) in decoded(&block).iter().zip(result) {
+                    let off = a[3].abs_diff(b[3]);
+                    assert!(
+                        off <= 2 + range / 8,
+                        "{target}: alpha off by {off} in {range}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn solid_blocks_stay_near() {
+    let mut random = Random(11);
+    for _ in 0..500 {
+        let colour = std::array::from_fn(|_| random.byte());
+        let block = encode_block(&[colour; 16], Channels::Rgba, Effort::Fast);
+        for (target, result) in TARGETS.iter().zip(transcoded(&block)) {
+            for c in 0..3 {
+                let off = result[7][c].abs_diff(colour[c]);
+                assert!(off <= 8, "{target}: {colour:?} became {:?}", result[7]);
+            }
+            assert!(result[0][3] == colour[3] || ["ETC1", "BC1"].contains(target));
+        }
+    }
+}
+
+#[test]
+fn every_block_transcodes() {
+    for texels in all_kinds() {
+        for (channels, effort) in CHANNELS.into_iter().flat_map(|c| EFFORTS.map(|e| (c, e))) {
+            let block = encode_block(&texels, channels, effort);
+            let results = transcoded(&block);
+            // BC7 and ASTC hold the block almost as it is (BC7 has 5 to 8 bits an endpoint, and the ASTC
+            // decoder rounds).
+            let source = decoded(&block);
+            for (at, bound) in [(4, 12), (5, 1)] {
+                for (a, b) in source.iter().zip(results[at]) {
+                    let off = (0..4).map(|c| a[c].abs_diff(b[c])).max();
+                    assert!(off <= Some(bound), "{}: {a:?} became {b:?}", TARGETS[at]);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! Whole levels: padding, threads, sizes.
+
+use super::super::{encode_block, encode_level};
+use super::*;
+
+fn picture(width: usize, height: usize) -> Vec<u8> {
+    let mut random = Random(9);
+    (0..width * height)
+        .flat_map(|_| random.next().to_le_bytes()[..4].to_vec())
+        .collect()
+}
+
+#[test]
+fn odd_sizes_repeat_the_last_column_and_row() {
+    for (width, height) in [(1, 1), (1, 7), (5, 1), (3, 2), (4, 4), (6, 9), (13, 4)] {
+        let texels = picture(width, height);
+        for (channels, effort) in CHANNELS.into_iter().flat_map(|c| EFFORTS.map(|e| (c, e))) {
+            let blocks = encode_level(&texels, width as u32, height as u32, channels, effort);
+            let (columns, rows) = (width.div_ceil(4), height.div_ceil(4));
+            assert_eq!(blocks.len(), columns * rows * BLOCK_BYTES);
+            for (k, block) in blocks.chunks(BLOCK_BYTES).enumerate() {
+                let padded = std::array::from_fn(|i| {
+                    let x = (k % columns * 4 + i % 4).min(width - 1);
+                    let y = (k / columns * 4 + i / 4).min(height - 1);
+                    texels[(y * width + x) * 4..][..4].try_into().unwrap()
+                });
+                assert_eq!(block, encode_block(&padded, channels, effort));
+            }
+        }
+    }
+}
+
+#[test]
+fn wrong_lengths_give_nothing() {
+    let texels = [0; 64];
+    for (width, height) in [(0, 0), (0, 4), (4, 0), (4, 5), (3, 4), (u32::MAX, u32::MAX)] {
+        assert!(encode_level(&texels, width, height, Channels::Rgb, Effort::Fast).is_empty());
+    }
+}
+
+#[test]
+fn threads_do_not_change_a_byte() {
+    let texels = picture(67, 45);
+    for effort in EFFORTS {
+        let with = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()
+                .unwrap();
+            pool.install(|| encode_level(&texels, 67, 45, Channels::Rgba, effort))
+        };
+        assert_eq!(with(1), with(4));
+    }
+}
+
+#[test]
+fn bytes_are_pinned() {
+    // A change of these hashes is a change of every texture that a user has baked: it belongs in
+    // the change log.
+    let hash = |bytes: &[u8]| {
+        bytes.iter().fold(0xcbf2_9ce4_8422_2325u64, |hash, &byte| {
+            (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3)
+        })
+    };
+    let mut found = Vec::new();
+    for effort in EFFORTS {
+        for channels in CHANNELS {
+            let blocks: Vec<u8> = all_kinds()
+                .iter()
+                .flat_map(|texels| encode_block(texels, channels, effort))
+                .collect();
+            found.push(hash(&blocks));
+        }
+    }
+    assert_eq!(found, PINNED, "{found:#x?}");
+}
+
+const PINNED: [u64; 4] = [
+    0x0d40_159a_c215_017c,
+    0x9f83_4582_49e6_2570,
+    0x85f5_4a92_fa24_71b1,
+    0x086b_169a_df97_db4c,
+];
