@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use rayon::prelude::*;
 use serde_json::Value;
 
 use super::container::{self, ContainerError};
@@ -23,7 +24,7 @@ use crate::gltf::material::{MaterialError, materials};
 use crate::gltf::rewrite::{NewImage, NewTexture, add_textures, declare};
 use crate::gltf::texture::ImageLocation;
 use crate::gltf::uri::{encode_path, relative_path};
-use crate::texture::ktx2::{Provenance, SourceDigest, write};
+use crate::texture::ktx2::{Provenance, SourceDigest};
 
 /// Why an asset cannot be baked. Messages name material and texture; the caller adds the file.
 #[derive(Debug, thiserror::Error)]
@@ -152,8 +153,23 @@ impl<'a> Assembly<'a> {
 
     fn add(&mut self, output: JobOutput) -> Result<(), BakeError> {
         let first = self.textures.len();
-        for texture in output.textures {
-            self.add_texture(texture)?;
+        let mut keys = Vec::with_capacity(output.textures.len());
+        for texture in &output.textures {
+            keys.push(if self.settings.provenance { self.provenance(texture)?.keys() } else { Vec::new() });
+        }
+        // Compressing a large level is serial, so the textures of a job are compressed side by side.
+        let effort = self.settings.effort;
+        let files: Vec<(Vec<u8>, Option<Result<Vec<u8>, String>>)> = output
+            .textures
+            .par_iter()
+            .zip(&keys)
+            .map(|(JobTexture { chain, .. }, keys)| {
+                let png = || chain.fallback.as_ref().map(|rgba| encode_png(rgba, chain.width, chain.height));
+                rayon::join(|| chain.to_ktx2(keys, effort), png)
+            })
+            .collect();
+        for (texture, (ktx2, png)) in output.textures.into_iter().zip(files) {
+            self.add_texture(texture, ktx2, png)?;
         }
         for layer in output.layers {
             self.unit_factors.extend(layer.unit_factor);
@@ -168,26 +184,27 @@ impl<'a> Assembly<'a> {
         Ok(())
     }
 
-    fn add_texture(&mut self, texture: JobTexture) -> Result<(), BakeError> {
-        let stem = stem(&texture);
-        let path = self.names.unique(&stem, texture.content.name());
+    fn add_texture(
+        &mut self,
+        texture: JobTexture,
+        ktx2: Vec<u8>,
+        png: Option<Result<Vec<u8>, String>>,
+    ) -> Result<(), BakeError> {
+        let path = self.names.unique(&stem(&texture), texture.content.name());
         let chain = &texture.chain;
-        let keys = if self.settings.provenance { self.provenance(&texture)?.keys() } else { Vec::new() };
-        let bytes = write(chain.format, chain.width, chain.height, &chain.levels, &keys);
         self.report.textures.push(TextureReport {
             path: format!("{path}.ktx2"),
             content: texture.content,
             width: chain.width,
             height: chain.height,
             levels: chain.levels.len(),
-            bytes: bytes.len(),
+            bytes: ktx2.len(),
             range: texture.range.clone(),
         });
-        let ktx2 = self.add_image(&path, "ktx2", bytes)?;
-        let source = match (&chain.fallback, self.settings.form) {
-            (Some(rgba), _) => {
-                let png = encode_png(rgba, chain.width, chain.height)
-                    .map_err(|reason| BakeError::Png { path: path.clone(), reason })?;
+        let ktx2 = self.add_image(&path, "ktx2", ktx2)?;
+        let source = match (png, self.settings.form) {
+            (Some(png), _) => {
+                let png = png.map_err(|reason| BakeError::Png { path: path.clone(), reason })?;
                 Some(self.add_image(&path, "png", png)?)
             }
             (None, Form::Dual) => Some(ktx2.clone()),

@@ -1,6 +1,9 @@
 //! Encoded mip chains.
 
+use rayon::prelude::*;
+
 use super::settings::{Form, Settings};
+use crate::texture::ktx2::{Key, Ktx2Writer};
 use crate::texture::uastc::Effort;
 use crate::texture::{EncodeError, Format, Target, Texels, encode};
 
@@ -58,15 +61,23 @@ pub fn encode_chain(
     encoding: Encoding,
     row: &(dyn Fn(usize, u32, &mut [[f32; 4]]) + Sync),
 ) -> Result<Chain, EncodeError> {
-    let mut levels = Vec::with_capacity(sizes.len());
-    for (level, &(width, height)) in sizes.iter().enumerate() {
+    let encode_level = |(level, &(width, height)): (usize, &(u32, u32))| {
         let row = |y: u32, out: &mut [[f32; 4]]| row(level, y, out);
-        levels.push(encode(&Texels { width, height, row: &row }, encoding.format, encoding.effort)?);
-    }
+        encode(&Texels { width, height, row: &row }, encoding.format, encoding.effort)
+    };
+    let levels = sizes.par_iter().enumerate().map(encode_level).collect::<Result<_, _>>()?;
     let (width, height) = sizes[0];
     let fallback = encoding.fallback.then(|| {
         let row = |y: u32, out: &mut [[f32; 4]]| row(0, y, out);
         Texels { width, height, row: &row }.to_rgba8()
     });
     Ok(Chain { format: encoding.format, width, height, levels, fallback })
+}
+
+impl Chain {
+    /// The KTX2 file of the chain.
+    pub fn to_ktx2(&self, keys: &[Key], effort: Effort) -> Vec<u8> {
+        let &Self { format, width, height, ref levels, .. } = self;
+        Ktx2Writer { format, width, height, levels, keys, effort }.to_bytes()
+    }
 }

@@ -7,14 +7,14 @@ use super::chain::{Chain, Encoding, encode_chain};
 use super::settings::{Model, Settings};
 use crate::choose::ModelLoss;
 use crate::lobe::{Anisotropy, Roughness, SquaredAlpha};
-use crate::pyramid::{Area, Moments, Pyramid, Rows};
+use crate::pyramid::{Moments, Pyramid, Rows};
 use crate::symmetric::Symmetric2;
 use crate::texture::EncodeError;
 
 /// A material's lobe and the moments of its bumps on one grid.
 pub struct Fold<'a, R: Rows<Texel = Moments>> {
     base: Pyramid<BaseRows<'a>>,
-    moments: Pyramid<Area<&'a R>>,
+    moments: &'a Pyramid<R>,
     /// 2 c s^2 is what K is multiplied by; this is c s^2, with s the scale of the normal texture.
     weight: f32,
     /// Whether the material's own lobe is anisotropic.
@@ -30,17 +30,11 @@ pub struct Folded {
 }
 
 impl<'a, R: Rows<Texel = Moments>> Fold<'a, R> {
-    /// Joins `base` with the bumps of `relief` on the grid of `base`. `slope_scale` multiplies offsets
+    /// Joins `base` with the bumps of `moments` on the same grid. `slope_scale` multiplies offsets
     /// (`normalTexture.scale`), `correction` is c.
-    pub fn new(base: BaseRows<'a>, relief: &'a R, slope_scale: f32, correction: f32) -> Self {
-        let area = Area::new(relief, base.width(), base.height());
+    pub fn new(base: BaseRows<'a>, moments: &'a Pyramid<R>, slope_scale: f32, correction: f32) -> Self {
         let is_elliptical = base.is_elliptical();
-        Self {
-            base: Pyramid::new(base),
-            moments: Pyramid::new(area),
-            weight: correction * slope_scale * slope_scale,
-            is_elliptical,
-        }
+        Self { base: Pyramid::new(base), moments, weight: correction * slope_scale * slope_scale, is_elliptical }
     }
 
     /// Sizes of all levels, level 0 first.

@@ -14,7 +14,7 @@ use crate::bake::{BareBake, BareTexture, OwnRoughness, PublishError, Relief, Set
 use crate::bump::{MAX_SLOPE, Wrap};
 use crate::map::{DecodeError, DecodeOptions, HeightMap, Image, MapError, NormalLayout, NormalMap, decode};
 use crate::texture::EncodeError;
-use crate::texture::ktx2::{Provenance, SourceDigest, write};
+use crate::texture::ktx2::{Provenance, SourceDigest};
 
 /// Bake one bare normal or height map into KTX2 files.
 ///
@@ -222,7 +222,6 @@ fn load(path: &Path, layer: Option<String>, settings: &Settings) -> Result<(Imag
 }
 
 fn texture_file(texture: &BareTexture, baked: &BareBake, sources: &[SourceDigest], settings: &Settings) -> Vec<u8> {
-    let chain = &texture.chain;
     let mut recorded = settings.to_json(baked.model);
     recorded["range"] = json!(texture.range);
     let keys = if settings.provenance {
@@ -236,7 +235,7 @@ fn texture_file(texture: &BareTexture, baked: &BareBake, sources: &[SourceDigest
     } else {
         Vec::new()
     };
-    write(chain.format, chain.width, chain.height, &chain.levels, &keys)
+    texture.chain.to_ktx2(&keys, settings.effort)
 }
 
 /// `wool.ktx2` -> `wool.roughness.ktx2`.

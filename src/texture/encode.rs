@@ -92,10 +92,7 @@ fn unorm8(value: f32) -> u8 {
 /// [`EncodeError`] for block formats whose encoder is missing or fails.
 pub fn encode(texels: &Texels<'_>, format: Format, effort: Effort) -> Result<Vec<u8>, EncodeError> {
     match format {
-        Format::UastcRgb => {
-            let rgba = texels.to_rgba8();
-            Ok(uastc::encode_level(&rgba, texels.width, texels.height, Channels::Rgb, effort))
-        }
+        Format::UastcRgb => Ok(encode_uastc(texels, effort)),
         Format::R16Float => Ok(texels.to_half(1)),
         Format::Rg16Float => Ok(texels.to_half(2)),
         Format::Rgba16Float => Ok(texels.to_half(4)),
@@ -104,6 +101,19 @@ pub fn encode(texels: &Texels<'_>, format: Format, effort: Effort) -> Result<Vec
         #[cfg(not(feature = "bc"))]
         Format::Bc4 | Format::Bc5 | Format::Bc7 => Err(EncodeError::WithoutBc),
     }
+}
+
+/// Quantises and encodes row of blocks by row of blocks, so that a level is never held as RGBA8.
+fn encode_uastc(texels: &Texels<'_>, effort: Effort) -> Vec<u8> {
+    let width = texels.width as usize;
+    let mut blocks = vec![0; Format::UastcRgb.level_bytes(texels.width, texels.height)];
+    blocks.par_chunks_mut(width.div_ceil(4) * uastc::BLOCK_BYTES).enumerate().for_each(|(block_row, out)| {
+        let first = 4 * block_row as u32;
+        let row = |y: u32, out: &mut [[f32; 4]]| (texels.row)(first + y, out);
+        let band = Texels { width: texels.width, height: (texels.height - first).min(4), row: &row };
+        out.copy_from_slice(&uastc::encode_level(&band.to_rgba8(), band.width, band.height, Channels::Rgb, effort));
+    });
+    blocks
 }
 
 impl Target {

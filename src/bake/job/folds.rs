@@ -1,6 +1,6 @@
 //! The job's textures of the portable profile that hold folded lobes.
 
-use super::{Job, JobError, JobOutput, JobTexture, LayerOutcome};
+use super::{Job, JobError, JobOutput, JobTexture, LayerOutcome, ReliefPyramid};
 use crate::bake::base::{BaseAnisotropy, BaseRows};
 use crate::bake::chain::{Encoding, grid};
 use crate::bake::fold::Fold;
@@ -11,11 +11,16 @@ use crate::bake::settings::Model;
 use crate::gltf::material::LayerKind;
 use crate::gltf::texture::TextureSource;
 use crate::map::{Image, Rgba};
-use crate::pyramid::Rows;
+use crate::pyramid::{Area, Pyramid, Rows};
 
 impl Job<'_> {
     /// Folds the bumps into each distinct lobe, choosing its model on the way.
-    pub(super) fn folds(&self, relief: &Relief, output: &mut JobOutput) -> Result<(), JobError> {
+    pub(super) fn folds<'r>(
+        &self,
+        relief: &'r Relief,
+        moments: &ReliefPyramid<'r>,
+        output: &mut JobOutput,
+    ) -> Result<(), JobError> {
         let layers = &self.plan.layers;
         for (first, layer) in layers.iter().enumerate() {
             let is_done = layers[..first].iter().any(|earlier| earlier.folds_like(layer));
@@ -30,7 +35,11 @@ impl Job<'_> {
                 roughness: own.roughness.as_ref().map(|t| self.image(t)).transpose()?,
                 anisotropy: own.anisotropy.as_ref().map(|t| self.image(t)).transpose()?,
             };
-            let fold = self.fold(relief, layer, &images);
+            let base = self.base(relief, layer, &images);
+            let size = (base.width(), base.height());
+            let resampled = (size != moments.sizes()[0]).then(|| Pyramid::new(Area::new(relief, size.0, size.1)));
+            let moments = resampled.as_ref().unwrap_or(moments);
+            let fold = Fold::new(base, moments, layer.slope_scale, self.settings.distribution.correction());
             let widest = match layer.layer.kind {
                 LayerKind::Base => Model::Anisotropic,
                 // glTF's clearcoat has no anisotropy.
@@ -51,6 +60,13 @@ impl Job<'_> {
                 if let (Err(reason), true) = (&layer.own, self.settings.profile.is_portable()) {
                     report.model = Some(Model::None);
                     report.notes.push(reason.clone());
+                }
+                if let Some(loss) = loss.filter(|l| model == Model::Isotropic && l.isotropic > self.settings.max_error)
+                {
+                    report.notes.push(format!(
+                        "glTF's clearcoat has no anisotropy: a circle in the ellipse's place loses {:.3}",
+                        loss.isotropic
+                    ));
                 }
                 if too_wide > 0 {
                     report.notes.push(format!(
@@ -99,7 +115,8 @@ impl Job<'_> {
         Ok(())
     }
 
-    fn fold<'r>(&self, relief: &'r Relief, layer: &LayerPlan, own: &'r OwnImages) -> Fold<'r, Relief> {
+    /// The layer's own lobe on a grid that holds it and the bumps.
+    fn base<'r>(&self, relief: &Relief, layer: &LayerPlan, own: &'r OwnImages) -> BaseRows<'r> {
         let sizes = [&own.roughness, &own.anisotropy].into_iter().flatten().map(|i| (i.width, i.height));
         let (width, height) = grid(self.settings.target, sizes.chain([(relief.width(), relief.height())]));
         let anisotropy = layer.layer.anisotropy.as_ref().map(|a| {
@@ -111,8 +128,7 @@ impl Job<'_> {
             }
         });
         let roughness = own.roughness.as_ref().map(Rgba);
-        let base = BaseRows::new(width, height, roughness, layer.layer.roughness_factor, anisotropy);
-        Fold::new(base, relief, layer.slope_scale, self.settings.distribution.correction())
+        BaseRows::new(width, height, roughness, layer.layer.roughness_factor, anisotropy)
     }
 }
 

@@ -121,12 +121,15 @@ pub fn run(plan: &ReliefPlan, source: &Source<'_>, settings: &Settings) -> Resul
             model: Model::None,
         });
     }
-    job.folds(&relief, &mut output)?;
+    job.folds(&relief, &moments, &mut output)?;
     if settings.profile.has_pyramid() {
         job.pyramids(&moments, &mut output)?;
     }
     Ok(output)
 }
+
+/// The bumps of a map on the grid of its texture.
+type ReliefPyramid<'a> = Pyramid<Area<&'a Relief>>;
 
 struct Job<'a> {
     plan: &'a ReliefPlan,

@@ -13,7 +13,7 @@ mod write;
 pub use error::ReadError;
 pub use provenance::{PROVENANCE_KEY, Provenance, SourceDigest, provenance};
 pub use read::{Ktx2, Level};
-pub use write::{Key, write};
+pub use write::{Key, Ktx2Writer};
 
 #[cfg(test)]
 mod formats_tests;

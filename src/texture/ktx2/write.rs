@@ -1,5 +1,6 @@
 //! The container writer. KTX File Format Specification 2.0, sections named at the line.
 
+use std::borrow::Cow;
 use std::num::NonZeroU8;
 
 use ::ktx2::dfd::{Basic, Block, ChannelTypeQualifiers, DataFormatFlags, SampleInformation};
@@ -7,9 +8,7 @@ use ::ktx2::{ColorModel, ColorPrimaries, Header, Index, LevelIndex, Supercompres
 use rayon::prelude::*;
 
 use crate::texture::Format;
-
-/// zstd level: on UASTC of real normal maps 9 is within 1 % of the size of 18 at a tenth of its time.
-const ZSTD_LEVEL: i32 = 9;
+use crate::texture::uastc::Effort;
 
 /// An entry of the key/value data whose value is text.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,70 +19,98 @@ pub struct Key {
     pub value: String,
 }
 
-/// A KTX2 file of a 2-D texture of `width` x `height` texels with a full chain of `levels`, level 0 first, each as
-/// [`crate::texture::encode`] returns it. UASTC is supercompressed with zstd, other formats are stored as they are.
-/// `keys` are written sorted, beside `KTXorientation` = `rd`.
-pub fn write(format: Format, width: u32, height: u32, levels: &[Vec<u8>], keys: &[Key]) -> Vec<u8> {
-    let supercompressed = format == Format::UastcRgb;
-    let stored: Vec<Vec<u8>> = levels
-        .par_iter()
-        .map(|level| {
-            if supercompressed {
-                zstd::bulk::compress(level, ZSTD_LEVEL).expect("compressing to memory has no way to fail")
-            } else {
-                level.clone()
-            }
-        })
-        .collect();
-    let (descriptor, type_size) = data_format_descriptor(format);
-    let key_values = key_value_data(keys);
-    let dfd_offset = Header::LENGTH + LevelIndex::LENGTH * levels.len();
-    let kvd_offset = dfd_offset + descriptor.len();
+/// A KTX2 file to be written: a 2-D texture with a full chain of levels.
+#[derive(Clone, Copy, Debug)]
+pub struct Ktx2Writer<'a> {
+    /// How texels are stored. UASTC is supercompressed with zstd, other formats are stored as they are.
+    pub format: Format,
+    /// Columns of level 0.
+    pub width: u32,
+    /// Rows of level 0.
+    pub height: u32,
+    /// Levels as [`crate::texture::encode`] returns them, level 0 first.
+    pub levels: &'a [Vec<u8>],
+    /// Written sorted, beside `KTXorientation` = `rd`.
+    pub keys: &'a [Key],
+    /// How long zstd searches.
+    pub effort: Effort,
+}
 
-    // "Mip Padding": levels are stored smallest first, each aligned to lcm(block bytes, 4) unless supercompressed.
-    let alignment = if supercompressed { 1 } else { format.block_bytes().max(4) };
-    let mut data = Vec::new();
-    let data_offset = kvd_offset + key_values.len();
-    let mut index = Vec::with_capacity(levels.len());
-    for (level, stored) in levels.iter().zip(&stored).rev() {
-        let offset = (data_offset + data.len()).next_multiple_of(alignment);
-        data.resize(offset - data_offset, 0);
-        data.extend_from_slice(stored);
-        index.push(LevelIndex {
-            byte_offset: offset as u64,
-            byte_length: stored.len() as u64,
-            uncompressed_byte_length: level.len() as u64,
-        });
+/// On the UASTC of three real assets (7.9 MB, `zstd -b`): level 5 makes it 2.39 times smaller at 96 MB/s, level 9 2.42
+/// times at 45 MB/s and level 18 2.56 times at 5 MB/s.
+fn zstd_level(effort: Effort) -> i32 {
+    match effort {
+        Effort::Fast => 5,
+        Effort::Best => 18,
     }
+}
 
-    let header = Header {
-        format: format.vulkan(),
-        type_size,
-        pixel_width: width,
-        pixel_height: height,
-        pixel_depth: 0,
-        layer_count: 0,
-        face_count: 1,
-        level_count: levels.len() as u32,
-        supercompression_scheme: supercompressed.then_some(SupercompressionScheme::Zstandard),
-        index: Index {
-            dfd_byte_offset: dfd_offset as u32,
-            dfd_byte_length: descriptor.len() as u32,
-            kvd_byte_offset: kvd_offset as u32,
-            kvd_byte_length: key_values.len() as u32,
-            sgd_byte_offset: 0,
-            sgd_byte_length: 0,
-        },
-    };
-    let mut file = Vec::with_capacity(data_offset + data.len());
-    file.extend_from_slice(&header.as_bytes());
-    for level in index.iter().rev() {
-        file.extend_from_slice(&level.as_bytes());
+impl Ktx2Writer<'_> {
+    /// The bytes of the file.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let &Self { format, width, height, levels, keys, effort } = self;
+        let supercompressed = format == Format::UastcRgb;
+        let stored: Vec<Cow<'_, [u8]>> = levels
+            .par_iter()
+            .map(|level| {
+                if supercompressed {
+                    let compressed = zstd::bulk::compress(level, zstd_level(effort));
+                    compressed.expect("compressing to memory has no way to fail").into()
+                } else {
+                    level.into()
+                }
+            })
+            .collect();
+        let (descriptor, type_size) = data_format_descriptor(format);
+        let key_values = key_value_data(keys);
+        let dfd_offset = Header::LENGTH + LevelIndex::LENGTH * levels.len();
+        let kvd_offset = dfd_offset + descriptor.len();
+
+        // "Mip Padding": levels are stored smallest first, each aligned to lcm(block bytes, 4) unless supercompressed.
+        let alignment = if supercompressed { 1 } else { format.block_bytes().max(4) };
+        let mut data = Vec::new();
+        let data_offset = kvd_offset + key_values.len();
+        let mut index = Vec::with_capacity(levels.len());
+        for (level, stored) in levels.iter().zip(&stored).rev() {
+            let offset = (data_offset + data.len()).next_multiple_of(alignment);
+            data.resize(offset - data_offset, 0);
+            data.extend_from_slice(stored);
+            index.push(LevelIndex {
+                byte_offset: offset as u64,
+                byte_length: stored.len() as u64,
+                uncompressed_byte_length: level.len() as u64,
+            });
+        }
+
+        let header = Header {
+            format: format.vulkan(),
+            type_size,
+            pixel_width: width,
+            pixel_height: height,
+            pixel_depth: 0,
+            layer_count: 0,
+            face_count: 1,
+            level_count: levels.len() as u32,
+            supercompression_scheme: supercompressed.then_some(SupercompressionScheme::Zstandard),
+            index: Index {
+                dfd_byte_offset: dfd_offset as u32,
+                dfd_byte_length: descriptor.len() as u32,
+                kvd_byte_offset: kvd_offset as u32,
+                kvd_byte_length: key_values.len() as u32,
+                sgd_byte_offset: 0,
+                sgd_byte_length: 0,
+            },
+        };
+        let mut file = Vec::with_capacity(data_offset + data.len());
+        file.extend_from_slice(&header.as_bytes());
+        for level in index.iter().rev() {
+            file.extend_from_slice(&level.as_bytes());
+        }
+        file.extend_from_slice(&descriptor);
+        file.extend_from_slice(&key_values);
+        file.extend_from_slice(&data);
+        file
     }
-    file.extend_from_slice(&descriptor);
-    file.extend_from_slice(&key_values);
-    file.extend_from_slice(&data);
-    file
 }
 
 /// "Data Format Descriptor": total size and one basic block; with it, the header's typeSize.

@@ -28,14 +28,7 @@ pub(super) fn rest(alone: usize) -> [usize; 2] {
 }
 
 fn empty(mode: &'static Mode) -> Block {
-    Block {
-        mode,
-        pattern: 0,
-        selector: 0,
-        endpoints: [[[0; 2]; 4]; 2],
-        weights: [[0; 16]; 2],
-        error: 0.0,
-    }
+    Block { mode, pattern: 0, selector: 0, endpoints: [[[0; 2]; 4]; 2], weights: [[0; 16]; 2], error: 0.0 }
 }
 
 impl Block {
@@ -85,14 +78,7 @@ pub(super) fn two_planes<const N: usize, const BITS: u32>(
 ) -> Block {
     let mut block = empty(mode);
     block.selector = selector;
-    let alone = fit::<1, BITS>(
-        &[texels[selector]],
-        &ALL,
-        &part(all, [selector]),
-        &[1.0],
-        mode.range,
-        rounds,
-    );
+    let alone = fit::<1, BITS>(&[texels[selector]], &ALL, &part(all, [selector]), &[1.0], mode.range, rounds);
     block.place(&alone, [selector], 0, 1, 0xffff);
     if N == 3 {
         let channels = rest(selector);
@@ -130,11 +116,7 @@ pub(super) struct Split<const N: usize> {
 impl<const N: usize> Split<N> {
     pub fn new(texels: &[Lane; N], pattern: usize) -> Self {
         let moments = [0, 1].map(|subset| moments(texels, &SUBSETS[pattern][subset]));
-        Self {
-            pattern,
-            moments,
-            axes: [0, 1].map(|subset| principal_axis(&moments[subset].scatter)),
-        }
+        Self { pattern, moments, axes: [0, 1].map(|subset| principal_axis(&moments[subset].scatter)) }
     }
 
     /// Scatter off the axes of the subsets, which stays as error, and scatter along them.

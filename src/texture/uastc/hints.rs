@@ -9,16 +9,8 @@ use super::pack::{Bits, SolidEtc1};
 use super::tables::Mode;
 
 /// ETC1 intensity tables: the smaller and the larger offset, of either sign.
-pub(super) const ETC1_OFFSETS: [[i32; 2]; 8] = [
-    [2, 8],
-    [5, 17],
-    [9, 29],
-    [13, 42],
-    [18, 60],
-    [24, 80],
-    [33, 106],
-    [47, 183],
-];
+pub(super) const ETC1_OFFSETS: [[i32; 2]; 8] =
+    [[2, 8], [5, 17], [9, 29], [13, 42], [18, 60], [24, 80], [33, 106], [47, 183]];
 
 /// Hints of a block that is not solid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -59,27 +51,17 @@ impl Hints {
 
     /// Hints for a block of `mode` made from `texels`.
     pub fn of(texels: &[[u8; 4]; 16], mode: &Mode) -> Self {
-        let mut hints = Self {
-            bc1_selectors: mode.subsets == 1 && mode.planes == 1,
-            eac: eac(texels),
-            ..Self::default()
-        };
+        let mut hints =
+            Self { bc1_selectors: mode.subsets == 1 && mode.planes == 1, eac: eac(texels), ..Self::default() };
         let quadrants = quadrant_sums(texels);
-        let side = [
-            add(quadrants[0], quadrants[2]),
-            add(quadrants[1], quadrants[3]),
-        ];
-        let stacked = [
-            add(quadrants[0], quadrants[1]),
-            add(quadrants[2], quadrants[3]),
-        ];
+        let side = [add(quadrants[0], quadrants[2]), add(quadrants[1], quadrants[3])];
+        let stacked = [add(quadrants[0], quadrants[1]), add(quadrants[2], quadrants[3])];
         // The split whose halves differ more leaves less variance inside them.
         hints.flip = distance(stacked) > distance(side);
         let sums = if hints.flip { stacked } else { side };
 
         let bases = sums.map(|sum| sum.map(|s| (s * 31 + 1020) / 2040));
-        hints.differential =
-            (0..3).all(|c| (-4..=3).contains(&(bases[1][c] as i32 - bases[0][c] as i32)));
+        hints.differential = (0..3).all(|c| (-4..=3).contains(&(bases[1][c] as i32 - bases[0][c] as i32)));
         hints.bias = if hints.differential {
             bias_for(bases, 31)
         } else {
@@ -142,14 +124,8 @@ const fn biases() -> [[i8; 6]; 32] {
     // As a rule the digits of the bias to base 3, less 1, hold for both subblocks.
     let mut bias = 0;
     while bias < 32 {
-        let digits = [
-            (bias % 3) as i8 - 1,
-            (bias / 3 % 3) as i8 - 1,
-            (bias / 9 % 3) as i8 - 1,
-        ];
-        all[bias] = [
-            digits[0], digits[1], digits[2], digits[0], digits[1], digits[2],
-        ];
+        let digits = [(bias % 3) as i8 - 1, (bias / 3 % 3) as i8 - 1, (bias / 9 % 3) as i8 - 1];
+        all[bias] = [digits[0], digits[1], digits[2], digits[0], digits[1], digits[2]];
         bias += 1;
     }
     // These move one channel of one subblock.
@@ -211,9 +187,11 @@ const fn least_biases() -> [u8; 729] {
 
 /// The bias that keeps `bases` (0..=`limit`) nearest to themselves.
 fn bias_for(bases: [[u32; 3]; 2], limit: u32) -> u8 {
-    let state = bases.iter().flatten().rev().fold(0, |state, &base| {
-        state * 3 + usize::from(base > 0) + usize::from(base == limit)
-    });
+    let state = bases
+        .iter()
+        .flatten()
+        .rev()
+        .fold(0, |state, &base| state * 3 + usize::from(base > 0) + usize::from(base == limit));
     LEAST_BIAS[state]
 }
 
@@ -229,12 +207,7 @@ fn eac(texels: &[[u8; 4]; 16]) -> u8 {
 
 /// The ETC1 block nearest to one colour, among those with 5-bit bases and the two gentlest tables.
 pub(super) fn solid_etc1(colour: [u8; 4]) -> SolidEtc1 {
-    let mut best = SolidEtc1 {
-        five_bits: true,
-        table: 0,
-        selector: 0,
-        base: [0; 3],
-    };
+    let mut best = SolidEtc1 { five_bits: true, table: 0, selector: 0, base: [0; 3] };
     let mut least = i32::MAX;
     for (table, [small, large]) in ETC1_OFFSETS[..2].iter().enumerate() {
         for (selector, offset) in [-large, -small, *small, *large].into_iter().enumerate() {
@@ -249,12 +222,7 @@ pub(super) fn solid_etc1(colour: [u8; 4]) -> SolidEtc1 {
             }
             if error < least {
                 least = error;
-                best = SolidEtc1 {
-                    five_bits: true,
-                    table: table as u8,
-                    selector: selector as u8,
-                    base,
-                };
+                best = SolidEtc1 { five_bits: true, table: table as u8, selector: selector as u8, base };
             }
         }
     }

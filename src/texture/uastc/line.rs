@@ -4,10 +4,7 @@
 //! weights, weights from projection on the endpoints, in turns. Only +, -, *, / of `f32` in a
 //! written order: the same bits on every machine.
 
-#![expect(
-    clippy::needless_range_loop,
-    reason = "lane loops read several arrays at one index"
-)]
+#![expect(clippy::needless_range_loop, reason = "lane loops read several arrays at one index")]
 
 use super::moments::{Lane, Moments, sum};
 use super::tables::Range;
@@ -60,11 +57,7 @@ fn decode(low: f32, step: f32, weight: f32) -> f32 {
 
 /// Nearest weight indices of `texels` on the line from `low` to `high`.
 #[inline(always)]
-fn project<const N: usize, const BITS: u32>(
-    texels: &[Lane; N],
-    low: &[f32; N],
-    high: &[f32; N],
-) -> [i32; 16] {
+fn project<const N: usize, const BITS: u32>(texels: &[Lane; N], low: &[f32; N], high: &[f32; N]) -> [i32; 16] {
     let last = ((1 << BITS) - 1) as f32;
     let mut step = [0.0; N];
     let mut length = 0.0;
@@ -90,20 +83,11 @@ fn project<const N: usize, const BITS: u32>(
 /// Endpoints that best explain `texels` under fixed weights (0..=64), by linear regression;
 /// the mean twice where all weights are equal.
 #[inline(always)]
-fn regress<const N: usize>(
-    texels: &[Lane; N],
-    subset: &Lane,
-    m: &Moments<N>,
-    weights: &Lane,
-) -> ([f32; N], [f32; N]) {
+fn regress<const N: usize>(texels: &[Lane; N], subset: &Lane, m: &Moments<N>, weights: &Lane) -> ([f32; N], [f32; N]) {
     let w = sum(|i| subset[i] * weights[i]);
     let ww = sum(|i| subset[i] * weights[i] * weights[i]);
     let determinant = m.count * ww - w * w;
-    let scale = if determinant > 0.0 {
-        1.0 / determinant
-    } else {
-        0.0
-    };
+    let scale = if determinant > 0.0 { 1.0 / determinant } else { 0.0 };
     let share = 1.0 / m.count;
     let (mut low, mut high) = ([0.0; N], [0.0; N]);
     for c in 0..N {
@@ -149,12 +133,7 @@ pub(super) fn fit<const N: usize, const BITS: u32>(
 
 /// First weights: the texels' places between the ends of their projection on `axis`.
 #[inline(always)]
-fn spread<const N: usize, const BITS: u32>(
-    texels: &[Lane; N],
-    subset: &Lane,
-    m: &Moments<N>,
-    axis: &[f32; N],
-) -> Lane {
+fn spread<const N: usize, const BITS: u32>(texels: &[Lane; N], subset: &Lane, m: &Moments<N>, axis: &[f32; N]) -> Lane {
     let mut centre = 0.0;
     for c in 0..N {
         centre += axis[c] * m.sums[c];
@@ -178,11 +157,7 @@ fn spread<const N: usize, const BITS: u32>(
     let least = min(min(least[0], least[1]), min(least[2], least[3]));
     let most = max(max(most[0], most[1]), max(most[2], most[3]));
     let last = ((1 << BITS) - 1) as f32;
-    let scale = if most > least {
-        last / (most - least)
-    } else {
-        0.0
-    };
+    let scale = if most > least { last / (most - least) } else { 0.0 };
     let mut weights = [0.0; 16];
     for i in 0..16 {
         let index = ((along[i] - least) * scale + ROUND).to_bits() & 31;
@@ -216,12 +191,7 @@ pub(super) fn settle<const N: usize, const BITS: u32>(
             errors[i] += d * d;
         }
     }
-    let mut line = Line {
-        low,
-        high,
-        weights: [0; 16],
-        error: sum(|i| subset[i] * errors[i]),
-    };
+    let mut line = Line { low, high, weights: [0; 16], error: sum(|i| subset[i] * errors[i]) };
     for i in 0..16 {
         line.weights[i] = indices[i] as u8;
     }

@@ -3,10 +3,7 @@
 //! Sums of texels and of their products are whole numbers below 2^24, hence exact in `f32`
 //! whatever the order.
 
-#![expect(
-    clippy::needless_range_loop,
-    reason = "lane loops read several arrays at one index"
-)]
+#![expect(clippy::needless_range_loop, reason = "lane loops read several arrays at one index")]
 
 /// One value per texel of a block, row 0 first.
 pub(super) type Lane = [f32; 16];
@@ -37,11 +34,7 @@ pub(super) fn sum(v: impl Fn(usize) -> f32) -> f32 {
 /// Moments of the texels in `subset` (1 for a member, 0 for the rest), which has a member.
 #[inline(always)]
 pub(super) fn moments<const N: usize>(texels: &[Lane; N], subset: &Lane) -> Moments<N> {
-    let mut m = Moments {
-        count: sum(|i| subset[i]),
-        sums: [0.0; N],
-        scatter: [[0.0; N]; N],
-    };
+    let mut m = Moments { count: sum(|i| subset[i]), sums: [0.0; N], scatter: [[0.0; N]; N] };
     let share = 1.0 / m.count;
     for a in 0..N {
         m.sums[a] = sum(|i| subset[i] * texels[a][i]);
@@ -104,10 +97,7 @@ pub(super) fn scatter_along<const N: usize>(scatter: &[[f32; N]; N], axis: &[f32
 }
 
 /// Moments of some of the channels.
-pub(super) fn part<const N: usize, const M: usize>(
-    m: &Moments<N>,
-    channels: [usize; M],
-) -> Moments<M> {
+pub(super) fn part<const N: usize, const M: usize>(m: &Moments<N>, channels: [usize; M]) -> Moments<M> {
     Moments {
         count: m.count,
         sums: channels.map(|c| m.sums[c]),

@@ -25,11 +25,7 @@ pub(super) struct Block {
 impl Block {
     /// The subset of every texel, bit i for texel i.
     fn subset_bits(&self) -> u16 {
-        if self.mode.subsets == 2 {
-            PATTERNS[self.pattern]
-        } else {
-            0
-        }
+        if self.mode.subsets == 2 { PATTERNS[self.pattern] } else { 0 }
     }
 
     /// The plane that channel `c` takes its weights from.
@@ -81,9 +77,7 @@ impl Block {
     }
 
     fn write_endpoints(&self, out: &mut Bits) {
-        let Range {
-            bits, base, code, ..
-        } = self.mode.range;
+        let Range { bits, base, code, .. } = self.mode.range;
         let mut codes = [0; 16];
         let mut count = 0;
         for subset in &self.endpoints[..self.mode.subsets] {
@@ -143,16 +137,9 @@ impl Block {
 
 /// Eight weights of `width` bits in a row, from eight bytes.
 fn close_up(weights: &[u8], mut width: u32) -> u64 {
-    let mut word = weights
-        .iter()
-        .rev()
-        .fold(0, |word, &weight| word << 8 | u64::from(weight));
+    let mut word = weights.iter().rev().fold(0, |word, &weight| word << 8 | u64::from(weight));
     // Odd lanes move down to even ones; lanes double three times.
-    for (lane, ones) in [
-        (8, 0x0001_0001_0001_0001),
-        (16, 0x0000_0001_0000_0001),
-        (32, 1),
-    ] {
+    for (lane, ones) in [(8, 0x0001_0001_0001_0001), (16, 0x0000_0001_0000_0001), (32, 1)] {
         let even = ((1 << width) - 1) * ones;
         word = (word & even) | (word >> (lane - width) & (even << width));
         width *= 2;

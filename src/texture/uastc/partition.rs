@@ -1,9 +1,6 @@
 //! Which of the two-subset patterns suit a block.
 
-#![expect(
-    clippy::needless_range_loop,
-    reason = "lane loops read several arrays at one index"
-)]
+#![expect(clippy::needless_range_loop, reason = "lane loops read several arrays at one index")]
 
 use super::moments::{Lane, Moments, principal_axis, scatter_along};
 use super::tables::PATTERNS;
@@ -64,11 +61,7 @@ pub(super) fn likely_patterns<const N: usize, const K: usize>(
 #[inline(always)]
 fn unit<const N: usize>(axis: &[f32; N]) -> [f32; N] {
     let length: f32 = axis.iter().map(|a| a * a).sum();
-    let scale = if length > 0.0 {
-        1.0 / length.sqrt()
-    } else {
-        0.0
-    };
+    let scale = if length > 0.0 { 1.0 / length.sqrt() } else { 0.0 };
     axis.map(|a| a * scale)
 }
 

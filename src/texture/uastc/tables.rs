@@ -23,23 +23,11 @@ pub(super) struct Mode {
 }
 
 const fn rgb(code: (u8, u8), weight_bits: u32, range: &'static Range) -> Mode {
-    Mode {
-        code,
-        channels: 3,
-        subsets: 1,
-        planes: 1,
-        weight_bits,
-        range,
-        full_hints: true,
-    }
+    Mode { code, channels: 3, subsets: 1, planes: 1, weight_bits, range, full_hints: true }
 }
 
 const fn rgba(code: (u8, u8), weight_bits: u32, range: &'static Range, full_hints: bool) -> Mode {
-    Mode {
-        channels: 4,
-        full_hints,
-        ..rgb(code, weight_bits, range)
-    }
+    Mode { channels: 4, full_hints, ..rgb(code, weight_bits, range) }
 }
 
 /// Mode 0: RGB, 16 weights.
@@ -47,34 +35,19 @@ pub(super) static MODE_0: Mode = rgb((0x1, 4), 4, &RANGE_192);
 /// Mode 1: RGB, 4 weights, exact endpoints.
 pub(super) static MODE_1: Mode = rgb((0x35, 6), 2, &RANGE_256);
 /// Mode 2: RGB, two subsets of 8 weights.
-pub(super) static MODE_2: Mode = Mode {
-    subsets: 2,
-    ..rgb((0x1d, 5), 3, &RANGE_16)
-};
+pub(super) static MODE_2: Mode = Mode { subsets: 2, ..rgb((0x1d, 5), 3, &RANGE_16) };
 /// Mode 4: RGB, two subsets of 4 weights.
-pub(super) static MODE_4: Mode = Mode {
-    subsets: 2,
-    ..rgb((0x13, 5), 2, &RANGE_40)
-};
+pub(super) static MODE_4: Mode = Mode { subsets: 2, ..rgb((0x13, 5), 2, &RANGE_40) };
 /// Mode 5: RGB, 8 weights, exact endpoints.
 pub(super) static MODE_5: Mode = rgb((0xb, 5), 3, &RANGE_256);
 /// Mode 6: RGB, two planes of 4 weights.
-pub(super) static MODE_6: Mode = Mode {
-    planes: 2,
-    ..rgb((0x1b, 5), 2, &RANGE_160)
-};
+pub(super) static MODE_6: Mode = Mode { planes: 2, ..rgb((0x1b, 5), 2, &RANGE_160) };
 /// Mode 9: RGBA, two subsets of 4 weights.
-pub(super) static MODE_9: Mode = Mode {
-    subsets: 2,
-    ..rgba((0xf, 5), 2, &RANGE_16, true)
-};
+pub(super) static MODE_9: Mode = Mode { subsets: 2, ..rgba((0xf, 5), 2, &RANGE_16, true) };
 /// Mode 10: RGBA, 16 weights.
 pub(super) static MODE_10: Mode = rgba((0x2, 3), 4, &RANGE_48, false);
 /// Mode 11: RGBA, two planes of 4 weights.
-pub(super) static MODE_11: Mode = Mode {
-    planes: 2,
-    ..rgba((0x0, 2), 2, &RANGE_48, false)
-};
+pub(super) static MODE_11: Mode = Mode { planes: 2, ..rgba((0x0, 2), 2, &RANGE_48, false) };
 /// Mode 12: RGBA, 8 weights.
 pub(super) static MODE_12: Mode = rgba((0x6, 3), 3, &RANGE_192, false);
 /// Mode 14: RGBA, 4 weights, exact endpoints.
@@ -107,12 +80,7 @@ static RANGE_256: Range = Range::new(8, 1);
 
 impl Range {
     const fn new(bits: u32, base: u32) -> Self {
-        let mut range = Self {
-            bits,
-            base,
-            code: [0; 256],
-            level: [0; 256],
-        };
+        let mut range = Self { bits, base, code: [0; 256], level: [0; 256] };
         let mut target = 0;
         while target < 256 {
             let mut best = u32::MAX;
@@ -149,11 +117,7 @@ const fn unquantize(code: u32, bits: u32, base: u32) -> u32 {
     let low = code & ((1 << bits) - 1);
     if base == 1 {
         // Bit replication; the ranges here have 4 or more bits.
-        return if bits == 8 {
-            low
-        } else {
-            (low << (8 - bits)) | (low >> (2 * bits - 8))
-        };
+        return if bits == 8 { low } else { (low << (8 - bits)) | (low >> (2 * bits - 8)) };
     }
     // Names as in the specification: a is bit 0 spread over nine bits, b the scattered upper
     // bits, c the step of one trit or quint d.
@@ -173,7 +137,7 @@ const fn unquantize(code: u32, bits: u32, base: u32) -> u32 {
 /// The two-subset patterns that ASTC and BC7 share, in the order of the format's pattern index:
 /// bit i is the subset of texel i, row 0 first.
 pub(super) static PATTERNS: [u16; 30] = [
-    0xcccc, 0x8888, 0x1111, 0xecc8, 0x377f, 0xfeec, 0x0137, 0x137f, 0xc800, 0x0013, 0xfe80, 0x17ff,
-    0x0017, 0x00ff, 0xfff0, 0x0fff, 0xff71, 0x8eff, 0x08ce, 0x008c, 0x7310, 0xceff, 0x7331, 0x088c,
-    0xceef, 0x6666, 0xf00f, 0x5555, 0x0f0f, 0x36c9,
+    0xcccc, 0x8888, 0x1111, 0xecc8, 0x377f, 0xfeec, 0x0137, 0x137f, 0xc800, 0x0013, 0xfe80, 0x17ff, 0x0017, 0x00ff,
+    0xfff0, 0x0fff, 0xff71, 0x8eff, 0x08ce, 0x008c, 0x7310, 0xceff, 0x7331, 0x088c, 0xceef, 0x6666, 0xf00f, 0x5555,
+    0x0f0f, 0x36c9,
 ];

@@ -32,14 +32,8 @@ fn every_mode<const N: usize>(texels: &Texels) -> Vec<(u8, Block)> {
                 blocks.push((6, block));
             }
             for pattern in 0..PATTERNS.len() {
-                blocks.push((
-                    2,
-                    two_lines::<N, 3>(&lanes, &Split::new(&lanes, pattern), &MODE_2, rounds),
-                ));
-                blocks.push((
-                    4,
-                    two_lines::<N, 2>(&lanes, &Split::new(&lanes, pattern), &MODE_4, rounds),
-                ));
+                blocks.push((2, two_lines::<N, 3>(&lanes, &Split::new(&lanes, pattern), &MODE_2, rounds)));
+                blocks.push((4, two_lines::<N, 2>(&lanes, &Split::new(&lanes, pattern), &MODE_4, rounds)));
             }
         } else {
             blocks.push((10, one_line::<N, 4>(&lanes, &all, &axis, &MODE_10, rounds)));
@@ -50,10 +44,7 @@ fn every_mode<const N: usize>(texels: &Texels) -> Vec<(u8, Block)> {
                 blocks.push((11, block));
             }
             for pattern in 0..PATTERNS.len() {
-                blocks.push((
-                    9,
-                    two_lines::<N, 2>(&lanes, &Split::new(&lanes, pattern), &MODE_9, rounds),
-                ));
+                blocks.push((9, two_lines::<N, 2>(&lanes, &Split::new(&lanes, pattern), &MODE_9, rounds)));
             }
         }
     }
@@ -98,11 +89,7 @@ fn endpoint_range(mode: &Mode) -> u32 {
 
 #[test]
 fn every_mode_decodes_as_predicted() {
-    let hints = Hints {
-        bias: 13,
-        eac: 0x1b,
-        ..Hints::default()
-    };
+    let hints = Hints { bias: 13, eac: 0x1b, ..Hints::default() };
     for texels in all_kinds() {
         let blocks = [every_mode::<3>(&texels), every_mode::<4>(&texels)];
         for (number, block) in blocks.into_iter().flatten() {
@@ -119,13 +106,9 @@ fn every_mode_decodes_as_predicted() {
 
 #[test]
 fn ranges_and_patterns_are_the_format_s() {
-    for mode in [
-        &MODE_0, &MODE_2, &MODE_4, &MODE_5, &MODE_6, &MODE_10, &MODE_18,
-    ] {
+    for mode in [&MODE_0, &MODE_2, &MODE_4, &MODE_5, &MODE_6, &MODE_10, &MODE_18] {
         let index = endpoint_range(mode);
-        let levels: Vec<u32> = (0..astc_get_levels(index))
-            .map(|code| unquant_astc_endpoint_val(code, index))
-            .collect();
+        let levels: Vec<u32> = (0..astc_get_levels(index)).map(|code| unquant_astc_endpoint_val(code, index)).collect();
         for target in 0..256u32 {
             let code = usize::from(mode.range.code[target as usize]);
             let level = u32::from(mode.range.level[target as usize]);

@@ -36,10 +36,8 @@ fn transcoded(block: &[u8; BLOCK_BYTES]) -> [Texels; 6] {
 
 /// PSNR over RGB of each of [`TARGETS`].
 fn ratios(sources: &[Texels], effort: Effort) -> [f64; 6] {
-    let blocks: Vec<[Texels; 6]> = sources
-        .iter()
-        .map(|texels| transcoded(&encode_block(texels, Channels::Rgb, effort)))
-        .collect();
+    let blocks: Vec<[Texels; 6]> =
+        sources.iter().map(|texels| transcoded(&encode_block(texels, Channels::Rgb, effort))).collect();
     std::array::from_fn(|target| {
         let texels: Vec<Texels> = blocks.iter().map(|b| b[target]).collect();
         psnr(sources, &texels)
@@ -84,10 +82,7 @@ fn alpha_stays_near() {
                 }
                 for (a, b) in decoded(&block).iter().zip(result) {
                     let off = a[3].abs_diff(b[3]);
-                    assert!(
-                        off <= 2 + range / 8,
-                        "{target}: alpha off by {off} in {range}"
-                    );
+                    assert!(off <= 2 + range / 8, "{target}: alpha off by {off} in {range}");
                 }
             }
         }

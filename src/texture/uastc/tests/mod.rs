@@ -34,26 +34,17 @@ impl Random {
 
 /// What the reference transcoder makes of a block.
 pub(super) fn decoded(block: &[u8; BLOCK_BYTES]) -> Texels {
-    unpack_uastc(block, false)
-        .expect("a block of a known mode")
-        .map(|texel| texel.c)
+    unpack_uastc(block, false).expect("a block of a known mode").map(|texel| texel.c)
 }
 
 /// Sum of squared differences over the first `channels` channels.
 pub(super) fn squared_error(a: &Texels, b: &Texels, channels: usize) -> u32 {
-    a.iter()
-        .zip(b)
-        .flat_map(|(a, b)| (0..channels).map(move |c| u32::from(a[c].abs_diff(b[c])).pow(2)))
-        .sum()
+    a.iter().zip(b).flat_map(|(a, b)| (0..channels).map(move |c| u32::from(a[c].abs_diff(b[c])).pow(2))).sum()
 }
 
 /// The same for peak signal-to-noise ratios in dB, over RGB.
 pub(super) fn psnr(a: &[Texels], b: &[Texels]) -> f64 {
-    let error: f64 = a
-        .iter()
-        .zip(b)
-        .map(|(a, b)| f64::from(squared_error(a, b, 3)))
-        .sum();
+    let error: f64 = a.iter().zip(b).map(|(a, b)| f64::from(squared_error(a, b, 3))).sum();
     10.0 * (65025.0 * 48.0 * a.len() as f64 / error).log10()
 }
 
@@ -88,20 +79,8 @@ pub(super) fn all_kinds() -> Vec<Texels> {
     let mut blocks = vec![
         // Extremes, checkers, edges.
         std::array::from_fn(|i| if i % 2 == 0 { [0; 4] } else { [255; 4] }),
-        std::array::from_fn(|i| {
-            if i < 8 {
-                [255, 0, 0, 255]
-            } else {
-                [0, 0, 255, 0]
-            }
-        }),
-        std::array::from_fn(|i| {
-            if i == 0 {
-                [255, 255, 255, 0]
-            } else {
-                [0, 0, 0, 255]
-            }
-        }),
+        std::array::from_fn(|i| if i < 8 { [255, 0, 0, 255] } else { [0, 0, 255, 0] }),
+        std::array::from_fn(|i| if i == 0 { [255, 255, 255, 0] } else { [0, 0, 0, 255] }),
         std::array::from_fn(|i| [[0, 255, 0, 128], [1, 254, 1, 127]][i / 3 % 2]),
     ];
     for channel in 0..4 {
@@ -109,11 +88,7 @@ pub(super) fn all_kinds() -> Vec<Texels> {
         for rising in [true, false] {
             blocks.push(std::array::from_fn(|i| {
                 let mut texel = [128, 7, 255, 255];
-                texel[channel] = if rising {
-                    i as u8 * 17
-                } else {
-                    255 - i as u8 * 11
-                };
+                texel[channel] = if rising { i as u8 * 17 } else { 255 - i as u8 * 11 };
                 texel
             }));
         }
@@ -129,12 +104,9 @@ pub(super) fn all_kinds() -> Vec<Texels> {
             let base: [u8; 4] = std::array::from_fn(|_| random.byte());
             let other: [u8; 4] = std::array::from_fn(|_| random.byte());
             let edge = random.next() as u16;
-            let mut noise =
-                |colour: [u8; 4]| colour.map(|v| v.saturating_add((random.next() % spread) as u8));
+            let mut noise = |colour: [u8; 4]| colour.map(|v| v.saturating_add((random.next() % spread) as u8));
             blocks.push(std::array::from_fn(|_| noise(base)));
-            blocks.push(std::array::from_fn(|i| {
-                noise(if edge >> i & 1 == 1 { other } else { base })
-            }));
+            blocks.push(std::array::from_fn(|i| noise(if edge >> i & 1 == 1 { other } else { base })));
             // A gradient across the block, alpha included.
             blocks.push(std::array::from_fn(|i| {
                 std::array::from_fn(|c| {

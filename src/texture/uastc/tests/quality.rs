@@ -4,18 +4,15 @@ use super::super::encode_block;
 use super::*;
 
 fn ratio(sources: &[Texels], effort: Effort) -> f64 {
-    let blocks: Vec<Texels> = sources
-        .iter()
-        .map(|texels| decoded(&encode_block(texels, Channels::Rgb, effort)))
-        .collect();
+    let blocks: Vec<Texels> =
+        sources.iter().map(|texels| decoded(&encode_block(texels, Channels::Rgb, effort))).collect();
     psnr(sources, &blocks)
 }
 
 #[test]
 fn normals_keep_their_ratio() {
     // From smooth to white noise; 0.3 dB below what was measured.
-    for (noise, fast_floor, best_floor) in [(0.0, 46.1, 46.8), (0.1, 43.7, 44.3), (0.9, 29.6, 29.8)]
-    {
+    for (noise, fast_floor, best_floor) in [(0.0, 46.1, 46.8), (0.1, 43.7, 44.3), (0.9, 29.6, 29.8)] {
         let sources = normals(noise, 256);
         let (fast, best) = (ratio(&sources, Effort::Fast), ratio(&sources, Effort::Best));
         assert!(fast >= fast_floor, "noise {noise}: fast has {fast:.2} dB");
@@ -27,13 +24,8 @@ fn normals_keep_their_ratio() {
 fn best_is_never_worse_than_fast() {
     for texels in all_kinds() {
         for (channels, count) in [(Channels::Rgb, 3), (Channels::Rgba, 4)] {
-            let [fast, best] = EFFORTS.map(|effort| {
-                squared_error(
-                    &texels,
-                    &decoded(&encode_block(&texels, channels, effort)),
-                    count,
-                )
-            });
+            let [fast, best] =
+                EFFORTS.map(|effort| squared_error(&texels, &decoded(&encode_block(&texels, channels, effort)), count));
             assert!(best <= fast, "{best} over {fast} for {texels:?}");
         }
     }
