@@ -124,6 +124,8 @@ struct Assembly<'a> {
     digests: BTreeMap<ImageLocation, String>,
     textures: Vec<NewTexture>,
     ranges: Vec<Option<Range>>,
+    /// The BIN chunk that became a file.
+    bin: Option<(PathBuf, Vec<u8>)>,
     files: Vec<(PathBuf, Vec<u8>)>,
     unit_factors: Vec<String>,
     anisotropies: Vec<String>,
@@ -143,7 +145,8 @@ impl<'a> Assembly<'a> {
             digests: BTreeMap::new(),
             textures: Vec::new(),
             ranges: Vec::new(),
-            files: bin.into_iter().collect(),
+            bin,
+            files: Vec::new(),
             unit_factors: Vec::new(),
             anisotropies: Vec::new(),
             pyramids: Vec::new(),
@@ -276,6 +279,10 @@ impl<'a> Assembly<'a> {
         }
         if self.settings.glb {
             container::embed_images(&mut self.document, self.source)?;
+        }
+        if let Some((path, mut bin)) = self.bin {
+            container::trim_views(self.document.json_mut(), &mut bin)?;
+            self.files.push((path, bin));
         }
         let mut copies = container::files(self.document.json())?;
         copies.retain(|copy| !self.files.iter().any(|(path, _)| path == copy));

@@ -98,6 +98,46 @@ pub fn to_glb(source: &Source<'_>) -> Result<Document, ContainerError> {
     Ok(Document::glb(json, Some(bin)))
 }
 
+/// Removes the last buffer views of `json` that nothing refers to any more, and their bytes from `bin`, which is buffer
+/// 0: what is left of images that were baked. Views before one in use stay, since unknown extensions may number them.
+pub fn trim_views(json: &mut Json, bin: &mut Vec<u8>) -> Result<(), ContainerError> {
+    let root: Value = json.value("")?.unwrap_or_default();
+    let views = root.get("bufferViews").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
+    let mut used = Vec::new();
+    for (key, value) in root.as_object().into_iter().flatten().filter(|(key, _)| *key != "bufferViews") {
+        view_references(key, value, &mut used);
+    }
+    let kept = used.into_iter().max().map_or(0, |last| last.saturating_add(1)).min(views.len());
+    if kept == views.len() || views.iter().any(|v| v.get("extensions").is_some()) {
+        return Ok(());
+    }
+    let end = |view: &Value| {
+        let number = |key: &str| view.get(key).and_then(Value::as_u64).unwrap_or(0);
+        if number("buffer") == 0 { number("byteOffset").saturating_add(number("byteLength")) } else { 0 }
+    };
+    let length = views[..kept].iter().map(end).max().unwrap_or(0);
+    let length = usize::try_from(length).map_or(bin.len(), |length| length.min(bin.len()));
+    if kept == 0 || length == 0 {
+        return Ok(());
+    }
+    json.retain("/bufferViews", |index| index < kept)?;
+    json.set("/buffers/0/byteLength", &length)?;
+    bin.truncate(length);
+    Ok(())
+}
+
+/// Numbers of buffer views in `value`, which is the member `key` of some object: whatever has that name.
+fn view_references(key: &str, value: &Value, found: &mut Vec<usize>) {
+    match value {
+        Value::Object(members) => members.iter().for_each(|(key, member)| view_references(key, member, found)),
+        Value::Array(elements) => elements.iter().for_each(|element| view_references(key, element, found)),
+        _ if key == "bufferView" => {
+            found.extend(value.as_u64().map(|view| usize::try_from(view).unwrap_or(usize::MAX)));
+        }
+        _ => {}
+    }
+}
+
 /// Adds `bytes` to the BIN chunk of a .glb; returns the index of a buffer view of them.
 pub fn embed(document: &mut Document, bytes: &[u8]) -> Result<usize, ContainerError> {
     let (offset, length) = document.append_bin(bytes)?;
@@ -157,4 +197,45 @@ fn image_uris(json: &Json) -> Result<Vec<Option<String>>, JsonError> {
 fn buffer_uris(json: &Json) -> Result<Vec<Option<String>>, JsonError> {
     let buffers: Vec<Named> = json.read("/buffers")?.unwrap_or_default();
     Ok(buffers.into_iter().map(|b| b.uri).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn trimmed(json: &Value, length: usize) -> (Value, usize) {
+        let mut json = Json::parse(json.to_string().as_bytes()).unwrap();
+        let mut bin = vec![0; length];
+        trim_views(&mut json, &mut bin).unwrap();
+        (json.value("").unwrap().unwrap(), bin.len())
+    }
+
+    fn document(last_image: &Value) -> Value {
+        json!({
+            "accessors": [{ "bufferView": 0 }],
+            "images": [{ "uri": "new.png" }, last_image],
+            "buffers": [{ "byteLength": 300 }],
+            "bufferViews": [
+                { "buffer": 0, "byteLength": 100 },
+                { "buffer": 0, "byteOffset": 100, "byteLength": 120 },
+                { "buffer": 0, "byteOffset": 220, "byteLength": 80 },
+            ],
+        })
+    }
+
+    #[test]
+    fn views_of_replaced_images_go_with_their_bytes() {
+        let (json, length) = trimmed(&document(&json!({ "uri": "other.png" })), 300);
+        assert_eq!(json["bufferViews"].as_array().unwrap().len(), 1);
+        assert_eq!((&json["buffers"][0]["byteLength"], length), (&json!(100), 100));
+    }
+
+    #[test]
+    fn views_before_one_in_use_stay() {
+        let before = document(&json!({ "bufferView": 2 }));
+        assert_eq!(trimmed(&before, 300), (before, 300));
+        let mut compressed = document(&json!({ "uri": "other.png" }));
+        compressed["bufferViews"][0]["extensions"] = json!({ "EXT_meshopt_compression": { "buffer": 1 } });
+        assert_eq!(trimmed(&compressed, 300), (compressed, 300));
+    }
 }
