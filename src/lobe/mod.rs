@@ -5,6 +5,7 @@
 //! microfacet-based BRDFs", 2014, section 5.3).
 
 mod anisotropy;
+pub mod blinn_phong;
 mod distance;
 
 pub use anisotropy::Anisotropy;
