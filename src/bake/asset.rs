@@ -60,14 +60,26 @@ pub enum BakeError {
     },
 }
 
+/// A PNG, or why it cannot be encoded.
+type PngResult = Result<Vec<u8>, String>;
+
+/// A file to be written beside the document.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NewFile {
+    /// Relative to the document.
+    pub path: PathBuf,
+    /// Its content.
+    pub bytes: Vec<u8>,
+}
+
 /// A baked asset, ready to be written.
 pub struct Baked {
     /// The document.
     pub document: Vec<u8>,
     /// Which kind of document it is.
     pub container: Container,
-    /// New files, by their paths relative to the document.
-    pub files: Vec<(PathBuf, Vec<u8>)>,
+    /// New files.
+    pub files: Vec<NewFile>,
     /// Files that the document refers to and that did not change, by their paths relative to the document.
     pub copies: Vec<PathBuf>,
     /// What was done.
@@ -125,8 +137,8 @@ struct Assembly<'a> {
     textures: Vec<NewTexture>,
     ranges: Vec<Option<Range>>,
     /// The BIN chunk that became a file.
-    bin: Option<(PathBuf, Vec<u8>)>,
-    files: Vec<(PathBuf, Vec<u8>)>,
+    bin: Option<NewFile>,
+    files: Vec<NewFile>,
     unit_factors: Vec<String>,
     anisotropies: Vec<String>,
     pyramids: Vec<PyramidUse>,
@@ -162,7 +174,7 @@ impl<'a> Assembly<'a> {
         }
         // Compressing a large level is serial, so the textures of a job are compressed side by side.
         let effort = self.settings.effort;
-        let files: Vec<(Vec<u8>, Option<Result<Vec<u8>, String>>)> = output
+        let files: Vec<(Vec<u8>, Option<PngResult>)> = output
             .textures
             .par_iter()
             .zip(&keys)
@@ -187,12 +199,7 @@ impl<'a> Assembly<'a> {
         Ok(())
     }
 
-    fn add_texture(
-        &mut self,
-        texture: JobTexture,
-        ktx2: Vec<u8>,
-        png: Option<Result<Vec<u8>, String>>,
-    ) -> Result<(), BakeError> {
+    fn add_texture(&mut self, texture: JobTexture, ktx2: Vec<u8>, png: Option<PngResult>) -> Result<(), BakeError> {
         let path = self.names.unique(&stem(&texture), texture.content.name());
         let chain = &texture.chain;
         self.report.textures.push(TextureReport {
@@ -226,7 +233,7 @@ impl<'a> Assembly<'a> {
         }
         let path = format!("{path}.{extension}");
         let uri = encode_path(&path);
-        self.files.push((PathBuf::from(path), bytes));
+        self.files.push(NewFile { path: PathBuf::from(path), bytes });
         Ok(NewImage::File(uri))
     }
 
@@ -280,12 +287,12 @@ impl<'a> Assembly<'a> {
         if self.settings.glb {
             container::embed_images(&mut self.document, self.source)?;
         }
-        if let Some((path, mut bin)) = self.bin {
-            container::trim_views(self.document.json_mut(), &mut bin)?;
-            self.files.push((path, bin));
+        if let Some(mut bin) = self.bin {
+            container::trim_views(self.document.json_mut(), &mut bin.bytes)?;
+            self.files.push(bin);
         }
         let mut copies = container::files(self.document.json())?;
-        copies.retain(|copy| !self.files.iter().any(|(path, _)| path == copy));
+        copies.retain(|copy| !self.files.iter().any(|file| file.path == *copy));
         Ok(Baked {
             document: self.document.to_bytes()?,
             container: self.document.container(),

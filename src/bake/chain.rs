@@ -55,12 +55,11 @@ pub fn grid(target: Target, sizes: impl IntoIterator<Item = (u32, u32)>) -> (u32
     if target.format(3).is_block() { (width.next_multiple_of(4), height.next_multiple_of(4)) } else { (width, height) }
 }
 
-/// Encodes all levels. `row` writes row y of a level to a slice of values.
-pub fn encode_chain(
-    sizes: &[(u32, u32)],
-    encoding: Encoding,
-    row: &(dyn Fn(usize, u32, &mut [[f32; 4]]) + Sync),
-) -> Result<Chain, EncodeError> {
+/// Writes row y of a level to a slice of values: `(level, y, out)`.
+pub type LevelRow<'a> = dyn Fn(usize, u32, &mut [[f32; 4]]) + Sync + 'a;
+
+/// Encodes all levels.
+pub fn encode_chain(sizes: &[(u32, u32)], encoding: Encoding, row: &LevelRow<'_>) -> Result<Chain, EncodeError> {
     let encode_level = |(level, &(width, height)): (usize, &(u32, u32))| {
         let row = |y: u32, out: &mut [[f32; 4]]| row(level, y, out);
         encode(&Texels { width, height, row: &row }, encoding.format, encoding.effort)

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
+use super::asset::NewFile;
 use super::source::{Source, SourceError};
 use crate::gltf::document::{Container, Document, DocumentError};
 use crate::gltf::json::{Json, JsonError};
@@ -40,7 +41,7 @@ pub enum ContainerError {
 }
 
 /// The document as a .gltf. The BIN chunk of a .glb becomes a file of its own, which is returned with its path.
-pub fn to_gltf(source: &Source<'_>) -> Result<(Document, Option<(PathBuf, Vec<u8>)>), ContainerError> {
+pub fn to_gltf(source: &Source<'_>) -> Result<(Document, Option<NewFile>), ContainerError> {
     if source.document.container() == Container::Gltf {
         return Ok((source.document.clone(), None));
     }
@@ -52,7 +53,7 @@ pub fn to_gltf(source: &Source<'_>) -> Result<(Document, Option<(PathBuf, Vec<u8
     json.set("/buffers/0/uri", &encode_path(&path))?;
     let length: usize = json.read("/buffers/0/byteLength")?.unwrap_or(bin.len());
     let bytes = bin.get(..length).unwrap_or(bin).to_vec();
-    Ok((Document::gltf(json), Some((PathBuf::from(path), bytes))))
+    Ok((Document::gltf(json), Some(NewFile { path: PathBuf::from(path), bytes })))
 }
 
 /// The document as a .glb, with every buffer in its BIN chunk.
@@ -174,10 +175,10 @@ pub fn files(json: &Json) -> Result<Vec<PathBuf>, ContainerError> {
             let Some(uri) = uri else { continue };
             let parsed =
                 Uri::parse(uri).map_err(|error| ContainerError::Uri { pointer: format!("{array}[{index}]"), error })?;
-            if let Uri::Path(path) = parsed {
-                if !files.contains(&path) {
-                    files.push(path);
-                }
+            if let Uri::Path(path) = parsed
+                && !files.contains(&path)
+            {
+                files.push(path);
             }
         }
     }

@@ -19,7 +19,7 @@ pub mod report;
 mod settings;
 mod source;
 
-pub use asset::{BakeError, Baked, bake};
+pub use asset::{BakeError, Baked, NewFile, bake};
 pub use bare::{BareBake, BareTexture, OwnRoughness, bake_map};
 pub use chain::Chain;
 pub use extension::EXTENSION;

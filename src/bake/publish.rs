@@ -5,7 +5,7 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use super::asset::Baked;
+use super::asset::{Baked, NewFile};
 
 /// Why a file cannot be written.
 #[derive(Debug, thiserror::Error)]
@@ -56,7 +56,7 @@ pub fn publish(baked: &Baked, document: &Path, source: &Path) -> Result<u64, Pub
     for path in baked.copies.iter().map(|c| source_folder.join(c)).chain([source.to_owned()]) {
         sources.extend(fs::canonicalize(path));
     }
-    let outputs = baked.files.iter().map(|(path, _)| path).chain(&baked.copies).map(|p| folder.join(p));
+    let outputs = baked.files.iter().map(|f| &f.path).chain(&baked.copies).map(|p| folder.join(p));
     for path in outputs.chain([document.to_owned()]) {
         if fs::canonicalize(&path).is_ok_and(|p| sources.contains(&p)) {
             return Err(PublishError::OverSource { path });
@@ -68,7 +68,7 @@ pub fn publish(baked: &Baked, document: &Path, source: &Path) -> Result<u64, Pub
         let bytes = fs::read(&from).map_err(|error| PublishError::Copy { path: from, error })?;
         total += write_file(&folder.join(copy), &bytes)?;
     }
-    for (path, bytes) in &baked.files {
+    for NewFile { path, bytes } in &baked.files {
         total += write_file(&folder.join(path), bytes)?;
     }
     Ok(total + write_file(document, &baked.document)?)

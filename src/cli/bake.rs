@@ -143,11 +143,11 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
     if args.json {
         out.write_all(json.as_bytes())?;
     }
-    if let Some(path) = &args.report {
-        if let Err(error) = write_file(path, json.as_bytes()) {
-            writeln!(err, "error: {error}")?;
-            outcome = outcome.and(Outcome::Failed);
-        }
+    if let Some(path) = &args.report
+        && let Err(error) = write_file(path, json.as_bytes())
+    {
+        writeln!(err, "error: {error}")?;
+        outcome = outcome.and(Outcome::Failed);
     }
     Ok(outcome)
 }

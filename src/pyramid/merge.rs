@@ -27,7 +27,7 @@ impl Moments {
 
 impl Merge for Moments {
     /// m = sum w m_i, K = sum w (K_i + (m_i - m)(m_i - m)^T): the paper's recursion ("The roughness pyramid", last
-    /// formula) for any weights. Central moments throughout: E[x^2] - E[x]^2 cancels (test
+    /// formula) for any weights. Central moments throughout: `E[x^2] - E[x]^2` cancels (test
     /// `moment_subtraction_cancels_and_the_recursion_does_not`).
     #[inline]
     fn merge(weights: &[f32], parts: &[Self]) -> Self {

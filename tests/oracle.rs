@@ -1,0 +1,136 @@
+//! Decoded levels of a bake against a slow oracle in f64 that shares no code with it.
+
+use std::path::Path;
+
+use roughcast::bake::report::Content;
+use roughcast::bake::{Model, OwnRoughness, Relief, Settings, bake_map};
+use roughcast::map::{DecodeOptions, Image, NormalLayout, NormalMap, Samples, decode};
+use roughcast::texture::ktx2::Ktx2;
+use roughcast::texture::uastc::Effort;
+use roughcast::texture::{Target, ktx2};
+
+/// Brushed metal with a few dents: 128 x 128, all in integers so that no library decides on it.
+fn synthetic() -> Image {
+    let mut state = 1u32;
+    let mut random = || {
+        state = state.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
+        i32::from((state >> 24) as u8) - 128
+    };
+    let scratches: Vec<i32> = (0..128).map(|_| random() / 3).collect();
+    let texel = |i: i32| {
+        let (x, y) = (i % 128, i / 128);
+        let dent = if (x / 16 + y / 16) % 5 == 0 { 20 } else { 0 };
+        let (nx, ny) = (dent, scratches[y as usize] + random() / 16);
+        let nz = f64::from(127 * 127 - nx * nx - ny * ny).sqrt() as i32;
+        [nx, ny, nz].map(|n| (n + 128) as u8)
+    };
+    let samples = (0..128 * 128).flat_map(texel).collect();
+    Image { width: 128, height: 128, channels: 3, samples: Samples::U8(samples) }
+}
+
+/// `name` of `../shared/data/FlightHelmet`, when it is there.
+fn real(name: &str) -> Option<Image> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/FlightHelmet");
+    let file = std::fs::read(folder.join(format!("FlightHelmet_Materials_{name}.png"))).ok()?;
+    Some(decode(&file, &DecodeOptions::default()).unwrap())
+}
+
+/// What a texel of a level should hold: unit normal, then A' (uu, uv, vv).
+struct Expected {
+    normal: [f64; 3],
+    squared_alpha: [f64; 3],
+}
+
+/// Straight from the level-0 texels under the texel, for maps whose sides are powers of two.
+fn oracle(normals: &Image, roughness: Option<&Image>, factor: f64, c: f64, level: u32, x: u32, y: u32) -> Expected {
+    let side = 1 << level;
+    let texels: Vec<(u32, u32)> = (0..side * side).map(|i| (x * side + i % side, y * side + i / side)).collect();
+    let n = texels.len() as f64;
+    let slope = |&(x, y): &(u32, u32)| {
+        let [nx, ny, nz] = [0, 1, 2].map(|c| 2.0 * f64::from(normals.sample(x, y, c).unwrap()) - 1.0);
+        [-nx / nz, -ny / nz]
+    };
+    let slopes: Vec<[f64; 2]> = texels.iter().map(slope).collect();
+    let mean = [0, 1].map(|i| slopes.iter().map(|s| s[i]).sum::<f64>() / n);
+    let k = |i: usize, j: usize| slopes.iter().map(|s| (s[i] - mean[i]) * (s[j] - mean[j])).sum::<f64>() / n;
+    let own = |&(x, y): &(u32, u32)| {
+        let green = roughness.map_or(1.0, |r| f64::from(r.sample(x, y, 1).unwrap()));
+        (factor * green).powi(4)
+    };
+    let base = texels.iter().map(own).sum::<f64>() / n;
+    let length = (mean[0] * mean[0] + mean[1] * mean[1] + 1.0).sqrt();
+    Expected {
+        normal: [-mean[0] / length, -mean[1] / length, 1.0 / length],
+        squared_alpha: [base + 2.0 * c * k(0, 0), 2.0 * c * k(0, 1), base + 2.0 * c * k(1, 1)],
+    }
+}
+
+/// Largest and mean errors over the texels of a level.
+#[derive(Default)]
+struct Errors {
+    count: f64,
+    angle: f64,
+    alpha: f64,
+}
+
+/// Compares levels 0 to 6: mean angle between normals in degrees, mean difference of the two alphas (of A' projected on
+/// the baked axes).
+fn compare(normals: Image, roughness: Option<Image>, factor: f32, target: Target, bounds: (f64, f64)) {
+    let relief = Relief::Normals(NormalMap::new(normals.clone(), NormalLayout::Xyz, false).unwrap());
+    let settings = Settings { model: Model::Anisotropic, target, ..Settings::default() };
+    let own = OwnRoughness { image: roughness.clone(), factor };
+    let baked = bake_map(&relief, Some(&own), &settings).unwrap();
+    assert_eq!(baked.steep_texels, 0);
+    let contents: Vec<Content> = baked.textures.iter().map(|t| t.content).collect();
+    assert_eq!(contents, [Content::Normal, Content::Roughness, Content::Anisotropy]);
+    let files: Vec<Vec<u8>> = baked.textures.iter().map(|t| t.chain.to_ktx2(&[], Effort::Fast)).collect();
+    let c = f64::from(settings.distribution.correction());
+    for level in 0..=6 {
+        let [normal, surface, axes] =
+            [0, 1, 2].map(|t| ktx2::Ktx2::decode_level(&Ktx2::parse(&files[t]).unwrap(), level).unwrap());
+        let mut errors = Errors::default();
+        for i in 0..normal.width * normal.height {
+            let (x, y) = (i % normal.width, i / normal.width);
+            let expected = oracle(&normals, roughness.as_ref(), f64::from(factor), c, level, x, y);
+            let at = |image: &Image, c| f64::from(image.sample(x, y, c).unwrap());
+            let n = [0, 1, 2].map(|c| 2.0 * at(&normal, c) - 1.0);
+            let length = n.iter().map(|n| n * n).sum::<f64>().sqrt();
+            let cos = n.iter().zip(expected.normal).map(|(a, b)| a * b).sum::<f64>() / length;
+            let across = at(&surface, 1).powi(2);
+            let along = across + (1.0 - across) * at(&axes, 2).powi(2);
+            let d = [2.0 * at(&axes, 0) - 1.0, 2.0 * at(&axes, 1) - 1.0];
+            let length = (d[0] * d[0] + d[1] * d[1]).sqrt().max(1e-9);
+            let d = d.map(|d| d / length);
+            let [uu, uv, vv] = expected.squared_alpha;
+            let project = |[x, y]: [f64; 2]| (uu * x * x + 2.0 * uv * x * y + vv * y * y).max(0.0).sqrt().min(1.0);
+            errors.count += 1.0;
+            errors.angle += cos.min(1.0).acos().to_degrees();
+            errors.alpha += 0.5 * ((along - project(d)).abs() + (across - project([-d[1], d[0]])).abs());
+        }
+        let (angle, alpha) = (errors.angle / errors.count, errors.alpha / errors.count);
+        assert!(angle < bounds.0 && alpha < bounds.1, "level {level}: {angle:.3} degrees, alpha {alpha:.4}");
+    }
+}
+
+/// Half floats keep ten bits: nothing is left to blame but the mathematics.
+#[test]
+fn levels_match_the_oracle_in_floats() {
+    compare(synthetic(), None, 0.4, Target::Float, (0.05, 5e-4));
+}
+
+#[test]
+fn levels_match_the_oracle_in_uastc() {
+    compare(synthetic(), None, 0.4, Target::Basis, (0.9, 0.02));
+}
+
+#[test]
+fn levels_of_a_real_material_match_the_oracle() {
+    let (Some(normals), Some(roughness)) =
+        (real("GlassPlasticMat_Normal"), real("GlassPlasticMat_OcclusionRoughMetal"))
+    else {
+        println!("skipped: ../shared/data/FlightHelmet is not there");
+        return;
+    };
+    compare(normals.clone(), Some(roughness.clone()), 1.0, Target::Float, (0.05, 1e-3));
+    compare(normals, Some(roughness), 1.0, Target::Basis, (0.7, 0.015));
+}
