@@ -8,6 +8,7 @@ use serde_json::Value;
 
 use super::container::{self, ContainerError};
 use super::extension::{EXTENSION, Extension, RangedTexture};
+use super::geometry::Geometry;
 use super::job::{self, JobError, JobOutput, JobTexture, PyramidUse, describe};
 use super::names::Names;
 use super::plan::{PlanError, plan};
@@ -16,9 +17,7 @@ use super::pyramids::Range;
 use super::report::{AssetReport, TextureReport};
 use super::settings::{Form, Settings};
 use super::source::{Source, SourceError};
-use crate::bump::Frame;
 use crate::gltf::document::{Container, Document, DocumentError};
-use crate::gltf::geometry::layout;
 use crate::gltf::json::JsonError;
 use crate::gltf::material::{MaterialError, materials};
 use crate::gltf::rewrite::{NewImage, NewTexture, add_textures, declare};
@@ -96,25 +95,14 @@ pub fn bake(source: &Source<'_>, settings: &Settings, advance: &dyn Fn(f32)) -> 
     let materials = materials(&root).into_iter().collect::<Result<Vec<_>, _>>()?;
     // References that cannot be followed are an error before any work is done.
     container::files(source.document.json())?;
-    let buffers = if settings.frame == Frame::Unit { Vec::new() } else { buffers(&root, source)? };
-    let main_direction = match settings.frame {
-        Frame::MainDirection(m) => m,
-        _ => [0.0, 1.0, 0.0],
-    };
-    let plans = plan(&root, materials, settings, &|material, bumps| {
-        layout(&root, material, &bumps.mapping, main_direction, &|i| buffers.get(i).map(Vec::as_slice))
-    })?;
+    let geometry = Geometry::new(&root, source, settings)?;
+    let plans = plan(&root, materials, settings, &geometry)?;
     let mut assembly = Assembly::new(source, settings)?;
     for (done, plan) in plans.iter().enumerate() {
-        assembly.add(job::run(plan, source, settings)?)?;
+        assembly.add(job::run(plan, source, &geometry, settings)?)?;
         advance((done + 1) as f32 / plans.len() as f32);
     }
     if plans.is_empty() { untouched(source) } else { assembly.finish() }
-}
-
-fn buffers(root: &Value, source: &Source<'_>) -> Result<Vec<Vec<u8>>, SourceError> {
-    let count = root.get("buffers").and_then(Value::as_array).map_or(0, Vec::len);
-    (0..count).map(|index| source.buffer(index)).collect()
 }
 
 fn untouched(source: &Source<'_>) -> Result<Baked, BakeError> {

@@ -8,7 +8,6 @@ use super::pyramids::{Quantity, Range, Ranged, bake_quantity};
 use super::relief::Relief;
 use super::report::Content;
 use super::settings::{Model, Settings};
-use crate::bump::FrameTransform;
 use crate::choose::ModelLoss;
 use crate::map::{Image, Rgba};
 use crate::pyramid::{Area, Pyramid, Rows};
@@ -78,7 +77,7 @@ pub fn bake_map(relief: &Relief, own: Option<&OwnRoughness>, settings: &Settings
         };
         for (content, quantity) in [(Content::Offset, Quantity::Offset)].into_iter().chain(roughness) {
             let encoding = Encoding::of(settings, quantity.channels() as u32);
-            let Ranged { chain, range } = bake_quantity(&moments, FrameTransform::IDENTITY, quantity, encoding)?;
+            let Ranged { chain, range } = bake_quantity(&moments, quantity, encoding)?;
             textures.push(BareTexture { content, chain, range: Some(range) });
         }
     }

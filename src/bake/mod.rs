@@ -7,6 +7,7 @@ mod chain;
 mod container;
 mod extension;
 mod fold;
+mod geometry;
 mod job;
 mod names;
 mod normals;

@@ -2,6 +2,7 @@
 
 use serde_json::Value;
 
+use super::geometry::Geometry;
 use super::settings::Settings;
 use crate::bump::{Frame, Wrap};
 use crate::gltf::geometry::Layout;
@@ -76,12 +77,12 @@ pub struct PlanError {
     pub error: TextureError,
 }
 
-/// Groups the layers of `materials` by bump map, in the order of the file. `layout` measures a material's meshes.
+/// Groups the layers of `materials` by bump map, in the order of the file.
 pub fn plan(
     root: &Value,
     materials: Vec<Material>,
     settings: &Settings,
-    layout: &dyn Fn(usize, &TextureUse) -> Option<Layout>,
+    geometry: &Geometry<'_>,
 ) -> Result<Vec<ReliefPlan>, PlanError> {
     let mut reliefs: Vec<ReliefPlan> = Vec::new();
     for Material { index, name, layers } in materials {
@@ -92,8 +93,7 @@ pub fn plan(
             };
             let bumps = layer.bumps.texture().clone();
             let source = texture_source(root, bumps.texture).map_err(failed("normal or height texture"))?;
-            let needs_layout = settings.frame != Frame::Unit;
-            let layout = needs_layout.then(|| layout(index, &bumps)).flatten();
+            let layout = geometry.layout(index, &bumps.mapping);
             let mut notes = Vec::new();
             let (kind, slope_scale) = read_as(&layer.bumps, &source, settings, layout.as_ref(), &mut notes);
             let own = own_textures(root, &layer, &source).map_err(failed("roughness or anisotropy texture"))?;

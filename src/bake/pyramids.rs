@@ -4,7 +4,6 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::chain::{Chain, Encoding, encode_chain};
-use crate::bump::FrameTransform;
 use crate::pyramid::{Moments, Pyramid, Rows};
 use crate::roughness::{Factor, lambda_1};
 use crate::texture::EncodeError;
@@ -96,20 +95,14 @@ impl Quantity {
     }
 }
 
-/// The texture of one quantity over `moments`, read in the frame of `transform`. Integer formats use the smallest
-/// range that holds every level.
-pub fn bake_quantity<R>(
-    moments: &Pyramid<R>,
-    transform: FrameTransform,
-    quantity: Quantity,
-    encoding: Encoding,
-) -> Result<Ranged, EncodeError>
+/// The texture of one quantity over `moments`. Integer formats use the smallest range that holds every level.
+pub fn bake_quantity<R>(moments: &Pyramid<R>, quantity: Quantity, encoding: Encoding) -> Result<Ranged, EncodeError>
 where
     R: Rows<Texel = Moments>,
 {
     let values = |level: usize, y: u32, texels: &mut [Moments]| {
         moments.row(level, y, texels);
-        texels.iter().map(move |m| quantity.of(transform.apply(*m))).collect::<Vec<_>>()
+        texels.iter().map(move |m| quantity.of(*m)).collect::<Vec<_>>()
     };
     let channels = quantity.channels();
     let range = if encoding.format.is_normalised() {

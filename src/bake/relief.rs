@@ -1,6 +1,7 @@
 //! The bumps of a material: a normal map or a height map, read as rows of moments.
 
-use crate::bump::{HeightOffsets, NormalOffsets, Wrap};
+use crate::bump::{FrameTransform, HeightOffsets, NormalOffsets, Wrap};
+use crate::gltf::turn::TurnMap;
 use crate::map::{HeightMap, NormalMap};
 use crate::pyramid::{Moments, Rows};
 
@@ -52,6 +53,46 @@ impl Rows for Relief {
         match self {
             Self::Normals(map) => NormalOffsets::new(map).row(y, out),
             Self::Heights { map, slope_per_step, wrap } => HeightOffsets::new(map, *slope_per_step, *wrap).row(y, out),
+        }
+    }
+}
+
+/// How offsets become those of another frame.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Reading {
+    /// The same everywhere.
+    Uniform(FrameTransform),
+    /// Texel by texel, on the grid of the map.
+    PerTexel(TurnMap),
+}
+
+/// A relief in another frame.
+pub struct Framed<'a> {
+    /// In the tangent frame.
+    pub relief: &'a Relief,
+    /// To the other.
+    pub reading: &'a Reading,
+}
+
+impl Rows for Framed<'_> {
+    type Texel = Moments;
+
+    fn width(&self) -> u32 {
+        self.relief.width()
+    }
+
+    fn height(&self) -> u32 {
+        self.relief.height()
+    }
+
+    fn row(&self, y: u32, out: &mut [Moments]) {
+        self.relief.row(y, out);
+        match self.reading {
+            Reading::Uniform(transform) => out.iter_mut().for_each(|m| *m = transform.apply(*m)),
+            Reading::PerTexel(turns) => {
+                let row = &turns.transforms[y as usize * out.len()..][..out.len()];
+                out.iter_mut().zip(row).for_each(|(m, transform)| *m = transform.apply(*m));
+            }
         }
     }
 }

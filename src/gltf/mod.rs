@@ -6,4 +6,6 @@ pub mod json;
 pub mod material;
 pub mod rewrite;
 pub mod texture;
+mod triangles;
+pub mod turn;
 pub mod uri;

@@ -54,7 +54,8 @@ impl Job<'_> {
             };
             let too_wide = if folded.is_some() { fold.texels_above_one() } else { 0 };
             for user in &users {
-                let LayerOutcome { report, unit_factor, anisotropy, .. } = &mut output.layers[*user];
+                let LayerOutcome { report, model: chosen, unit_factor, anisotropy, .. } = &mut output.layers[*user];
+                *chosen = model;
                 report.model = Some(model);
                 report.loss = loss;
                 if let (Err(reason), true) = (&layer.own, self.settings.profile.is_portable()) {

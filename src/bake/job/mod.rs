@@ -7,6 +7,7 @@ mod pyramids;
 pub use error::JobError;
 
 use super::chain::{Chain, Encoding, grid};
+use super::geometry::Geometry;
 use super::normals::bake_normals;
 use super::plan::{LayerPlan, ReliefKind, ReliefPlan};
 use super::pyramids::Range;
@@ -46,6 +47,8 @@ pub struct JobTexture {
 pub struct LayerOutcome {
     /// For the report.
     pub report: LayerReport,
+    /// What is modelled of the lost bumps, also where the report says that nothing could be folded.
+    pub model: Model,
     /// JSON pointer of the roughness factor, where the texture now holds it.
     pub unit_factor: Option<String>,
     /// JSON pointer of `KHR_materials_anisotropy`, where it was written.
@@ -80,8 +83,13 @@ pub struct JobOutput {
 }
 
 /// Bakes `plan`.
-pub fn run(plan: &ReliefPlan, source: &Source<'_>, settings: &Settings) -> Result<JobOutput, JobError> {
-    let job = Job { plan, source, settings };
+pub fn run(
+    plan: &ReliefPlan,
+    source: &Source<'_>,
+    geometry: &Geometry<'_>,
+    settings: &Settings,
+) -> Result<JobOutput, JobError> {
+    let job = Job { plan, source, settings, geometry };
     let relief = job.relief()?;
     let mut output = JobOutput::default();
     let steep = relief.steep_texels();
@@ -102,6 +110,7 @@ pub fn run(plan: &ReliefPlan, source: &Source<'_>, settings: &Settings) -> Resul
                 loss: None,
                 notes,
             },
+            model: Model::None,
             unit_factor: None,
             anisotropy: None,
             pyramid: None,
@@ -123,7 +132,7 @@ pub fn run(plan: &ReliefPlan, source: &Source<'_>, settings: &Settings) -> Resul
     }
     job.folds(&relief, &moments, &mut output)?;
     if settings.profile.has_pyramid() {
-        job.pyramids(&moments, &mut output)?;
+        job.pyramids(&relief, &moments, &mut output)?;
     }
     Ok(output)
 }
@@ -135,6 +144,7 @@ struct Job<'a> {
     plan: &'a ReliefPlan,
     source: &'a Source<'a>,
     settings: &'a Settings,
+    geometry: &'a Geometry<'a>,
 }
 
 impl Job<'_> {

@@ -1,23 +1,29 @@
 //! The job's textures of the pyramid profile.
 
-use super::{Job, JobError, JobOutput, JobTexture, PyramidUse};
+use super::{Job, JobError, JobOutput, JobTexture, PyramidUse, ReliefPyramid};
 use crate::bake::chain::Encoding;
+use crate::bake::plan::LayerPlan;
 use crate::bake::pyramids::{Quantity, Ranged, bake_quantity};
+use crate::bake::relief::{Framed, Reading, Relief};
 use crate::bake::report::Content;
 use crate::bake::settings::Model;
-use crate::bump::{Frame, FrameTransform};
-use crate::gltf::geometry::Layout;
+use crate::bump::Frame;
+use crate::bump::FrameTransform;
 use crate::gltf::material::LayerKind;
-use crate::pyramid::{Moments, Pyramid, Rows};
+use crate::pyramid::{Area, Pyramid, Rows};
+
+/// Root mean square deviation of triangles up to which they count as turned alike: 6 degrees.
+const MAX_TURN_DEVIATION: f32 = 0.1;
 
 impl Job<'_> {
     /// Offsets and D or lambda_1 for the base layers.
-    pub(super) fn pyramids<R: Rows<Texel = Moments>>(
+    pub(super) fn pyramids(
         &self,
-        moments: &Pyramid<R>,
+        relief: &Relief,
+        moments: &ReliefPyramid<'_>,
         output: &mut JobOutput,
     ) -> Result<(), JobError> {
-        let mut made: Vec<(FrameTransform, Quantity, usize)> = Vec::new();
+        let mut made: Vec<(Reading, Quantity, usize)> = Vec::new();
         for (index, layer) in self.plan.layers.iter().enumerate() {
             let outcome = &mut output.layers[index];
             if layer.layer.kind == LayerKind::Clearcoat {
@@ -26,43 +32,25 @@ impl Job<'_> {
                 );
                 continue;
             }
-            let (frame, transform) = match self.frame(layer.layout.as_ref()) {
-                Ok(frame) => frame,
-                Err(reason) => {
-                    outcome.report.notes.push(reason);
-                    (Frame::Unit, FrameTransform::IDENTITY)
-                }
+            let (frame, reading) = self.reading(relief, layer).unwrap_or_else(|reason| {
+                outcome.report.notes.push(reason);
+                (Frame::Unit, Reading::Uniform(FrameTransform::IDENTITY))
+            });
+            let roughness = match outcome.model {
+                Model::Anisotropic => Some(Quantity::Factor),
+                Model::Isotropic => Some(Quantity::Lambda1),
+                Model::None | Model::Auto => None,
             };
-            let quantity = match outcome.report.model {
-                Some(Model::Anisotropic) => Some(Quantity::Factor),
-                Some(Model::Isotropic) => Some(Quantity::Lambda1),
-                _ => None,
-            };
-            let mut texture = |quantity: Quantity| -> Result<usize, JobError> {
-                if let Some((.., index)) = made.iter().find(|(t, q, _)| (*t, *q) == (transform, quantity)) {
+            let mut find_or_make = |quantity: Quantity| {
+                if let Some((.., index)) = made.iter().find(|(r, q, _)| *q == quantity && *r == reading) {
                     return Ok(*index);
                 }
-                let encoding = Encoding::of(self.settings, quantity.channels() as u32);
-                let Ranged { chain, range } = bake_quantity(moments, transform, quantity, encoding)?;
-                output.textures.push(JobTexture {
-                    content: match quantity {
-                        Quantity::Offset => Content::Offset,
-                        Quantity::Factor => Content::Factor,
-                        Quantity::Lambda1 => Content::Lambda1,
-                    },
-                    chain,
-                    range: Some(range),
-                    named_after: Ok(self.plan.source.location.clone()),
-                    sources: vec![self.plan.source.location.clone()],
-                    slots: Vec::new(),
-                    sampler: self.plan.source.sampler,
-                    model: Model::None,
-                });
-                made.push((transform, quantity, output.textures.len() - 1));
-                Ok(output.textures.len() - 1)
+                output.textures.push(self.pyramid(relief, moments, &reading, quantity)?);
+                made.push((reading.clone(), quantity, output.textures.len() - 1));
+                Ok::<_, JobError>(output.textures.len() - 1)
             };
-            let offset = texture(Quantity::Offset)?;
-            let roughness = quantity.map(&mut texture).transpose()?;
+            let offset = find_or_make(Quantity::Offset)?;
+            let roughness = roughness.map(find_or_make).transpose()?;
             output.layers[index].pyramid = Some(PyramidUse {
                 pointer: layer.pointer("extensions/ROUGHCAST_materials_roughness_pyramid"),
                 offset,
@@ -75,27 +63,67 @@ impl Job<'_> {
         Ok(())
     }
 
-    /// The frame asked for, or why this layer cannot have it.
-    fn frame(&self, layout: Option<&Layout>) -> Result<(Frame, FrameTransform), String> {
-        /// 6 degrees, root mean square.
-        const MAX_TURN_DEVIATION: f32 = 0.1;
+    fn pyramid(
+        &self,
+        relief: &Relief,
+        moments: &ReliefPyramid<'_>,
+        reading: &Reading,
+        quantity: Quantity,
+    ) -> Result<JobTexture, JobError> {
+        let encoding = Encoding::of(self.settings, quantity.channels() as u32);
+        let Ranged { chain, range } = if *reading == Reading::Uniform(FrameTransform::IDENTITY) {
+            bake_quantity(moments, quantity, encoding)?
+        } else {
+            let (width, height) = moments.sizes()[0];
+            let framed = Pyramid::new(Area::new(Framed { relief, reading }, width, height));
+            bake_quantity(&framed, quantity, encoding)?
+        };
+        let (content, model) = match quantity {
+            Quantity::Offset => (Content::Offset, Model::None),
+            Quantity::Factor => (Content::Factor, Model::Anisotropic),
+            Quantity::Lambda1 => (Content::Lambda1, Model::Isotropic),
+        };
+        Ok(JobTexture {
+            content,
+            chain,
+            range: Some(range),
+            named_after: Ok(self.plan.source.location.clone()),
+            sources: vec![self.plan.source.location.clone()],
+            slots: Vec::new(),
+            sampler: self.plan.source.sampler,
+            model,
+        })
+    }
+
+    /// How to read the bumps in the frame asked for, or why this layer cannot have it.
+    fn reading(&self, relief: &Relief, layer: &LayerPlan) -> Result<(Frame, Reading), String> {
         let frame = self.settings.frame;
+        let layout = layer.layout.as_ref();
         match (frame, layout) {
-            (Frame::Unit, _) => Ok((frame, FrameTransform::IDENTITY)),
+            (Frame::Unit, _) => Ok((frame, Reading::Uniform(FrameTransform::IDENTITY))),
             (_, None) => Err("no mesh shows how the texture lies on it: offsets are in the unit frame".to_owned()),
             (Frame::Natural, Some(layout)) => {
                 let [p_u, p_v] = layout.units_per_repeat;
-                Ok((frame, FrameTransform::natural(p_u, p_v)))
+                Ok((frame, Reading::Uniform(FrameTransform::natural(p_u, p_v))))
             }
             (Frame::MainDirection(_), Some(layout)) if layout.turn_deviation <= MAX_TURN_DEVIATION => {
                 let [cos, sin] = layout.turn;
-                Ok((frame, FrameTransform::rotation(cos, sin)))
+                Ok((frame, Reading::Uniform(FrameTransform::rotation(cos, sin))))
             }
-            (Frame::MainDirection(_), Some(layout)) => Err(format!(
-                "the tangent does not keep its angle to the main direction over the mesh (deviation {:.2}): one offset map \
-                 cannot serve, so offsets are in the unit frame",
-                layout.turn_deviation
-            )),
+            (Frame::MainDirection(_), Some(layout)) => {
+                let mapping = &layer.layer.bumps.texture().mapping;
+                let turns = self.geometry.turn_map(layer.material, mapping, [relief.width(), relief.height()]);
+                match turns {
+                    Some(turns) if turns.conflict <= MAX_TURN_DEVIATION => Ok((frame, Reading::PerTexel(turns))),
+                    turns => Err(format!(
+                        "the tangent does not keep its angle to the main direction over the mesh (deviation {:.2}), and \
+                         parts of the map are used in several directions (deviation {:.2}): one offset map cannot serve, \
+                         so offsets are in the unit frame",
+                        layout.turn_deviation,
+                        turns.map_or(2.0, |t| t.conflict)
+                    )),
+                }
+            }
         }
     }
 }

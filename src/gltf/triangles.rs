@@ -1,0 +1,187 @@
+//! The triangles of a material, read with every index checked: what is not there is not visited.
+
+use serde::Deserialize;
+use serde_json::Value;
+
+use super::material::Mapping;
+
+/// The accessors of a document.
+pub struct Accessors<'r, 'a> {
+    /// The document.
+    pub root: &'r Value,
+    /// The bytes of a buffer.
+    pub buffer: &'r dyn Fn(usize) -> Option<&'a [u8]>,
+}
+
+/// A corner of a triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Vertex {
+    /// In mesh space.
+    pub position: [f64; 3],
+    /// Texture coordinates, v down the image.
+    pub uv: [f64; 2],
+    /// Its normal, where the mesh has normals.
+    pub normal: Option<[f64; 3]>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+struct Accessor {
+    buffer_view: usize,
+    #[serde(default)]
+    byte_offset: usize,
+    component_type: u32,
+    count: usize,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+struct BufferView {
+    buffer: usize,
+    #[serde(default)]
+    byte_offset: usize,
+    byte_length: usize,
+    byte_stride: Option<usize>,
+}
+
+/// Elements of an accessor in its buffer.
+struct Elements<'a> {
+    bytes: &'a [u8],
+    stride: usize,
+    component_type: u32,
+    count: usize,
+}
+
+impl<'a> Accessors<'_, 'a> {
+    /// Calls `visit` for each triangle that uses material `material` and has the texture coordinates of `mapping`.
+    pub fn visit_material(&self, material: usize, mapping: &Mapping, mut visit: impl FnMut([Vertex; 3])) {
+        let transform = UvTransform::of(mapping);
+        let meshes = self.root.get("meshes").and_then(Value::as_array);
+        for primitive in meshes.into_iter().flatten().filter_map(|m| m.get("primitives")?.as_array()).flatten() {
+            let is_used = primitive.get("material").and_then(Value::as_u64) == Some(material as u64);
+            let is_triangles = primitive.get("mode").and_then(Value::as_u64).unwrap_or(4) == 4;
+            if is_used && is_triangles {
+                // A primitive that cannot be read is not there.
+                let _ = self.visit_primitive(primitive, mapping.tex_coord, |triangle| {
+                    visit(triangle.map(|v| Vertex { uv: transform.apply(v.uv), ..v }));
+                });
+            }
+        }
+    }
+
+    fn visit_primitive(&self, primitive: &Value, tex_coord: u64, mut visit: impl FnMut([Vertex; 3])) -> Option<()> {
+        let attribute = |name: &str| primitive.get("attributes")?.get(name)?.as_u64();
+        let positions = self.elements(attribute("POSITION")?, 3)?;
+        let uvs = self.elements(attribute(&format!("TEXCOORD_{tex_coord}"))?, 2)?;
+        let normals = attribute("NORMAL").and_then(|accessor| self.elements(accessor, 3));
+        let indices = match primitive.get("indices").and_then(Value::as_u64) {
+            None => None,
+            Some(accessor) => Some(self.elements(accessor, 1)?),
+        };
+        let corners = indices.as_ref().map_or(positions.count, |i| i.count);
+        for first in (0..corners / 3).map(|t| 3 * t) {
+            let read = |corner: usize| {
+                let vertex = indices.as_ref().map_or(Some(corner), |i| i.index(corner))?;
+                let normal = normals.as_ref().and_then(|n| n.vector(vertex));
+                Some(Vertex { position: positions.vector(vertex)?, uv: uvs.vector(vertex)?, normal })
+            };
+            if let (Some(a), Some(b), Some(c)) = (read(first), read(first + 1), read(first + 2)) {
+                visit([a, b, c]);
+            }
+        }
+        Some(())
+    }
+
+    fn elements(&self, accessor: u64, components: usize) -> Option<Elements<'a>> {
+        let object = |array: &str, index: u64| self.root.get(array)?.get(usize::try_from(index).ok()?);
+        let accessor = Accessor::deserialize(object("accessors", accessor)?).ok()?;
+        let view = BufferView::deserialize(object("bufferViews", accessor.buffer_view as u64)?).ok()?;
+        let bytes = (self.buffer)(view.buffer)?;
+        let bytes = bytes.get(view.byte_offset..)?.get(..view.byte_length)?.get(accessor.byte_offset..)?;
+        let stride = view.byte_stride.unwrap_or(components * component_bytes(accessor.component_type)?);
+        Some(Elements { bytes, stride, component_type: accessor.component_type, count: accessor.count })
+    }
+}
+
+impl Elements<'_> {
+    fn component(&self, index: usize, component: usize) -> Option<&[u8]> {
+        let size = component_bytes(self.component_type)?;
+        let start = index.checked_mul(self.stride)?.checked_add(component * size)?;
+        self.bytes.get(start..start.checked_add(size)?)
+    }
+
+    fn vector<const N: usize>(&self, index: usize) -> Option<[f64; N]> {
+        let mut vector = [0.0; N];
+        for (i, value) in vector.iter_mut().enumerate() {
+            *value = match (self.component_type, self.component(index, i)?) {
+                (5126, &[a, b, c, d]) => f64::from(f32::from_le_bytes([a, b, c, d])),
+                (5121, &[a]) => f64::from(a) / 255.0,
+                (5123, &[a, b]) => f64::from(u16::from_le_bytes([a, b])) / 65535.0,
+                _ => return None,
+            };
+        }
+        Some(vector)
+    }
+
+    fn index(&self, corner: usize) -> Option<usize> {
+        match (self.component_type, self.component(corner, 0)?) {
+            (5121, &[a]) => Some(usize::from(a)),
+            (5123, &[a, b]) => Some(usize::from(u16::from_le_bytes([a, b]))),
+            (5125, &[a, b, c, d]) => usize::try_from(u32::from_le_bytes([a, b, c, d])).ok(),
+            _ => None,
+        }
+    }
+}
+
+/// glTF 2.0, section 3.6.2.2.
+fn component_bytes(component_type: u32) -> Option<usize> {
+    match component_type {
+        5120 | 5121 => Some(1),
+        5122 | 5123 => Some(2),
+        5125 | 5126 => Some(4),
+        _ => None,
+    }
+}
+
+/// `KHR_texture_transform` as a matrix.
+struct UvTransform([[f64; 3]; 2]);
+
+impl UvTransform {
+    fn of(mapping: &Mapping) -> Self {
+        #[derive(Default, Deserialize)]
+        #[serde(default)]
+        struct Raw {
+            offset: [f64; 2],
+            rotation: f64,
+            scale: Option<[f64; 2]>,
+        }
+        let raw = mapping.transform.as_ref().and_then(|t| Raw::deserialize(t).ok()).unwrap_or_default();
+        let [su, sv] = raw.scale.unwrap_or([1.0; 2]);
+        let (sin, cos) = (libm::sin(raw.rotation), libm::cos(raw.rotation));
+        Self([[cos * su, sin * sv, raw.offset[0]], [-sin * su, cos * sv, raw.offset[1]]])
+    }
+
+    fn apply(&self, [u, v]: [f64; 2]) -> [f64; 2] {
+        self.0.map(|[a, b, c]| a * u + b * v + c)
+    }
+}
+
+/// a - b.
+pub fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+/// a x b.
+pub fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// a . b.
+pub fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// |a|.
+pub fn length(a: [f64; 3]) -> f64 {
+    dot(a, a).sqrt()
+}

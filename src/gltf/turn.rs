@@ -1,0 +1,286 @@
+//! The turn of the tangent frame against a main direction, texel by texel: for meshes on which it is not the same
+//! everywhere (paper, "The Local Coordinate System", 3).
+
+use serde_json::Value;
+
+use super::material::Mapping;
+use super::triangles::{Accessors, Vertex, cross, dot, length, minus};
+use crate::bump::FrameTransform;
+
+/// A transform for each texel of a map.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TurnMap {
+    /// Columns.
+    pub width: u32,
+    /// From slopes along (T, B) to slopes along (e1, e2); rows top to bottom.
+    pub transforms: Vec<FrameTransform>,
+    /// Root mean square deviation between the triangles that share a texel: 0 where each part of the map lies on one
+    /// place of the mesh, up to 2 where it lies on several in different directions.
+    pub conflict: f32,
+}
+
+/// Most texels that triangles may cover, all together: a map of 16384^2 four times over.
+const MAX_VISITS: f64 = (1u64 << 30) as f64;
+
+/// Passes in which texels without a triangle take after their neighbours: as many as a gutter is usually wide.
+const GUTTER: u32 = 16;
+
+/// The turn map of `width` x `height` texels for material `material`; `main_direction` is m in mesh space. `None` when no
+/// triangle can be read, or when they repeat the map so often that it cannot have one turn per texel.
+pub fn turn_map<'a>(
+    root: &Value,
+    material: usize,
+    mapping: &Mapping,
+    main_direction: [f32; 3],
+    buffer: &dyn Fn(usize) -> Option<&'a [u8]>,
+    [width, height]: [u32; 2],
+) -> Option<TurnMap> {
+    let mut raster = Raster {
+        width: i64::from(width),
+        height: i64::from(height),
+        sums: vec![Sum::default(); width as usize * height as usize],
+        visits: 0.0,
+    };
+    Accessors { root, buffer }.visit_material(material, mapping, |triangle| {
+        raster.draw(triangle, main_direction.map(f64::from));
+    });
+    (raster.visits > 0.0 && raster.visits <= MAX_VISITS).then(|| raster.finish())
+}
+
+/// Sum of the frames of a texel's triangles: T and B, each along e1 and e2.
+#[derive(Clone, Copy, Default)]
+struct Sum {
+    frame: [f32; 4],
+    count: f32,
+}
+
+impl Sum {
+    fn add(&mut self, frame: [f32; 4]) {
+        for (sum, part) in self.frame.iter_mut().zip(frame) {
+            *sum += part;
+        }
+        self.count += 1.0;
+    }
+}
+
+struct Raster {
+    width: i64,
+    height: i64,
+    sums: Vec<Sum>,
+    visits: f64,
+}
+
+impl Raster {
+    fn draw(&mut self, triangle: [Vertex; 3], m: [f64; 3]) {
+        let corners = triangle.map(|v| [v.uv[0] * self.width as f64, v.uv[1] * self.height as f64]);
+        let bound = |axis: usize, pick: fn(f64, f64) -> f64| {
+            pick(pick(corners[0][axis], corners[1][axis]), corners[2][axis]) - 0.5
+        };
+        let (left, right) = (bound(0, f64::min).ceil(), bound(0, f64::max).floor());
+        let (top, bottom) = (bound(1, f64::min).ceil(), bound(1, f64::max).floor());
+        let area = (right - left + 1.0).max(0.0) * (bottom - top + 1.0).max(0.0);
+        let Some(tangents) = tangents(triangle) else { return };
+        self.visits += area;
+        // Negated, so that NaN ends here too.
+        if !(self.visits <= MAX_VISITS) {
+            self.visits = f64::INFINITY;
+            return;
+        }
+        for y in top as i64..=bottom as i64 {
+            for x in left as i64..=right as i64 {
+                let Some(weights) = barycentric(corners, [x as f64 + 0.5, y as f64 + 0.5]) else { continue };
+                if let Some(frame) = frame(triangle, weights, tangents, m) {
+                    let texel = y.rem_euclid(self.height) * self.width + x.rem_euclid(self.width);
+                    self.sums[texel as usize].add(frame);
+                }
+            }
+        }
+    }
+
+    fn finish(mut self) -> TurnMap {
+        let covered = self.sums.iter().filter(|s| s.count > 0.0);
+        let (mut squares, mut count) = (0.0, 0.0);
+        for sum in covered {
+            // 2 - 2 |mean frame| / sqrt 2 for frames, whose norm is sqrt 2, as in a mean of directions.
+            let norm = (sum.frame.iter().map(|f| f * f).sum::<f32>() / 2.0).sqrt() / sum.count;
+            squares += f64::from((2.0 - 2.0 * norm).max(0.0));
+            count += 1.0;
+        }
+        let conflict = (squares / f64::max(count, 1.0)).sqrt() as f32;
+        for _ in 0..GUTTER {
+            if !self.spread() {
+                break;
+            }
+        }
+        let transforms = self.sums.iter().map(|sum| nearest_frame(sum.frame)).collect();
+        TurnMap { width: self.width as u32, transforms, conflict }
+    }
+
+    /// Texels without a frame take the mean of their neighbours'; whether there was one left.
+    fn spread(&mut self) -> bool {
+        let before = self.sums.clone();
+        let mut is_open = false;
+        for (i, sum) in self.sums.iter_mut().enumerate().filter(|(_, sum)| sum.count == 0.0) {
+            is_open = true;
+            let (x, y) = (i as i64 % self.width, i as i64 / self.width);
+            for (dx, dy) in [(-1, 0), (1, 0), (0, -1), (0, 1)] {
+                let neighbour = (y + dy).rem_euclid(self.height) * self.width + (x + dx).rem_euclid(self.width);
+                let neighbour = before[neighbour as usize];
+                if neighbour.count > 0.0 {
+                    sum.add(neighbour.frame.map(|f| f / neighbour.count));
+                }
+            }
+        }
+        is_open
+    }
+}
+
+/// p_u and -p_v (up the image) of a triangle.
+fn tangents([a, b, c]: [Vertex; 3]) -> Option<[[f64; 3]; 2]> {
+    let (e1, e2) = (minus(b.position, a.position), minus(c.position, a.position));
+    let (du1, dv1) = (b.uv[0] - a.uv[0], b.uv[1] - a.uv[1]);
+    let (du2, dv2) = (c.uv[0] - a.uv[0], c.uv[1] - a.uv[1]);
+    let det = du1 * dv2 - du2 * dv1;
+    if det == 0.0 || !det.is_finite() {
+        return None;
+    }
+    let across = std::array::from_fn(|i| (e1[i] * dv2 - e2[i] * dv1) / det);
+    let up = std::array::from_fn(|i| (e1[i] * du2 - e2[i] * du1) / det);
+    Some([across, up])
+}
+
+/// Weights of the corners at `point`; `None` outside.
+fn barycentric([a, b, c]: [[f64; 2]; 3], point: [f64; 2]) -> Option<[f64; 3]> {
+    let edge = |p: [f64; 2], q: [f64; 2], r: [f64; 2]| (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+    let area = edge(a, b, c);
+    let weights = [edge(b, c, point) / area, edge(c, a, point) / area, edge(a, b, point) / area];
+    weights.iter().all(|w| *w >= 0.0).then_some(weights)
+}
+
+/// T and B along e1, then along e2, as glTF's shaders build them: T made perpendicular to the normal, B = +- N x T.
+fn frame(triangle: [Vertex; 3], weights: [f64; 3], [across, up]: [[f64; 3]; 2], m: [f64; 3]) -> Option<[f32; 4]> {
+    let [a, b, c] = triangle;
+    let normal = match (a.normal, b.normal, c.normal) {
+        (Some(a), Some(b), Some(c)) => {
+            std::array::from_fn(|i| a[i] * weights[0] + b[i] * weights[1] + c[i] * weights[2])
+        }
+        _ => cross(minus(b.position, a.position), minus(c.position, a.position)),
+    };
+    let n = unit(normal)?;
+    let tilt = dot(across, n);
+    let t = unit(std::array::from_fn(|i| across[i] - tilt * n[i]))?;
+    let b = cross(n, t);
+    let b = if dot(b, up) < 0.0 { b.map(|x| -x) } else { b };
+    let e1 = unit(cross(m, n))?;
+    let e2 = cross(n, e1);
+    Some([dot(t, e1), dot(b, e1), dot(t, e2), dot(b, e2)].map(|x| x as f32))
+}
+
+fn unit(v: [f64; 3]) -> Option<[f64; 3]> {
+    let length = length(v);
+    (length > 0.0 && length.is_finite()).then(|| v.map(|x| x / length))
+}
+
+/// The rotation or reflection closest to the matrix [[a, b], [c, d]]; none for a texel without a frame.
+fn nearest_frame([a, b, c, d]: [f32; 4]) -> FrameTransform {
+    let sign = if a * d - b * c < 0.0 { -1.0 } else { 1.0 };
+    let (x, y) = (a + sign * d, c - sign * b);
+    let length = (x * x + y * y).sqrt();
+    if length <= 0.0 {
+        return FrameTransform::IDENTITY;
+    }
+    let (cos, sin) = (x / length, y / length);
+    FrameTransform { matrix: [[cos, -sign * sin], [sin, sign * cos]] }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    /// Two quads in z = 0 side by side on the map: on the left u runs along +x, on the right along +y.
+    fn document(mirrored: bool) -> (Value, Vec<u8>) {
+        let mut bytes = Vec::new();
+        let flip = if mirrored { -1.0 } else { 1.0 };
+        let corners: [[f32; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        let quads = [corners.map(|[x, y]| [x * flip, y]), corners.map(|[x, y]| [5.0 - y, x])];
+        for [x, y] in quads.concat() {
+            for value in [x, y, 0.0] {
+                bytes.extend_from_slice(&value.to_le_bytes());
+            }
+        }
+        for offset in [0.0, 0.5] {
+            for [x, y] in corners {
+                for value in [offset + x / 2.0, 1.0 - y] {
+                    bytes.extend_from_slice(&f32::to_le_bytes(value));
+                }
+            }
+        }
+        for _ in 0..8 {
+            for value in [0.0, 0.0, 1.0] {
+                bytes.extend_from_slice(&f32::to_le_bytes(value));
+            }
+        }
+        bytes.extend_from_slice(&[0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7]);
+        let attributes = json!({ "POSITION": 0, "TEXCOORD_0": 1, "NORMAL": 2 });
+        let root = json!({
+            "meshes": [{ "primitives": [{ "attributes": attributes, "indices": 3, "material": 0 }] }],
+            "accessors": [
+                { "bufferView": 0, "componentType": 5126, "count": 8, "type": "VEC3" },
+                { "bufferView": 1, "componentType": 5126, "count": 8, "type": "VEC2" },
+                { "bufferView": 2, "componentType": 5126, "count": 8, "type": "VEC3" },
+                { "bufferView": 3, "componentType": 5121, "count": 12, "type": "SCALAR" },
+            ],
+            "bufferViews": [
+                { "buffer": 0, "byteLength": 96 },
+                { "buffer": 0, "byteOffset": 96, "byteLength": 64 },
+                { "buffer": 0, "byteOffset": 160, "byteLength": 96 },
+                { "buffer": 0, "byteOffset": 256, "byteLength": 12 },
+            ],
+        });
+        (root, bytes)
+    }
+
+    fn turns(mirrored: bool) -> TurnMap {
+        let (root, bytes) = document(mirrored);
+        turn_map(&root, 0, &Mapping::default(), [0.0, 1.0, 0.0], &|_| Some(&bytes), [8, 4]).unwrap()
+    }
+
+    #[test]
+    fn each_part_of_the_map_has_the_turn_of_its_place() {
+        let map = turns(false);
+        assert!(map.conflict < 1e-3);
+        for (i, transform) in map.transforms.iter().enumerate() {
+            // m = +y, n = +z: e1 = +x, e2 = +y.
+            let expected = if i % 8 < 4 { FrameTransform::IDENTITY } else { FrameTransform::rotation(0.0, 1.0) };
+            let (a, b) = (transform.matrix.concat(), expected.matrix.concat());
+            assert!(a.iter().zip(&b).all(|(a, b)| (a - b).abs() < 1e-5), "{i}: {transform:?}");
+        }
+    }
+
+    #[test]
+    fn mirrored_parts_are_reflected() {
+        assert_eq!(turns(true).transforms[0].matrix, [[-1.0, 0.0], [0.0, 1.0]]);
+    }
+
+    #[test]
+    fn parts_used_twice_in_different_directions_conflict() {
+        let (mut root, bytes) = document(false);
+        // Every quad on the same part of the map.
+        let transform = json!({ "scale": [2.0, 1.0] });
+        root["meshes"][0]["primitives"][0]["material"] = json!(3);
+        let mapping = Mapping { tex_coord: 0, transform: Some(transform) };
+        let map = turn_map(&root, 3, &mapping, [0.0, 1.0, 0.0], &|_| Some(&bytes), [8, 4]).unwrap();
+        assert!(map.conflict > 0.5, "{}", map.conflict);
+    }
+
+    #[test]
+    fn endless_repeats_are_refused() {
+        let (root, bytes) = document(false);
+        for scale in [1e9, f64::MAX] {
+            let mapping = Mapping { tex_coord: 0, transform: Some(json!({ "scale": [scale, scale] })) };
+            assert_eq!(turn_map(&root, 0, &mapping, [0.0, 1.0, 0.0], &|_| Some(&bytes), [64, 64]), None);
+        }
+        assert_eq!(turn_map(&root, 1, &Mapping::default(), [0.0, 1.0, 0.0], &|_| Some(&bytes), [8, 4]), None);
+    }
+}
