@@ -120,7 +120,7 @@ fn levels_match_the_oracle_in_floats() {
 
 #[test]
 fn levels_match_the_oracle_in_uastc() {
-    compare(synthetic(), None, 0.4, Target::Basis, (0.9, 0.02));
+    compare(synthetic(), None, 0.4, Target::Basis, (0.9, 0.003));
 }
 
 #[test]
@@ -132,5 +132,5 @@ fn levels_of_a_real_material_match_the_oracle() {
         return;
     };
     compare(normals.clone(), Some(roughness.clone()), 1.0, Target::Float, (0.05, 1e-3));
-    compare(normals, Some(roughness), 1.0, Target::Basis, (0.7, 0.015));
+    compare(normals, Some(roughness), 1.0, Target::Basis, (0.9, 0.025));
 }
