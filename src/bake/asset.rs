@@ -95,6 +95,7 @@ pub fn bake(source: &Source<'_>, settings: &Settings, advance: &dyn Fn(f32)) -> 
     let materials = materials(&root).into_iter().collect::<Result<Vec<_>, _>>()?;
     // References that cannot be followed are an error before any work is done.
     container::files(source.document.json())?;
+    source.check_buffers()?;
     let geometry = Geometry::new(&root, source, settings)?;
     let plans = plan(&root, materials, settings, &geometry)?;
     let mut assembly = Assembly::new(source, settings)?;

@@ -25,7 +25,7 @@ pub use bare::{BareBake, BareTexture, OwnRoughness, bake_map};
 pub use chain::Chain;
 pub use extension::EXTENSION;
 pub use png::encode_png;
-pub use publish::{PublishError, publish, write_file};
+pub use publish::{PublishError, publish, read_file, write_file};
 pub use pyramids::Range;
 pub use relief::Relief;
 pub use settings::{Form, Model, Profile, Settings};

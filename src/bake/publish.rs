@@ -62,16 +62,43 @@ pub fn publish(baked: &Baked, document: &Path, source: &Path) -> Result<u64, Pub
             return Err(PublishError::OverSource { path });
         }
     }
+    for copy in &baked.copies {
+        let path = source_folder.join(copy);
+        check_file(&path).map_err(|error| PublishError::Copy { path, error })?;
+    }
     let mut total = 0;
     for copy in &baked.copies {
-        let from = source_folder.join(copy);
-        let bytes = fs::read(&from).map_err(|error| PublishError::Copy { path: from, error })?;
+        let path = source_folder.join(copy);
+        let bytes = read_file(&path).map_err(|error| PublishError::Copy { path, error })?;
         total += write_file(&folder.join(copy), &bytes)?;
     }
     for NewFile { path, bytes } in &baked.files {
         total += write_file(&folder.join(path), bytes)?;
     }
     Ok(total + write_file(document, &baked.document)?)
+}
+
+/// Largest input file: no map within the limits on texels is as large.
+const MAX_FILE_BYTES: u64 = 8 << 30;
+
+/// Reads a file that is one, and not a device that never ends.
+///
+/// # Errors
+/// The system's, or that it is no ordinary file, or larger than 8 GiB.
+pub fn read_file(path: &Path) -> io::Result<Vec<u8>> {
+    check_file(path)?;
+    fs::read(path)
+}
+
+fn check_file(path: &Path) -> io::Result<()> {
+    let facts = fs::metadata(path)?;
+    if !facts.is_file() {
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, "not an ordinary file"));
+    }
+    if facts.len() > MAX_FILE_BYTES {
+        return Err(io::Error::new(io::ErrorKind::FileTooLarge, "larger than 8 GiB"));
+    }
+    Ok(())
 }
 
 /// Writes a file whole or not at all, making its folder; returns its length.

@@ -3,6 +3,8 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use serde::Deserialize;
+
 use crate::gltf::document::{Document, DocumentError};
 use crate::gltf::texture::ImageLocation;
 use crate::gltf::uri::{Uri, UriError};
@@ -37,7 +39,7 @@ pub enum SourceError {
     Document(#[from] DocumentError),
     /// A buffer is shorter than it says.
     #[error(
-        "expected buffer {buffer} to hold the {expected} bytes that its views need, found {found}; export the asset again"
+        "expected buffer {buffer} to hold the {expected} bytes that it declares, found {found}; export the asset again"
     )]
     ShortBuffer {
         /// Index into `buffers`.
@@ -91,5 +93,26 @@ impl Source<'_> {
             }
             None => Err(SourceError::NoBuffer { buffer: index }),
         }
+    }
+
+    /// Checks that every buffer that is there holds the bytes that it declares. A buffer without data is legal: it may be
+    /// the fallback of compressed ones.
+    pub fn check_buffers(&self) -> Result<(), SourceError> {
+        #[derive(Deserialize)]
+        #[serde(rename_all = "camelCase")]
+        struct Buffer {
+            uri: Option<String>,
+            byte_length: usize,
+        }
+        let buffers: Vec<Buffer> =
+            self.document.json().read("/buffers").map_err(DocumentError::from)?.unwrap_or_default();
+        for (index, Buffer { uri, byte_length: expected }) in buffers.iter().enumerate() {
+            let has_bytes = uri.is_some() || (index == 0 && self.document.bin().is_some());
+            let found = if has_bytes { self.buffer(index)?.len() } else { *expected };
+            if found < *expected {
+                return Err(SourceError::ShortBuffer { buffer: index, expected: *expected, found });
+            }
+        }
+        Ok(())
     }
 }

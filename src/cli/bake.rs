@@ -1,6 +1,5 @@
 //! `roughcast bake`.
 
-use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -11,7 +10,7 @@ use super::options::{DocumentOptions, TextureOptions};
 use super::progress::Progress;
 use super::report::{Asset, Report, Status};
 use crate::bake::report::AssetReport;
-use crate::bake::{BakeError, PublishError, Settings, Source, SourceError, bake, publish, write_file};
+use crate::bake::{BakeError, PublishError, Settings, Source, SourceError, bake, publish, read_file, write_file};
 use crate::gltf::document::{Container, Document, DocumentError};
 use crate::texture::EncodeError;
 
@@ -175,19 +174,4 @@ fn bake_one(
     let output = input.folder.join(format!("{}.{extension}", input.stem));
     let bytes = publish(&baked, &output, &input.path)?;
     Ok((output, bytes, baked.report))
-}
-
-/// Largest input file: no map within the limits on texels is as large.
-const MAX_FILE_BYTES: u64 = 8 << 30;
-
-/// Reads a file that is one, and not a device that never ends.
-pub fn read_file(path: &Path) -> io::Result<Vec<u8>> {
-    let facts = fs::metadata(path)?;
-    if !facts.is_file() {
-        return Err(io::Error::new(io::ErrorKind::InvalidInput, "not an ordinary file"));
-    }
-    if facts.len() > MAX_FILE_BYTES {
-        return Err(io::Error::new(io::ErrorKind::FileTooLarge, "larger than 8 GiB"));
-    }
-    fs::read(path)
 }

@@ -59,8 +59,8 @@ pub enum InputError {
         /// The earlier one.
         other: PathBuf,
     },
-    /// The output folder is an input folder.
-    #[error("{}: expected an output folder apart from the inputs, found an input folder; choose another with -o", path.display())]
+    /// The output folder is an input folder, or holds one.
+    #[error("{}: expected an output folder apart from the inputs, found one that is or holds an input folder; choose another with -o", path.display())]
     OutputIsInput {
         /// The folder.
         path: PathBuf,
@@ -97,7 +97,8 @@ fn find_one(argument: &Path, output: &Path) -> Result<(Vec<Input>, Vec<InputErro
     let facts =
         fs::metadata(argument).map_err(|e| InputError::NotAnAsset { path: path.clone(), found: e.to_string() })?;
     let own_folder = if facts.is_dir() { argument } else { folder_of(argument) };
-    if is_same_folder(own_folder, output) {
+    // Outputs below a folder that holds sources could take the place of one.
+    if real(own_folder).is_some_and(|own| real(output).is_some_and(|output| own.starts_with(output))) {
         return Err(InputError::OutputIsInput { path: output.to_owned() });
     }
     if facts.is_file() {
@@ -149,6 +150,10 @@ fn is_asset(path: &Path) -> bool {
 }
 
 fn is_same_folder(a: &Path, b: &Path) -> bool {
-    let real = |path: &Path| fs::canonicalize(if path.as_os_str().is_empty() { Path::new(".") } else { path });
-    matches!((real(a), real(b)), (Ok(a), Ok(b)) if a == b)
+    real(a).is_some() && real(a) == real(b)
+}
+
+/// The folder without links and dots, if it exists.
+fn real(folder: &Path) -> Option<PathBuf> {
+    fs::canonicalize(if folder.as_os_str().is_empty() { Path::new(".") } else { folder }).ok()
 }

@@ -7,10 +7,11 @@ use clap::ValueEnum;
 use serde_json::json;
 
 use super::Outcome;
-use super::bake::read_file;
 use super::options::{TextureOptions, finite, unit_interval};
 use crate::bake::report::Content;
-use crate::bake::{BareBake, BareTexture, OwnRoughness, PublishError, Relief, Settings, bake_map, write_file};
+use crate::bake::{
+    BareBake, BareTexture, OwnRoughness, PublishError, Relief, Settings, bake_map, read_file, write_file,
+};
 use crate::bump::{MAX_SLOPE, Wrap};
 use crate::map::{DecodeError, DecodeOptions, HeightMap, Image, MapError, NormalLayout, NormalMap, decode};
 use crate::texture::EncodeError;

@@ -1,0 +1,23 @@
+//! How wrong a lobe is: the share of reflected half-vectors that it puts in the wrong place.
+//!
+//! The truth of a texel is the mixture of the lobes of all level-0 texels under it ([`Footprint`]). A [`Reference`]
+//! samples it once; every candidate is then judged by [`Reference::error`]: what an engine decodes ([`Decoded`]), what
+//! other tools make of the same normals ([`Peer`]), and the best that any single lobe can do ([`oracle`]). This room
+//! takes maps and decoded images, never files.
+
+mod footprint;
+mod lobe;
+mod oracle;
+mod peers;
+mod reference;
+mod score;
+#[cfg(test)]
+mod tests;
+mod vector;
+
+pub use footprint::{Footprint, FootprintMoments, Part, Surface};
+pub use lobe::{Family, Lobe};
+pub use oracle::oracle;
+pub use peers::Peer;
+pub use reference::{Reference, SAMPLES};
+pub use score::{Decoded, mean_errors, sample_texels};

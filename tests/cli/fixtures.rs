@@ -1,0 +1,57 @@
+//! The fixtures are what their generator writes, and what it means to say is in them.
+
+use std::fs;
+
+use serde_json::Value;
+use tempfile::tempdir;
+
+use super::process::{bake, files, fixtures};
+
+#[path = "../../examples/generate_fixtures/fixtures/mod.rs"]
+mod generator;
+
+#[test]
+fn committed_fixtures_are_what_the_generator_writes() {
+    let mut generated = generator::all();
+    generated.sort();
+    let remedy = "run `cargo run --example generate_fixtures`, and delete what it does not write";
+    let committed = files(&fixtures());
+    let names = |all: &[(String, _)]| all.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();
+    let mut expected: Vec<_> = generated.iter().map(|(name, _)| name.clone()).collect();
+    expected.sort();
+    let mut found = names(&committed);
+    found.sort();
+    assert_eq!(found, expected, "{remedy}");
+    for (name, bytes) in generated {
+        assert!(fs::read(fixtures().join(&name)).expect("a fixture") == bytes, "{name} differs: {remedy}");
+    }
+}
+
+#[test]
+fn what_the_bake_does_not_own_survives() {
+    let folder = tempdir().expect("a folder");
+    bake(&fixtures().join("knobs/knobs.gltf"), folder.path(), &["--profile", "both"]);
+    let read = |path| serde_json::from_slice::<Value>(&fs::read(path).expect("a document")).expect("JSON");
+    let source = read(fixtures().join("knobs/knobs.gltf"));
+    let baked = read(folder.path().join("knobs.gltf"));
+    for pointer in [
+        "/asset",
+        "/scenes",
+        "/nodes",
+        "/meshes",
+        "/accessors",
+        "/bufferViews",
+        "/buffers",
+        "/extensions",
+        "/extras",
+        "/materials/0/extras",
+        "/materials/0/extensions/EXT_example_haptics",
+        "/materials/0/pbrMetallicRoughness/baseColorFactor",
+        "/materials/3/pbrMetallicRoughness/metallicRoughnessTexture",
+        "/textures/1/extras",
+    ] {
+        let part = source.pointer(pointer);
+        assert!(part.is_some(), "{pointer} is not in the fixture");
+        assert_eq!(baked.pointer(pointer), part, "{pointer}");
+    }
+}

@@ -1,0 +1,8 @@
+//! The command as its users run it: a process, folders, exit codes, bytes. One binary, since each costs a link.
+
+mod bad_input;
+mod bytes;
+mod fixtures;
+mod process;
+mod transcripts;
+mod validator;

@@ -1,0 +1,65 @@
+//! Khronos' validator on everything that a bake writes. Its reader is nobody's here.
+
+use std::path::Path;
+use std::process::Command;
+
+use tempfile::tempdir;
+
+use super::process::{Run, bake, fixtures};
+
+/// Runs the validator over `folder`; `None` where it is not installed, which only a person's machine may lack.
+fn validate(folder: &Path) -> Option<Run> {
+    let tool = Path::new(env!("CARGO_MANIFEST_DIR")).join("tools/validate-gltf");
+    let is_installed = tool.join("node_modules/gltf-validator").is_dir();
+    let output = Command::new("node").arg(tool.join("validate.mjs")).arg(folder).output();
+    match output {
+        Ok(output) if is_installed => Some(output.into()),
+        _ => {
+            let missing = "the glTF validator needs Node 20 and `npm ci` in tools/validate-gltf";
+            assert_ne!(std::env::var("CI").as_deref(), Ok("true"), "{missing}");
+            eprintln!("skipped: {missing}");
+            None
+        }
+    }
+}
+
+fn assert_valid(options: &[&str]) {
+    let folder = tempdir().expect("a folder");
+    bake(&fixtures(), folder.path(), options);
+    if let Some(run) = validate(folder.path()) {
+        assert_eq!(run.code, 0, "{options:?}\n{}{}", run.out, run.err);
+        let assets = run.out.lines().filter(|line| line.contains(": 0 error(s)")).count();
+        assert_eq!(assets, 4, "{options:?}\n{}", run.out);
+    }
+}
+
+#[test]
+fn fixtures_are_valid_before_the_bake() {
+    if let Some(run) = validate(&fixtures()) {
+        assert_eq!(run.code, 0, "{}{}", run.out, run.err);
+    }
+}
+
+#[test]
+fn fallback_is_valid() {
+    assert_valid(&["--gltf", "fallback"]);
+    assert_valid(&["--gltf", "fallback", "--profile", "both"]);
+    assert_valid(&["--gltf", "fallback", "--glb"]);
+}
+
+#[test]
+fn strict_is_valid() {
+    assert_valid(&["--gltf", "strict"]);
+    assert_valid(&["--gltf", "strict", "--profile", "both"]);
+    assert_valid(&["--gltf", "strict", "--glb"]);
+}
+
+#[test]
+fn an_invalid_asset_is_noticed() {
+    let folder = tempdir().expect("a folder");
+    std::fs::write(folder.path().join("a.gltf"), r#"{"asset":{"version":"2.0"},"scene":7}"#).expect("a file");
+    if let Some(run) = validate(folder.path()) {
+        assert_eq!(run.code, 1, "{}", run.out);
+        assert!(run.out.contains("UNRESOLVED_REFERENCE"), "{}", run.out);
+    }
+}
