@@ -15,20 +15,21 @@ use roughcast::texture::ktx2::Ktx2;
 
 const MAPS: [&str; 5] =
     ["aluminium_normal.png", "wool_normal.png", "sand_normal.jpg", "texture_bricks_normal.jpg", "water_normals.png"];
+const FIXTURES: [&str; 2] = ["two_channel_normal.png", "vgroove_normal.png"];
 const ALPHAS: [f32; 4] = [0.05, 0.1, 0.2, 0.4];
 const LEVELS: std::ops::RangeInclusive<u32> = 2..=7;
 /// Peers, then ours isotropic and anisotropic, then the oracle.
 const COLUMNS: usize = Peer::ALL.len() + 3;
 
+/// Levels and their mean errors.
+type Levels = Vec<(u32, [f64; COLUMNS])>;
+
 fn main() -> Result<(), Box<dyn Error>> {
     let texels = std::env::args().nth(1).map_or(Ok(16), |n| n.parse::<usize>())?;
     let shared = Path::new("../shared/data/maps");
     let folder = if shared.is_dir() { shared } else { Path::new("fixtures/maps") };
-    let mut paths: Vec<_> = match folder == shared {
-        true => MAPS.iter().map(|name| folder.join(name)).collect(),
-        false => std::fs::read_dir(folder)?.map(|f| f.map(|f| f.path())).collect::<Result<_, _>>()?,
-    };
-    paths.sort();
+    let names: &[&str] = if folder == shared { &MAPS } else { &FIXTURES };
+    let paths: Vec<_> = names.iter().map(|name| folder.join(name)).collect();
     print!("| map | alpha |");
     Peer::ALL.iter().for_each(|peer| print!(" {} |", peer.name()));
     println!(" ours, isotropic | ours, anisotropic | oracle |");
@@ -40,7 +41,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         for alpha in ALPHAS {
             let levels = errors_by_level(&image, alpha, texels)?;
             let mut mean = [0.0; COLUMNS];
-            for (level, errors) in LEVELS.zip(&levels) {
+            for (level, errors) in &levels {
                 let best = errors[..Peer::ALL.len()].iter().copied().fold(f64::INFINITY, f64::min);
                 let excess = errors[COLUMNS - 2] - best;
                 if excess > worst_against_peers.0 {
@@ -68,8 +69,8 @@ fn print_row(map: &str, alpha: &str, errors: &[f64; COLUMNS]) {
     println!();
 }
 
-/// Mean errors of each level.
-fn errors_by_level(image: &Image, alpha: f32, texels: usize) -> Result<Vec<[f64; COLUMNS]>, Box<dyn Error>> {
+/// Mean errors of each level that the map has.
+fn errors_by_level(image: &Image, alpha: f32, texels: usize) -> Result<Levels, Box<dyn Error>> {
     let map = || NormalMap::new(image.clone(), NormalLayout::Auto, false);
     let surface = Surface::of_map(&map()?, SquaredAlpha::isotropic(Alpha(alpha)));
     let relief = Relief::Normals(map()?);
@@ -80,29 +81,26 @@ fn errors_by_level(image: &Image, alpha: f32, texels: usize) -> Result<Vec<[f64;
     let baked = [bake(Model::Isotropic)?, bake(Model::Anisotropic)?];
     let files = baked.each_ref().map(files);
     LEVELS
+        .filter(|level| image.width.max(image.height) >> level > 0)
         .map(|level| {
             let [isotropic, anisotropic] = [decoded(&files[0], level)?, decoded(&files[1], level)?];
             let size = (isotropic.normal.width, isotropic.normal.height);
-            Ok(mean_errors(
-                &surface,
-                Family::Ggx,
-                size,
-                &sample_texels(size, texels),
-                |(x, y), footprint, reference| {
-                    let moments = footprint.moments();
-                    let peers = Peer::ALL.map(|peer| peer.lobe(Family::Ggx, &moments));
-                    let ours = [&isotropic, &anisotropic].map(|d| d.lobe(Family::Ggx, x, y));
-                    let mut errors = [f64::NAN; COLUMNS];
-                    for (error, lobe) in
-                        errors.iter_mut().zip(peers.iter().map(Some).chain(ours.iter().map(Option::as_ref)))
-                    {
-                        *error = lobe.map_or(1.0, |lobe| reference.error(lobe));
-                    }
-                    let starts: Vec<_> = peers.into_iter().chain(ours.into_iter().flatten()).collect();
-                    errors[COLUMNS - 1] = oracle(reference, &starts).1;
-                    errors
-                },
-            ))
+            let texels = sample_texels(size, texels);
+            let means = mean_errors(&surface, Family::Ggx, size, &texels, |(x, y), footprint, reference| {
+                let moments = footprint.moments();
+                let peers = Peer::ALL.map(|peer| peer.lobe(Family::Ggx, &moments));
+                let ours = [&isotropic, &anisotropic].map(|d| d.lobe(Family::Ggx, x, y));
+                let mut errors = [f64::NAN; COLUMNS];
+                for (error, lobe) in
+                    errors.iter_mut().zip(peers.iter().map(Some).chain(ours.iter().map(Option::as_ref)))
+                {
+                    *error = lobe.map_or(1.0, |lobe| reference.error(lobe));
+                }
+                let starts: Vec<_> = peers.into_iter().chain(ours.into_iter().flatten()).collect();
+                errors[COLUMNS - 1] = oracle(reference, &starts).1;
+                errors
+            });
+            Ok((level, means))
         })
         .collect()
 }

@@ -8,9 +8,12 @@
 
 pub mod bake;
 pub mod bump;
+pub mod check;
 pub mod choose;
 pub mod cli;
 pub mod gltf;
+pub mod inspect;
+pub mod judge;
 pub mod lobe;
 pub mod map;
 pub mod pyramid;

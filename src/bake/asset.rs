@@ -14,7 +14,7 @@ use super::names::Names;
 use super::plan::{PlanError, plan};
 use super::png::encode_png;
 use super::pyramids::Range;
-use super::report::{AssetReport, TextureReport};
+use super::report::{AssetReport, LayerReport, TextureReport};
 use super::settings::{Form, Settings};
 use super::source::{Source, SourceError};
 use crate::gltf::document::{Container, Document, DocumentError};
@@ -97,22 +97,24 @@ pub fn bake(source: &Source<'_>, settings: &Settings, advance: &dyn Fn(f32)) -> 
     container::files(source.document.json())?;
     source.check_buffers()?;
     let geometry = Geometry::new(&root, source, settings)?;
+    let flat: Vec<LayerReport> = materials.iter().filter(|m| m.layers.is_empty()).map(LayerReport::flat).collect();
     let plans = plan(&root, materials, settings, &geometry)?;
     let mut assembly = Assembly::new(source, settings)?;
     for (done, plan) in plans.iter().enumerate() {
         assembly.add(job::run(plan, source, &geometry, settings)?)?;
         advance((done + 1) as f32 / plans.len() as f32);
     }
-    if plans.is_empty() { untouched(source) } else { assembly.finish() }
+    assembly.report.layers.extend(flat);
+    if plans.is_empty() { untouched(source, assembly.report) } else { assembly.finish() }
 }
 
-fn untouched(source: &Source<'_>) -> Result<Baked, BakeError> {
+fn untouched(source: &Source<'_>, report: AssetReport) -> Result<Baked, BakeError> {
     Ok(Baked {
         document: source.document.to_bytes()?,
         container: source.document.container(),
         files: Vec::new(),
         copies: container::files(source.document.json())?,
-        report: AssetReport::default(),
+        report,
     })
 }
 
@@ -130,6 +132,7 @@ struct Assembly<'a> {
     files: Vec<NewFile>,
     unit_factors: Vec<String>,
     anisotropies: Vec<String>,
+    circles: Vec<String>,
     pyramids: Vec<PyramidUse>,
     report: AssetReport,
 }
@@ -150,6 +153,7 @@ impl<'a> Assembly<'a> {
             files: Vec::new(),
             unit_factors: Vec::new(),
             anisotropies: Vec::new(),
+            circles: Vec::new(),
             pyramids: Vec::new(),
             report: AssetReport::default(),
         })
@@ -178,6 +182,7 @@ impl<'a> Assembly<'a> {
         for layer in output.layers {
             self.unit_factors.extend(layer.unit_factor);
             self.anisotropies.extend(layer.anisotropy);
+            self.circles.extend(layer.circle);
             self.pyramids.extend(layer.pyramid.map(|p| PyramidUse {
                 offset: first + p.offset,
                 roughness: p.roughness.map(|r| first + r),
@@ -258,14 +263,18 @@ impl<'a> Assembly<'a> {
             json.remove(&format!("{pointer}/anisotropyRotation"))?;
             declare(json, "KHR_materials_anisotropy", false)?;
         }
+        for pointer in &self.circles {
+            json.set(&format!("{pointer}/anisotropyStrength"), &0)?;
+        }
         for pyramid in &self.pyramids {
-            let ranged = |index: usize| RangedTexture {
+            // A mirrored relief is as rough.
+            let ranged = |index: usize, factor: f32| RangedTexture {
                 texture: indices[index],
-                range: self.ranges[index].clone().unwrap_or_default().scaled(pyramid.slope_scale),
+                range: self.ranges[index].clone().unwrap_or_default().scaled(factor),
             };
             let extension = Extension::new(
-                ranged(pyramid.offset),
-                pyramid.roughness.map(ranged),
+                ranged(pyramid.offset, pyramid.slope_scale),
+                pyramid.roughness.map(|index| ranged(index, pyramid.slope_scale.abs())),
                 self.settings.distribution.correction(),
                 pyramid.frame,
                 &pyramid.mapping,
@@ -277,11 +286,12 @@ impl<'a> Assembly<'a> {
             container::embed_images(&mut self.document, self.source)?;
         }
         if let Some(mut bin) = self.bin {
-            container::trim_views(self.document.json_mut(), &mut bin.bytes)?;
+            container::trim_views(self.document.json_mut(), self.source.document.json(), &mut bin.bytes)?;
             self.files.push(bin);
         }
         let mut copies = container::files(self.document.json())?;
         copies.retain(|copy| !self.files.iter().any(|file| file.path == *copy));
+        self.report.layers.sort_by_key(|layer| (layer.index, layer.layer));
         Ok(Baked {
             document: self.document.to_bytes()?,
             container: self.document.container(),

@@ -1,7 +1,7 @@
 //! A bare map baked: no document, no material.
 
 use super::base::BaseRows;
-use super::chain::{Chain, Encoding, grid};
+use super::chain::{Chain, Encoding, GridError, grid};
 use super::fold::Fold;
 use super::normals::bake_normals;
 use super::pyramids::{Quantity, Range, Ranged, bake_quantity};
@@ -31,6 +31,17 @@ pub struct BareTexture {
     pub range: Option<Range>,
 }
 
+/// Why a bare map is not baked.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum BareError {
+    /// Maps whose common grid is too large.
+    #[error(transparent)]
+    Grid(#[from] GridError),
+    /// A texture cannot be encoded.
+    #[error(transparent)]
+    Encode(#[from] EncodeError),
+}
+
 /// What a bare map became.
 pub struct BareBake {
     /// The first is the bump map: normals or offsets.
@@ -44,9 +55,9 @@ pub struct BareBake {
 }
 
 /// Bakes `relief`. The portable profile writes roughness only where `own` tells what to fold the bumps into.
-pub fn bake_map(relief: &Relief, own: Option<&OwnRoughness>, settings: &Settings) -> Result<BareBake, EncodeError> {
+pub fn bake_map(relief: &Relief, own: Option<&OwnRoughness>, settings: &Settings) -> Result<BareBake, BareError> {
     let size = (relief.width(), relief.height());
-    let (width, height) = grid(settings.target, [size]);
+    let (width, height) = grid(settings, [size])?;
     let moments = Pyramid::new(Area::new(relief, width, height));
     let mut textures = Vec::new();
     let plain = |content, chain| BareTexture { content, chain, range: None };
@@ -54,7 +65,7 @@ pub fn bake_map(relief: &Relief, own: Option<&OwnRoughness>, settings: &Settings
         textures.push(plain(Content::Normal, bake_normals(&moments, Encoding::of_normals(settings))?));
     }
     let image = own.and_then(|o| o.image.as_ref());
-    let (width, height) = grid(settings.target, image.map(|i| (i.width, i.height)).into_iter().chain([size]));
+    let (width, height) = grid(settings, image.map(|i| (i.width, i.height)).into_iter().chain([size]))?;
     let base = BaseRows::new(width, height, image.map(Rgba), own.map_or(1.0, |o| o.factor), None);
     let resampled = ((width, height) != moments.sizes()[0]).then(|| Pyramid::new(Area::new(relief, width, height)));
     let fold_moments = resampled.as_ref().unwrap_or(&moments);
@@ -81,5 +92,11 @@ pub fn bake_map(relief: &Relief, own: Option<&OwnRoughness>, settings: &Settings
             textures.push(BareTexture { content, chain, range: Some(range) });
         }
     }
-    Ok(BareBake { textures, model, loss, steep_texels: relief.steep_texels() })
+    let is_modelled = textures.len() > 1;
+    Ok(BareBake {
+        model: if is_modelled { model } else { Model::None },
+        textures,
+        loss,
+        steep_texels: relief.steep_texels(),
+    })
 }

@@ -48,11 +48,31 @@ impl Encoding {
     }
 }
 
+/// Maps whose common grid would be larger than an image may be.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("expected maps whose common grid has at most {limit} texels, found {width} x {height}; scale one of them down")]
+pub struct GridError {
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// The limit on texels.
+    pub limit: u64,
+}
+
 /// The smallest grid that holds all of `sizes` and that the target's blocks allow: KHR_texture_basisu and BCn want
 /// multiples of 4.
-pub fn grid(target: Target, sizes: impl IntoIterator<Item = (u32, u32)>) -> (u32, u32) {
+///
+/// # Errors
+/// [`GridError`] when it has more texels than the settings allow an image (and than rounding up can add).
+pub fn grid(settings: &Settings, sizes: impl IntoIterator<Item = (u32, u32)>) -> Result<(u32, u32), GridError> {
     let (width, height) = sizes.into_iter().fold((1, 1), |a, b| (a.0.max(b.0), a.1.max(b.1)));
-    if target.format(3).is_block() { (width.next_multiple_of(4), height.next_multiple_of(4)) } else { (width, height) }
+    let limit = settings.max_texels;
+    if u64::from(width) * u64::from(height) > limit {
+        return Err(GridError { width, height, limit });
+    }
+    let is_block = settings.target.format(3).is_block();
+    Ok(if is_block { (width.next_multiple_of(4), height.next_multiple_of(4)) } else { (width, height) })
 }
 
 /// Writes row y of a level to a slice of values: `(level, y, out)`.

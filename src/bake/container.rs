@@ -99,16 +99,19 @@ pub fn to_glb(source: &Source<'_>) -> Result<Document, ContainerError> {
     Ok(Document::glb(json, Some(bin)))
 }
 
-/// Removes the last buffer views of `json` that nothing refers to any more, and their bytes from `bin`, which is buffer
-/// 0: what is left of images that were baked. Views before one in use stay, since unknown extensions may number them.
-pub fn trim_views(json: &mut Json, bin: &mut Vec<u8>) -> Result<(), ContainerError> {
+/// Removes buffer views from the end of `json` as long as they held images of `source` that were baked and nothing refers
+/// to them any more, and their bytes from `bin`, which is buffer 0. Views before one in use stay, since extensions may
+/// number them in ways of their own.
+pub fn trim_views(json: &mut Json, source: &Json, bin: &mut Vec<u8>) -> Result<(), ContainerError> {
     let root: Value = json.value("")?.unwrap_or_default();
     let views = root.get("bufferViews").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
     let mut used = Vec::new();
     for (key, value) in root.as_object().into_iter().flatten().filter(|(key, _)| *key != "bufferViews") {
         view_references(key, value, &mut used);
     }
-    let kept = used.into_iter().max().map_or(0, |last| last.saturating_add(1)).min(views.len());
+    let of_images = image_views(source)?;
+    let is_free = |view: usize| of_images.contains(&view) && !used.contains(&view);
+    let kept = (0..views.len()).rev().find(|view| !is_free(*view)).map_or(0, |last| last + 1);
     if kept == views.len() || views.iter().any(|v| v.get("extensions").is_some()) {
         return Ok(());
     }
@@ -195,6 +198,17 @@ fn image_uris(json: &Json) -> Result<Vec<Option<String>>, JsonError> {
     Ok(images.into_iter().map(|i| i.uri).collect())
 }
 
+/// The buffer views that images name.
+fn image_views(json: &Json) -> Result<Vec<usize>, JsonError> {
+    #[derive(Deserialize)]
+    #[serde(rename_all = "camelCase")]
+    struct Image {
+        buffer_view: Option<usize>,
+    }
+    let images: Vec<Image> = json.read("/images")?.unwrap_or_default();
+    Ok(images.into_iter().filter_map(|i| i.buffer_view).collect())
+}
+
 fn buffer_uris(json: &Json) -> Result<Vec<Option<String>>, JsonError> {
     let buffers: Vec<Named> = json.read("/buffers")?.unwrap_or_default();
     Ok(buffers.into_iter().map(|b| b.uri).collect())
@@ -205,9 +219,11 @@ mod tests {
     use super::*;
 
     fn trimmed(json: &Value, length: usize) -> (Value, usize) {
+        let before = json!({ "images": [{ "bufferView": 1 }, { "bufferView": 2 }] });
+        let before = Json::parse(before.to_string().as_bytes()).unwrap();
         let mut json = Json::parse(json.to_string().as_bytes()).unwrap();
         let mut bin = vec![0; length];
-        trim_views(&mut json, &mut bin).unwrap();
+        trim_views(&mut json, &before, &mut bin).unwrap();
         (json.value("").unwrap().unwrap(), bin.len())
     }
 
@@ -235,6 +251,11 @@ mod tests {
     fn views_before_one_in_use_stay() {
         let before = document(&json!({ "bufferView": 2 }));
         assert_eq!(trimmed(&before, 300), (before, 300));
+        // A view that was never an image's may be a table's.
+        let mut tables = document(&json!({ "uri": "other.png" }));
+        let views = tables["bufferViews"].as_array_mut().unwrap();
+        views.push(json!({ "buffer": 0, "byteOffset": 300, "byteLength": 20 }));
+        assert_eq!(trimmed(&tables, 320), (tables, 320));
         let mut compressed = document(&json!({ "uri": "other.png" }));
         compressed["bufferViews"][0]["extensions"] = json!({ "EXT_meshopt_compression": { "buffer": 1 } });
         assert_eq!(trimmed(&compressed, 300), (compressed, 300));

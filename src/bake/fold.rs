@@ -53,13 +53,17 @@ impl<'a, R: Rows<Texel = Moments>> Fold<'a, R> {
         levels.fold(ModelLoss::default(), ModelLoss::worst)
     }
 
-    /// Texels over all levels whose lobe is wider than an engine can show.
-    pub fn texels_above_one(&self) -> u64 {
+    /// Texels over all levels whose lobe under `model` is wider than an engine can show.
+    pub fn texels_above_one(&self, model: Model) -> u64 {
+        let is_too_wide = |lobe: SquaredAlpha| match model {
+            Model::Anisotropic => lobe.exceeds_one(),
+            _ => lobe.closest_isotropic().0 > 1.0,
+        };
         let levels = self.sizes().into_iter().enumerate();
         let in_level = |(level, (width, height)): (usize, (u32, u32))| -> u64 {
             let in_row = |y| {
                 let mut count = 0;
-                self.row(level, y, width as usize, |_, _, full, _| count += u64::from(full.exceeds_one()));
+                self.row(level, y, width as usize, |_, _, full, _| count += u64::from(is_too_wide(full)));
                 count
             };
             (0..height).into_par_iter().map(in_row).sum()

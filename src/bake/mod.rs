@@ -21,11 +21,12 @@ mod settings;
 mod source;
 
 pub use asset::{BakeError, Baked, NewFile, bake};
-pub use bare::{BareBake, BareTexture, OwnRoughness, bake_map};
-pub use chain::Chain;
+pub use bare::{BareBake, BareError, BareTexture, OwnRoughness, bake_map};
+pub use chain::{Chain, GridError};
 pub use extension::EXTENSION;
+pub use job::JobError;
 pub use png::encode_png;
-pub use publish::{PublishError, publish, read_file, write_file};
+pub use publish::{Places, PublishError, publish, read_file, write_file};
 pub use pyramids::Range;
 pub use relief::Relief;
 pub use settings::{Form, Model, Profile, Settings};

@@ -98,7 +98,7 @@ pub fn plan(
             let (kind, slope_scale) = read_as(&layer.bumps, &source, settings, layout.as_ref(), &mut notes);
             let own = own_textures(root, &layer, &source).map_err(failed("roughness or anisotropy texture"))?;
             let plan = LayerPlan { material: index, name: name.clone(), layer, slope_scale, layout, own, notes };
-            match reliefs.iter_mut().find(|r| r.source.location == source.location && r.kind == kind) {
+            match reliefs.iter_mut().find(|r| r.source.is_same(&source) && r.kind == kind) {
                 Some(relief) => relief.layers.push(plan),
                 None => reliefs.push(ReliefPlan { source, kind, layers: vec![plan] }),
             }
@@ -142,11 +142,14 @@ fn own_textures(
     bumps: &TextureSource,
 ) -> Result<Result<OwnTextures, String>, TextureError> {
     let mapping = &layer.bumps.texture().mapping;
-    let mut reason = None;
+    let mut reason = layer.has_other_workflow.then(|| {
+        "KHR_materials_pbrSpecularGlossiness: engines that know it read glossiness, so roughness was left as it was"
+            .into()
+    });
     let mut read = |what: &str, texture: Option<&TextureUse>| {
         let Some(texture) = texture else { return Ok(None) };
         let source = texture_source(root, texture.texture)?;
-        if texture.mapping != *mapping {
+        if !texture.mapping.is_same(mapping) {
             reason = Some(format!(
                 "the {what} texture has other texture coordinates or another KHR_texture_transform than the bumps: \
                  its texels do not lie over theirs, so it was left as it was"
@@ -211,7 +214,7 @@ impl LayerPlan {
 
     /// Whether `other` asks for the same folded lobe.
     pub fn folds_like(&self, other: &Self) -> bool {
-        let location = |t: &Option<TextureSource>| t.as_ref().map(|t| t.location.clone());
+        let location = |t: &Option<TextureSource>| t.as_ref().map(|t| (t.location.clone(), t.sampler));
         let textures = |own: &Result<OwnTextures, String>| {
             own.as_ref().ok().map(|own| (location(&own.roughness), location(&own.anisotropy)))
         };

@@ -1,6 +1,7 @@
 //! Writing what was baked: beside its place, synced, then renamed, so that nothing half-written is ever visible.
 
-use std::collections::BTreeSet;
+use std::collections::btree_map::Entry;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -26,6 +27,18 @@ pub enum PublishError {
         /// The system's error.
         error: io::Error,
     },
+    /// Two assets of one run want different files in one place.
+    #[error(
+        "expected a place of its own for {}, found {} there, which another asset of this run needs; bake them into \
+         different folders",
+        path.display(), other.display()
+    )]
+    SamePlace {
+        /// The output.
+        path: PathBuf,
+        /// The file that was copied there before.
+        other: PathBuf,
+    },
     /// An output would take the place of an input.
     #[error("expected an output folder apart from the sources, found that {} is a source; choose another with -o", path.display())]
     OverSource {
@@ -39,7 +52,28 @@ impl PublishError {
     pub fn io(&self) -> Option<&io::Error> {
         match self {
             Self::Write { error, .. } | Self::Copy { error, .. } => Some(error),
-            Self::OverSource { .. } => None,
+            Self::OverSource { .. } | Self::SamePlace { .. } => None,
+        }
+    }
+}
+
+/// Where the outputs of a run are, each with the source that it is a copy of, or with itself.
+#[derive(Debug, Default)]
+pub struct Places(BTreeMap<PathBuf, PathBuf>);
+
+impl Places {
+    /// Takes a place for a copy of `source`.
+    fn take(&mut self, path: &Path, source: &Path) -> Result<(), PublishError> {
+        let source = fs::canonicalize(source).unwrap_or_else(|_| source.to_owned());
+        match self.0.entry(path.to_owned()) {
+            Entry::Occupied(taken) if *taken.get() != source => {
+                Err(PublishError::SamePlace { path: path.to_owned(), other: taken.get().clone() })
+            }
+            Entry::Occupied(_) => Ok(()),
+            Entry::Vacant(free) => {
+                free.insert(source);
+                Ok(())
+            }
         }
     }
 }
@@ -48,8 +82,9 @@ impl PublishError {
 /// The document comes last: whoever sees it sees everything that it names. Returns the bytes written.
 ///
 /// # Errors
-/// [`PublishError`]; `source` is never overwritten, nor any file that is copied.
-pub fn publish(baked: &Baked, document: &Path, source: &Path) -> Result<u64, PublishError> {
+/// [`PublishError`]; `source` is never overwritten, nor any file that is copied. `places` remembers the outputs of a run,
+/// so that no asset takes another's.
+pub fn publish(baked: &Baked, document: &Path, source: &Path, places: &mut Places) -> Result<u64, PublishError> {
     let source_folder = source.parent().unwrap_or(Path::new(""));
     let folder = document.parent().unwrap_or(Path::new(""));
     let mut sources: BTreeSet<PathBuf> = BTreeSet::new();
@@ -64,7 +99,11 @@ pub fn publish(baked: &Baked, document: &Path, source: &Path) -> Result<u64, Pub
     }
     for copy in &baked.copies {
         let path = source_folder.join(copy);
-        check_file(&path).map_err(|error| PublishError::Copy { path, error })?;
+        check_file(&path).map_err(|error| PublishError::Copy { path: path.clone(), error })?;
+        places.take(&folder.join(copy), &path)?;
+    }
+    for path in baked.files.iter().map(|f| folder.join(&f.path)).chain([document.to_owned()]) {
+        places.take(&path, &path)?;
     }
     let mut total = 0;
     for copy in &baked.copies {

@@ -105,7 +105,8 @@ where
         texels.iter().map(move |m| quantity.of(*m)).collect::<Vec<_>>()
     };
     let channels = quantity.channels();
-    let range = if encoding.format.is_normalised() {
+    // A PNG fallback holds [0, 1] only, so with one floats have a range too.
+    let range = if encoding.format.is_normalised() || encoding.fallback {
         let bounds = moments.sizes().iter().enumerate().fold([0.0_f32; 3], |bounds, (level, &(width, height))| {
             let of_level = (0..height)
                 .into_par_iter()

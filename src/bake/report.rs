@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::pyramids::Range;
 use super::settings::Model;
 use crate::choose::ModelLoss;
-use crate::gltf::material::LayerKind;
+use crate::gltf::material::{LayerKind, Material};
 
 /// What was done for one asset.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -21,6 +21,8 @@ pub struct AssetReport {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct LayerReport {
+    /// Index into `materials`.
+    pub index: usize,
     /// Name of the material, or `material <index>`.
     pub material: String,
     /// Which of its lobes.
@@ -33,6 +35,20 @@ pub struct LayerReport {
     pub loss: Option<ModelLoss>,
     /// What was left as it was, or is not as exact as it could be, and why.
     pub notes: Vec<String>,
+}
+
+impl LayerReport {
+    /// Of a material without bumps.
+    pub fn flat(material: &Material) -> Self {
+        Self {
+            index: material.index,
+            material: material.name.clone(),
+            layer: LayerKind::Base,
+            model: None,
+            loss: None,
+            notes: vec!["no normal or height map: left as it was".to_owned()],
+        }
+    }
 }
 
 /// A texture that was written.

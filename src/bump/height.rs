@@ -47,6 +47,8 @@ impl<'a> HeightOffsets<'a> {
     /// Reads offsets from `map`. `slope_per_step` is the slope where the height changes by 1 between neighbouring texels,
     /// across and down; `wrap` is the sampler's mode, likewise.
     pub fn new(map: &'a HeightMap, slope_per_step: [f32; 2], wrap: [Wrap; 2]) -> Self {
+        // An infinite slope has no product with a flat place.
+        let slope_per_step = slope_per_step.map(|s| s.clamp(f32::MIN, f32::MAX));
         Self { map, slope_per_step, wrap }
     }
 
@@ -55,16 +57,18 @@ impl<'a> HeightOffsets<'a> {
         (0..self.map.height())
             .into_par_iter()
             .map_init(
-                || vec![Offset::default(); self.map.width() as usize],
+                || vec![[0.0; 2]; self.map.width() as usize],
                 |slopes, y| {
                     self.slopes(y, slopes);
-                    slopes.iter().filter(|s| s.u * s.u + s.v * s.v > MAX_SLOPE * MAX_SLOPE).count() as u64
+                    let limit = f64::from(MAX_SLOPE * MAX_SLOPE);
+                    slopes.iter().filter(|[u, v]| u * u + v * v > limit).count() as u64
                 },
             )
             .sum()
     }
 
-    fn slopes(&self, y: u32, out: &mut [Offset]) {
+    /// Slopes across and up, in f64: differences of extreme heights overflow f32.
+    fn slopes(&self, y: u32, out: &mut [[f64; 2]]) {
         let (above, below, rows_apart) = self.wrap[1].neighbours(y, self.map.height());
         let mut heights = vec![0.0; 3 * out.len()];
         let (middle, rest) = heights.split_at_mut(out.len());
@@ -74,12 +78,12 @@ impl<'a> HeightOffsets<'a> {
         self.map.row(below, lower);
         for (x, slope) in out.iter_mut().enumerate() {
             let (left, right, columns_apart) = self.wrap[0].neighbours(x as u32, self.map.width());
-            let rise_right = middle[right as usize] - middle[left as usize];
-            let rise_up = upper[x] - lower[x];
-            *slope = Offset {
-                u: self.slope_per_step[0] * rise_right / columns_apart,
-                v: self.slope_per_step[1] * rise_up / rows_apart,
-            };
+            let rise_right = f64::from(middle[right as usize]) - f64::from(middle[left as usize]);
+            let rise_up = f64::from(upper[x]) - f64::from(lower[x]);
+            *slope = [
+                f64::from(self.slope_per_step[0]) * rise_right / f64::from(columns_apart),
+                f64::from(self.slope_per_step[1]) * rise_up / f64::from(rows_apart),
+            ];
         }
     }
 }
@@ -96,10 +100,10 @@ impl Rows for HeightOffsets<'_> {
     }
 
     fn row(&self, y: u32, out: &mut [Moments]) {
-        let mut slopes = vec![Offset::default(); out.len()];
+        let mut slopes = vec![[0.0; 2]; out.len()];
         self.slopes(y, &mut slopes);
-        for (texel, slope) in out.iter_mut().zip(slopes) {
-            *texel = Moments::flat(slope.clamped());
+        for (texel, [u, v]) in out.iter_mut().zip(slopes) {
+            *texel = Moments::flat(Offset::clamped(u, v));
         }
     }
 }

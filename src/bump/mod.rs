@@ -25,14 +25,10 @@ pub struct Offset {
 }
 
 impl Offset {
-    /// The same direction, no steeper than [`MAX_SLOPE`].
-    fn clamped(self) -> Self {
-        let length = (self.u * self.u + self.v * self.v).sqrt();
-        if length <= MAX_SLOPE {
-            self
-        } else {
-            let scale = MAX_SLOPE / length;
-            Self { u: self.u * scale, v: self.v * scale }
-        }
+    /// The same direction, no steeper than [`MAX_SLOPE`]. In f64, where no square of an f32 overflows.
+    fn clamped(u: f64, v: f64) -> Self {
+        let length = (u * u + v * v).sqrt();
+        let scale = if length > f64::from(MAX_SLOPE) { f64::from(MAX_SLOPE) / length } else { 1.0 };
+        Self { u: (u * scale) as f32, v: (v * scale) as f32 }
     }
 }

@@ -11,12 +11,11 @@ use crate::pyramid::{Moments, Rows};
 /// without direction is flat.
 pub fn offset_from_normal([x, y, z]: [f32; 3]) -> Offset {
     if is_steep([x, y, z]) {
-        let length = (x * x + y * y).sqrt();
-        if length > 0.0 {
-            let scale = -MAX_SLOPE / length;
-            return Offset { u: x * scale, v: y * scale };
-        }
-        return Offset::default();
+        // A multiple that is steeper still, for the clamp to cut.
+        let (x, y) = (f64::from(x), f64::from(y));
+        let longest = x.abs().max(y.abs());
+        let scale = if longest > 0.0 { -2.0 * f64::from(MAX_SLOPE) / longest } else { 0.0 };
+        return Offset::clamped(x * scale, y * scale);
     }
     Offset { u: -x / z, v: -y / z }
 }

@@ -5,12 +5,14 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use super::Outcome;
-use super::inputs::{self, Input};
+use super::inputs::{self, Input, InputError};
 use super::options::{DocumentOptions, TextureOptions};
 use super::progress::Progress;
 use super::report::{Asset, Report, Status};
 use crate::bake::report::AssetReport;
-use crate::bake::{BakeError, PublishError, Settings, Source, SourceError, bake, publish, read_file, write_file};
+use crate::bake::{
+    BakeError, JobError, Places, PublishError, Settings, Source, SourceError, bake, publish, read_file, write_file,
+};
 use crate::gltf::document::{Container, Document, DocumentError};
 use crate::texture::EncodeError;
 
@@ -26,10 +28,6 @@ pub struct Args {
     /// Output folder.
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
-    #[command(flatten)]
-    texture: TextureOptions,
-    #[command(flatten)]
-    document: DocumentOptions,
     /// Write what was done, chosen and skipped to a JSON file.
     #[arg(long, value_name = "FILE")]
     report: Option<PathBuf>,
@@ -39,6 +37,10 @@ pub struct Args {
     /// Print errors only.
     #[arg(short, long, conflicts_with = "json")]
     quiet: bool,
+    #[command(flatten)]
+    texture: TextureOptions,
+    #[command(flatten)]
+    document: DocumentOptions,
 }
 
 /// Why an asset is not baked.
@@ -58,7 +60,11 @@ impl AssetError {
     /// Whether trying again may help: something was busy or away, not missing or wrong.
     fn is_passing(&self) -> bool {
         let error = match self {
-            Self::Read(error) | Self::Bake(BakeError::Source(SourceError::Read { error, .. })) => Some(error),
+            Self::Read(error)
+            | Self::Bake(BakeError::Source(SourceError::Read { error, .. }))
+            | Self::Bake(BakeError::Job(JobError::Source { error: SourceError::Read { error, .. }, .. })) => {
+                Some(error)
+            }
             Self::Publish(error) => error.io(),
             _ => None,
         };
@@ -94,17 +100,25 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
         writeln!(err, "error: {error}")?;
         outcome = outcome.and(Outcome::Failed);
     }
+    // Among sources no output is safe, not even that of the other inputs.
+    if input_errors.iter().any(|e| matches!(e, InputError::OutputIsInput { .. })) {
+        return Ok(outcome);
+    }
     let progress = Progress::new(inputs.len(), args.quiet);
     let mut report = Report {
         version: env!("CARGO_PKG_VERSION"),
         settings: settings.to_json(settings.model),
-        assets: Vec::with_capacity(inputs.len()),
+        assets: input_errors
+            .iter()
+            .map(|e| Asset::failed(e.path().display().to_string(), 0.0, e.to_string()))
+            .collect(),
     };
+    let mut places = Places::default();
     for (index, input) in inputs.iter().enumerate() {
         let start = Instant::now();
         let name = input.path.display().to_string();
         progress.set(index, 0.0, &name);
-        let result = bake_one(input, &settings, &|share| progress.set(index, share, &name));
+        let result = bake_one(input, &settings, &mut places, &|share| progress.set(index, share, &name));
         let seconds = start.elapsed().as_secs_f64();
         let asset = match result {
             Ok((output, bytes, report)) => Asset {
@@ -120,35 +134,35 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
                 outcome = outcome.and(if error.is_passing() { Outcome::Retry } else { Outcome::Failed });
                 let message = error.to_string();
                 progress.suspend(|| writeln!(err, "error: {name}: {message}"))?;
-                Asset {
-                    input: name,
-                    output: None,
-                    status: Status::Failed,
-                    seconds,
-                    bytes: 0,
-                    error: Some(message),
-                    report: AssetReport::default(),
-                }
+                Asset::failed(name, seconds, message)
             }
         };
         if !args.quiet && !args.json {
-            progress.suspend(|| write!(out, "{}", asset.summary()))?;
+            progress.suspend(|| print(out, &asset.summary()))?;
         }
         report.assets.push(asset);
     }
     progress.finish();
     let mut json = serde_json::to_string_pretty(&report).map_err(io::Error::other)?;
     json.push('\n');
-    if args.json {
-        out.write_all(json.as_bytes())?;
-    }
     if let Some(path) = &args.report
         && let Err(error) = write_file(path, json.as_bytes())
     {
         writeln!(err, "error: {error}")?;
         outcome = outcome.and(Outcome::Failed);
     }
+    if args.json {
+        print(out, &json)?;
+    }
     Ok(outcome)
+}
+
+/// A reader that has seen enough (`roughcast bake ... | head`) does not end the bake.
+fn print(out: &mut dyn Write, text: &str) -> io::Result<()> {
+    match out.write_all(text.as_bytes()) {
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        result => result,
+    }
 }
 
 /// Settings that cannot be had together.
@@ -163,6 +177,7 @@ fn check_settings(settings: &Settings) -> Result<(), String> {
 fn bake_one(
     input: &Input,
     settings: &Settings,
+    places: &mut Places,
     advance: &dyn Fn(f32),
 ) -> Result<(PathBuf, u64, AssetReport), AssetError> {
     let bytes = read_file(&input.path).map_err(AssetError::Read)?;
@@ -172,6 +187,6 @@ fn bake_one(
     let baked = bake(&source, settings, advance)?;
     let extension = if baked.container == Container::Glb { "glb" } else { "gltf" };
     let output = input.folder.join(format!("{}.{extension}", input.stem));
-    let bytes = publish(&baked, &output, &input.path)?;
+    let bytes = publish(&baked, &output, &input.path, places)?;
     Ok((output, bytes, baked.report))
 }

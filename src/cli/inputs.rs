@@ -67,6 +67,20 @@ pub enum InputError {
     },
 }
 
+impl InputError {
+    /// What was named.
+    pub fn path(&self) -> &Path {
+        match self {
+            Self::NotAnAsset { path, .. }
+            | Self::EmptyFolder { path }
+            | Self::Walk { path, .. }
+            | Self::NotUtf8 { path }
+            | Self::SameOutput { path, .. }
+            | Self::OutputIsInput { path } => path,
+        }
+    }
+}
+
 /// The assets that `arguments` name, in a fixed order: files go to `output` itself, folders keep their structure below
 /// it. Inputs that cannot be used do not stop the others.
 pub fn find(arguments: &[PathBuf], output: &Path) -> (Vec<Input>, Vec<InputError>) {

@@ -10,11 +10,12 @@ use super::Outcome;
 use super::options::{TextureOptions, finite, unit_interval};
 use crate::bake::report::Content;
 use crate::bake::{
-    BareBake, BareTexture, OwnRoughness, PublishError, Relief, Settings, bake_map, read_file, write_file,
+    BareBake, BareError, BareTexture, OwnRoughness, PublishError, Relief, Settings, bake_map, read_file, write_file,
 };
 use crate::bump::{MAX_SLOPE, Wrap};
-use crate::map::{DecodeError, DecodeOptions, HeightMap, Image, MapError, NormalLayout, NormalMap, decode};
-use crate::texture::EncodeError;
+use crate::map::{
+    DecodeError, DecodeOptions, HeightMap, Image, MapError, NormalLayout, NormalMap, decode, decode_colours,
+};
 use crate::texture::ktx2::{Provenance, SourceDigest};
 
 /// Bake one bare normal or height map into KTX2 files.
@@ -54,14 +55,14 @@ pub struct Args {
     /// The surface's own roughness, 0 to 1; multiplies --roughness.
     #[arg(long, value_parser = unit_interval, value_name = "R")]
     roughness_factor: Option<f32>,
-    #[command(flatten)]
-    texture: TextureOptions,
     /// Print what was written as JSON.
     #[arg(long)]
     json: bool,
     /// Print errors only.
     #[arg(short, long, conflicts_with = "json")]
     quiet: bool,
+    #[command(flatten)]
+    texture: TextureOptions,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -84,7 +85,7 @@ enum MapCommandError {
     #[error("{}: {error}", path.display())]
     Map { path: PathBuf, error: MapError },
     #[error(transparent)]
-    Encode(#[from] EncodeError),
+    Bake(#[from] BareError),
     #[error(transparent)]
     Publish(#[from] PublishError),
     #[error("{}: expected an output apart from the source, found the source itself; choose another with -o", path.display())]
@@ -168,7 +169,7 @@ impl Written {
 }
 
 fn bake(args: &Args, settings: &Settings) -> Result<Written, MapCommandError> {
-    let (image, digest) = load(&args.image, args.layer.clone(), settings)?;
+    let (image, digest) = load(&args.image, args.layer.clone(), settings, decode)?;
     let mut sources = vec![digest];
     let failed = |error| MapCommandError::Map { path: args.image.clone(), error };
     let relief = if args.height {
@@ -185,7 +186,7 @@ fn bake(args: &Args, settings: &Settings) -> Result<Written, MapCommandError> {
     let own = match (&args.roughness, args.roughness_factor) {
         (None, None) => None,
         (image, factor) => {
-            let image = image.as_deref().map(|path| load(path, None, settings)).transpose()?;
+            let image = image.as_deref().map(|path| load(path, None, settings, decode_colours)).transpose()?;
             let image = image.map(|(image, digest)| {
                 sources.push(digest);
                 image
@@ -203,7 +204,7 @@ fn bake(args: &Args, settings: &Settings) -> Result<Written, MapCommandError> {
                 return Err(MapCommandError::OverSource { path });
             }
         }
-        files.push((path, texture_file(texture, &baked, &sources, settings)));
+        files.push((path, texture_file(texture, args, &baked, &sources, settings)));
     }
     let mut written = Vec::new();
     for (path, bytes) in files {
@@ -213,7 +214,26 @@ fn bake(args: &Args, settings: &Settings) -> Result<Written, MapCommandError> {
     Ok(Written { baked, files: written })
 }
 
-fn load(path: &Path, layer: Option<String>, settings: &Settings) -> Result<(Image, SourceDigest), MapCommandError> {
+impl Args {
+    /// How the images are read, for the provenance.
+    fn reading(&self) -> serde_json::Value {
+        let mut reading = if self.height {
+            json!({ "height": true, "heightScale": self.height_scale, "wrap": self.wrap })
+        } else {
+            json!({ "channels": format!("{:?}", self.channels).to_lowercase(), "greenDown": self.green_down })
+        };
+        reading["layer"] = json!(self.layer);
+        reading["roughnessFactor"] = json!(self.roughness_factor);
+        reading
+    }
+}
+
+fn load(
+    path: &Path,
+    layer: Option<String>,
+    settings: &Settings,
+    decode: fn(&[u8], &DecodeOptions) -> Result<Image, DecodeError>,
+) -> Result<(Image, SourceDigest), MapCommandError> {
     let bytes = read_file(path).map_err(|error| MapCommandError::Read { path: path.to_owned(), error })?;
     let extension = path.extension().map(|e| e.to_string_lossy().into_owned());
     let options = DecodeOptions { max_pixels: settings.max_texels, layer, extension };
@@ -222,9 +242,16 @@ fn load(path: &Path, layer: Option<String>, settings: &Settings) -> Result<(Imag
     Ok((image, SourceDigest { uri, blake3: blake3::hash(&bytes).to_hex().to_string() }))
 }
 
-fn texture_file(texture: &BareTexture, baked: &BareBake, sources: &[SourceDigest], settings: &Settings) -> Vec<u8> {
+fn texture_file(
+    texture: &BareTexture,
+    args: &Args,
+    baked: &BareBake,
+    sources: &[SourceDigest],
+    settings: &Settings,
+) -> Vec<u8> {
     let mut recorded = settings.to_json(baked.model);
     recorded["range"] = json!(texture.range);
+    recorded["map"] = args.reading();
     let keys = if settings.provenance {
         Provenance {
             version: env!("CARGO_PKG_VERSION").to_owned(),

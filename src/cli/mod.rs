@@ -1,7 +1,9 @@
 //! The command line: one file per command, each with its `Args` and a `run`.
 
 mod bake;
+mod check;
 mod inputs;
+mod inspect;
 mod map;
 mod options;
 mod progress;
@@ -28,6 +30,8 @@ pub struct Cli {
 enum Command {
     Bake(bake::Args),
     Map(map::Args),
+    Check(check::Args),
+    Inspect(inspect::Args),
 }
 
 /// How a command ended.
@@ -82,5 +86,7 @@ pub fn run(cli: Cli, out: &mut dyn Write, err: &mut dyn Write) -> std::io::Resul
     match cli.command {
         Command::Bake(args) => bake::run(&args, out, err),
         Command::Map(args) => map::run(&args, out, err),
+        Command::Check(args) => check::run(&args, out, err),
+        Command::Inspect(args) => inspect::run(&args, out, err),
     }
 }

@@ -53,6 +53,19 @@ pub enum Status {
 }
 
 impl Asset {
+    /// An input that could not be baked.
+    pub fn failed(input: String, seconds: f64, error: String) -> Self {
+        Self {
+            input,
+            output: None,
+            status: Status::Failed,
+            seconds,
+            bytes: 0,
+            error: Some(error),
+            report: AssetReport::default(),
+        }
+    }
+
     /// One line per asset, then one per layer that has something to say.
     pub fn summary(&self) -> String {
         let mut text = match self.status {

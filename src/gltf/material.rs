@@ -22,6 +22,55 @@ pub struct Mapping {
     pub transform: Option<Value>,
 }
 
+impl Mapping {
+    /// Whether both give the same texture coordinates, however they are spelled.
+    pub fn is_same(&self, other: &Self) -> bool {
+        self.uv() == other.uv()
+    }
+
+    /// The texture coordinates as a set and a transform.
+    pub fn uv(&self) -> UvTransform {
+        let raw = self.transform.as_ref().and_then(|t| RawTransform::deserialize(t).ok()).unwrap_or_default();
+        UvTransform {
+            tex_coord: raw.tex_coord.unwrap_or(self.tex_coord),
+            offset: raw.offset.unwrap_or([0.0; 2]),
+            rotation: raw.rotation.unwrap_or(0.0),
+            scale: raw.scale.unwrap_or([1.0; 2]),
+        }
+    }
+}
+
+/// `KHR_texture_transform` with its defaults.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UvTransform {
+    /// Index n of `TEXCOORD_n`.
+    pub tex_coord: u64,
+    /// Added last.
+    pub offset: [f64; 2],
+    /// In radians, counter-clockwise.
+    pub rotation: f64,
+    /// Applied first.
+    pub scale: [f64; 2],
+}
+
+impl UvTransform {
+    /// Transformed texture coordinates.
+    pub fn apply(&self, [u, v]: [f64; 2]) -> [f64; 2] {
+        let (sin, cos) = (libm::sin(self.rotation), libm::cos(self.rotation));
+        let (u, v) = (u * self.scale[0], v * self.scale[1]);
+        [cos * u + sin * v + self.offset[0], -sin * u + cos * v + self.offset[1]]
+    }
+}
+
+#[derive(Default, Deserialize)]
+#[serde(rename_all = "camelCase")]
+struct RawTransform {
+    tex_coord: Option<u64>,
+    offset: Option<[f64; 2]>,
+    rotation: Option<f64>,
+    scale: Option<[f64; 2]>,
+}
+
 /// Where a layer's bumps come from.
 #[derive(Clone, Debug, PartialEq)]
 pub enum BumpSource {
@@ -76,6 +125,8 @@ pub struct Layer {
     pub occlusion: Option<TextureUse>,
     /// Only for the base.
     pub anisotropy: Option<AnisotropySource>,
+    /// Whether `KHR_materials_pbrSpecularGlossiness` takes the place of metallic-roughness.
+    pub has_other_workflow: bool,
 }
 
 /// A material with its bumpy layers.
@@ -152,6 +203,7 @@ impl Material {
                     rotation: a.anisotropy_rotation,
                     texture: a.anisotropy_texture.map(RawTexture::into_use),
                 }),
+                has_other_workflow: extension("KHR_materials_pbrSpecularGlossiness").is_some(),
             });
         }
         if let Some((coat, normal)) = coat.and_then(|c| c.clearcoat_normal_texture.clone().map(|n| (c, n))) {
@@ -162,6 +214,7 @@ impl Material {
                 roughness_factor: coat.clearcoat_roughness_factor,
                 occlusion: None,
                 anisotropy: None,
+                has_other_workflow: false,
             });
         }
         let name = name.map_or_else(|| format!("material {index}"), str::to_owned);
@@ -179,12 +232,26 @@ struct Part<'a> {
 
 impl Part<'_> {
     fn read<T: DeserializeOwned>(self) -> Result<Option<T>, MaterialError> {
-        self.value.map(T::deserialize).transpose().map_err(|reason| MaterialError {
+        let failed = |reason: String| MaterialError {
             index: self.index,
             name: self.name.unwrap_or_default().to_owned(),
             part: self.part,
-            reason: reason.to_string(),
-        })
+            reason,
+        };
+        match self.value {
+            Some(value) if !fits_f32(value) => Err(failed("a number beyond the range of floats".to_owned())),
+            value => value.map(T::deserialize).transpose().map_err(|reason| failed(reason.to_string())),
+        }
+    }
+}
+
+/// Whether no number in `value` overflows the floats that engines read it into.
+fn fits_f32(value: &Value) -> bool {
+    match value {
+        Value::Number(number) => number.as_f64().is_none_or(|n| (n as f32).is_finite()),
+        Value::Array(elements) => elements.iter().all(fits_f32),
+        Value::Object(members) => members.values().all(fits_f32),
+        _ => true,
     }
 }
 

@@ -114,8 +114,14 @@ fn place_texture(
             json.remove(&format!("{at}/source"))?;
         }
     }
-    // Another form of the old image would win over the new one in engines that know it.
-    json.remove(&format!("{at}/extensions/EXT_texture_webp"))?;
+    // Other forms of the old image would win over the new one in engines that know them.
+    let extensions: serde_json::Map<String, Value> = json.read(&format!("{at}/extensions"))?.unwrap_or_default();
+    for (name, extension) in extensions {
+        if extension.get("source").is_some() && name != "KHR_texture_basisu" {
+            let name = name.replace('~', "~0").replace('/', "~1");
+            json.remove(&format!("{at}/extensions/{name}"))?;
+        }
+    }
     json.set(&format!("{at}/extensions/KHR_texture_basisu"), &json!({ "source": ktx2 }))?;
     Ok(index)
 }
@@ -215,7 +221,7 @@ fn images_of(texture: &Value) -> Vec<usize> {
 
 /// Pointers of all objects that may be a `textureInfo`, with the texture that each names: whatever has an `index`, so
 /// that textures of unknown extensions count as needed.
-fn references(root: &Value) -> Vec<(String, usize)> {
+pub(crate) fn references(root: &Value) -> Vec<(String, usize)> {
     fn walk(value: &Value, pointer: &str, found: &mut Vec<(String, usize)>) {
         match value {
             Value::Object(members) => {
@@ -236,10 +242,6 @@ fn references(root: &Value) -> Vec<(String, usize)> {
         }
     }
     let mut found = Vec::new();
-    for part in ["materials", "extensions"] {
-        if let Some(value) = root.get(part) {
-            walk(value, &format!("/{part}"), &mut found);
-        }
-    }
+    walk(root, "", &mut found);
     found
 }

@@ -63,6 +63,15 @@ pub struct TextureSource {
     pub sampler: Option<usize>,
     /// Wrap modes across and down.
     pub wrap: [Wrap; 2],
+    /// Whether the sampler reads mips.
+    pub samples_mips: bool,
+}
+
+impl TextureSource {
+    /// Whether both read the same image in the same way.
+    pub fn is_same(&self, other: &Self) -> bool {
+        self.location == other.location && self.sampler == other.sampler
+    }
 }
 
 /// Reads texture `texture` of `root`, the document's JSON.
@@ -78,14 +87,19 @@ pub fn texture_source(root: &Value, texture: usize) -> Result<TextureSource, Tex
     let image = images.next().ok_or(TextureError::NoSource { texture })?;
     let location = image_location(root, image)?;
     let other_forms = images.filter(|i| *i != image).map(|i| image_location(root, i)).collect::<Result<_, _>>()?;
-    let wrap = match raw.sampler {
-        None => [Wrap::Repeat; 2],
-        Some(sampler) => {
-            let raw: RawSampler = object(root, "samplers", sampler)?;
-            [wrap_mode(raw.wrap_s), wrap_mode(raw.wrap_t)]
-        }
+    let modes = match raw.sampler {
+        None => RawSampler::default(),
+        Some(sampler) => object(root, "samplers", sampler)?,
     };
-    Ok(TextureSource { image, location, other_forms, sampler: raw.sampler, wrap })
+    Ok(TextureSource {
+        image,
+        location,
+        other_forms,
+        sampler: raw.sampler,
+        wrap: [wrap_mode(modes.wrap_s), wrap_mode(modes.wrap_t)],
+        // NEAREST and LINEAR.
+        samples_mips: !matches!(modes.min_filter, Some(9728 | 9729)),
+    })
 }
 
 fn image_location(root: &Value, image: usize) -> Result<ImageLocation, TextureError> {
@@ -127,9 +141,10 @@ struct RawTexture {
     extensions: Value,
 }
 
-#[derive(Deserialize)]
+#[derive(Default, Deserialize)]
 #[serde(rename_all = "camelCase")]
 struct RawSampler {
+    min_filter: Option<u32>,
     wrap_s: Option<u32>,
     wrap_t: Option<u32>,
 }

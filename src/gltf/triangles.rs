@@ -31,6 +31,8 @@ struct Accessor {
     #[serde(default)]
     byte_offset: usize,
     component_type: u32,
+    #[serde(default)]
+    normalized: bool,
     count: usize,
 }
 
@@ -49,20 +51,21 @@ struct Elements<'a> {
     bytes: &'a [u8],
     stride: usize,
     component_type: u32,
+    normalized: bool,
     count: usize,
 }
 
 impl<'a> Accessors<'_, 'a> {
     /// Calls `visit` for each triangle that uses material `material` and has the texture coordinates of `mapping`.
     pub fn visit_material(&self, material: usize, mapping: &Mapping, mut visit: impl FnMut([Vertex; 3])) {
-        let transform = UvTransform::of(mapping);
+        let transform = mapping.uv();
         let meshes = self.root.get("meshes").and_then(Value::as_array);
         for primitive in meshes.into_iter().flatten().filter_map(|m| m.get("primitives")?.as_array()).flatten() {
             let is_used = primitive.get("material").and_then(Value::as_u64) == Some(material as u64);
             let is_triangles = primitive.get("mode").and_then(Value::as_u64).unwrap_or(4) == 4;
             if is_used && is_triangles {
                 // A primitive that cannot be read is not there.
-                let _ = self.visit_primitive(primitive, mapping.tex_coord, |triangle| {
+                let _ = self.visit_primitive(primitive, transform.tex_coord, |triangle| {
                     visit(triangle.map(|v| Vertex { uv: transform.apply(v.uv), ..v }));
                 });
             }
@@ -99,7 +102,12 @@ impl<'a> Accessors<'_, 'a> {
         let bytes = (self.buffer)(view.buffer)?;
         let bytes = bytes.get(view.byte_offset..)?.get(..view.byte_length)?.get(accessor.byte_offset..)?;
         let stride = view.byte_stride.unwrap_or(components * component_bytes(accessor.component_type)?);
-        Some(Elements { bytes, stride, component_type: accessor.component_type, count: accessor.count })
+        // A stride of 0, and counts beyond the bytes, would make small files take long.
+        if stride == 0 || accessor.count > bytes.len() / stride + 1 {
+            return None;
+        }
+        let Accessor { component_type, normalized, count, .. } = accessor;
+        Some(Elements { bytes, stride, component_type, normalized, count })
     }
 }
 
@@ -115,8 +123,8 @@ impl Elements<'_> {
         for (i, value) in vector.iter_mut().enumerate() {
             *value = match (self.component_type, self.component(index, i)?) {
                 (5126, &[a, b, c, d]) => f64::from(f32::from_le_bytes([a, b, c, d])),
-                (5121, &[a]) => f64::from(a) / 255.0,
-                (5123, &[a, b]) => f64::from(u16::from_le_bytes([a, b])) / 65535.0,
+                (5121, &[a]) => f64::from(a) / if self.normalized { 255.0 } else { 1.0 },
+                (5123, &[a, b]) => f64::from(u16::from_le_bytes([a, b])) / if self.normalized { 65535.0 } else { 1.0 },
                 _ => return None,
             };
         }
@@ -140,29 +148,6 @@ fn component_bytes(component_type: u32) -> Option<usize> {
         5122 | 5123 => Some(2),
         5125 | 5126 => Some(4),
         _ => None,
-    }
-}
-
-/// `KHR_texture_transform` as a matrix.
-struct UvTransform([[f64; 3]; 2]);
-
-impl UvTransform {
-    fn of(mapping: &Mapping) -> Self {
-        #[derive(Default, Deserialize)]
-        #[serde(default)]
-        struct Raw {
-            offset: [f64; 2],
-            rotation: f64,
-            scale: Option<[f64; 2]>,
-        }
-        let raw = mapping.transform.as_ref().and_then(|t| Raw::deserialize(t).ok()).unwrap_or_default();
-        let [su, sv] = raw.scale.unwrap_or([1.0; 2]);
-        let (sin, cos) = (libm::sin(raw.rotation), libm::cos(raw.rotation));
-        Self([[cos * su, sin * sv, raw.offset[0]], [-sin * su, cos * sv, raw.offset[1]]])
-    }
-
-    fn apply(&self, [u, v]: [f64; 2]) -> [f64; 2] {
-        self.0.map(|[a, b, c]| a * u + b * v + c)
     }
 }
 

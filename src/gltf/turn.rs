@@ -44,7 +44,8 @@ pub fn turn_map<'a>(
     Accessors { root, buffer }.visit_material(material, mapping, |triangle| {
         raster.draw(triangle, main_direction.map(f64::from));
     });
-    (raster.visits > 0.0 && raster.visits <= MAX_VISITS).then(|| raster.finish())
+    let has_frame = raster.sums.iter().any(|sum| sum.count > 0.0);
+    (has_frame && raster.visits <= MAX_VISITS).then(|| raster.finish())
 }
 
 /// Sum of the frames of a texel's triangles: T and B, each along e1 and e2.
@@ -80,9 +81,11 @@ impl Raster {
         let (top, bottom) = (bound(1, f64::min).ceil(), bound(1, f64::max).floor());
         let area = (right - left + 1.0).max(0.0) * (bottom - top + 1.0).max(0.0);
         let Some(tangents) = tangents(triangle) else { return };
+        if area <= 0.0 {
+            return;
+        }
         self.visits += area;
-        // Negated, so that NaN ends here too.
-        if !(self.visits <= MAX_VISITS) {
+        if self.visits.is_nan() || self.visits > MAX_VISITS {
             self.visits = f64::INFINITY;
             return;
         }

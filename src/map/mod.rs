@@ -17,7 +17,7 @@ pub use format::Format;
 pub use height::HeightMap;
 pub use image::{Image, Samples};
 pub use normal::{NormalLayout, NormalMap};
-pub use texels::Rgba;
+pub use texels::{Rgba, decode_colours};
 
 /// Why an image cannot serve as the map that it is meant to be.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

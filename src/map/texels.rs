@@ -1,7 +1,36 @@
 //! Images as rows of RGBA values, as a shader reads them.
 
-use super::{Image, Samples};
+use super::{DecodeError, DecodeOptions, Format, Image, Samples, decode};
 use crate::pyramid::Rows;
+
+impl Image {
+    /// Grey with alpha as four channels, as engines read such files; other images as they are. Two channels of a KTX2 or an
+    /// EXR are red and green and must not be passed here.
+    pub fn with_grey_as_colour(self) -> Self {
+        fn expand<T: Copy>(samples: &[T]) -> Vec<T> {
+            samples.chunks_exact(2).flat_map(|t| [t[0], t[0], t[0], t[1]]).collect()
+        }
+        if self.channels != 2 {
+            return self;
+        }
+        let samples = match &self.samples {
+            Samples::U8(v) => Samples::U8(expand(v)),
+            Samples::U16(v) => Samples::U16(expand(v)),
+            Samples::F32(v) => Samples::F32(expand(v)),
+        };
+        Self { channels: 4, samples, ..self }
+    }
+}
+
+/// Decodes an image whose channels are colours or packed values, not a vector.
+///
+/// # Errors
+/// Those of [`decode`].
+pub fn decode_colours(bytes: &[u8], options: &DecodeOptions) -> Result<Image, DecodeError> {
+    let image = decode(bytes, options)?;
+    let is_red_green = matches!(Format::detect(bytes, None), Some(Format::Ktx2 | Format::Exr));
+    Ok(if is_red_green { image } else { image.with_grey_as_colour() })
+}
 
 /// An image read as RGBA: one channel is grey, two are red and green, alpha is 1 where there is none.
 pub struct Rgba<'a>(pub &'a Image);
@@ -38,5 +67,20 @@ fn expand<T: Copy>(samples: &[T], channels: usize, out: &mut [[f32; 4]], value: 
             3 => [at(0), at(1), at(2), 1.0],
             _ => [at(0), at(1), at(2), at(3)],
         };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn grey_with_alpha_is_grey_in_every_colour() {
+        let image = Image { width: 1, height: 1, channels: 2, samples: Samples::U8(vec![51, 7]) };
+        let mut texel = [[0.0; 4]];
+        Rgba(&image.clone()).row(0, &mut texel);
+        assert_eq!(texel, [[0.2, 7.0 / 255.0, 0.0, 1.0]]);
+        Rgba(&image.with_grey_as_colour()).row(0, &mut texel);
+        assert_eq!(texel, [[0.2, 0.2, 0.2, 7.0 / 255.0]]);
     }
 }

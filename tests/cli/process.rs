@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::fs;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -49,6 +50,11 @@ pub fn bake(input: &Path, output: &Path, options: &[&str]) -> Run {
 /// The repository's `fixtures/`.
 pub fn fixtures() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures")
+}
+
+/// Tells a person what was not tested. Written past the test runner, which keeps what tests that pass print.
+pub fn skipped(what: &str) {
+    let _ = writeln!(io::stderr(), "skipped: {what}");
 }
 
 /// BLAKE3 of every file below `folder`, by its path with `/`.

@@ -1,5 +1,6 @@
 //! Why a job fails.
 
+use crate::bake::chain::GridError;
 use crate::bake::source::SourceError;
 use crate::map::{DecodeError, MapError};
 use crate::texture::EncodeError;
@@ -48,6 +49,9 @@ pub enum JobError {
         /// The image's URI or number.
         texture: String,
     },
+    /// Maps whose common grid is too large.
+    #[error(transparent)]
+    Grid(#[from] GridError),
     /// A texture cannot be encoded.
     #[error(transparent)]
     Encode(#[from] EncodeError),

@@ -10,7 +10,7 @@ use crate::bake::report::Content;
 use crate::bake::settings::Model;
 use crate::gltf::material::LayerKind;
 use crate::gltf::texture::TextureSource;
-use crate::map::{Image, Rgba};
+use crate::map::{Image, Rgba, decode_colours};
 use crate::pyramid::{Area, Pyramid, Rows};
 
 impl Job<'_> {
@@ -32,10 +32,10 @@ impl Job<'_> {
             let none = OwnTextures { roughness: None, anisotropy: None };
             let own = layer.own.as_ref().unwrap_or(&none);
             let images = OwnImages {
-                roughness: own.roughness.as_ref().map(|t| self.image(t)).transpose()?,
-                anisotropy: own.anisotropy.as_ref().map(|t| self.image(t)).transpose()?,
+                roughness: own.roughness.as_ref().map(|t| self.image(t, &layer.name, decode_colours)).transpose()?,
+                anisotropy: own.anisotropy.as_ref().map(|t| self.image(t, &layer.name, decode_colours)).transpose()?,
             };
-            let base = self.base(relief, layer, &images);
+            let base = self.base(relief, layer, &images)?;
             let size = (base.width(), base.height());
             let resampled = (size != moments.sizes()[0]).then(|| Pyramid::new(Area::new(relief, size.0, size.1)));
             let moments = resampled.as_ref().unwrap_or(moments);
@@ -45,21 +45,28 @@ impl Job<'_> {
                 // glTF's clearcoat has no anisotropy.
                 LayerKind::Clearcoat => Model::Isotropic,
             };
-            let (model, loss) = fold.model(self.settings, widest);
+            let (model, loss) = match (&layer.own, self.settings.model) {
+                // Without its own lobe nothing tells how much of the ellipse will be seen: keep all of it.
+                (Err(_), Model::Auto) => (widest, None),
+                _ => fold.model(self.settings, widest),
+            };
             let folded = match &layer.own {
                 Ok(_) if self.settings.profile.is_portable() && model != Model::None => {
                     Some(fold.bake(model, Encoding::of(self.settings, 3))?)
                 }
                 _ => None,
             };
-            let too_wide = if folded.is_some() { fold.texels_above_one() } else { 0 };
+            let too_wide = if folded.is_some() { fold.texels_above_one(model) } else { 0 };
             for user in &users {
-                let LayerOutcome { report, model: chosen, unit_factor, anisotropy, .. } = &mut output.layers[*user];
+                let LayerOutcome { report, model: chosen, unit_factor, anisotropy, circle, .. } =
+                    &mut output.layers[*user];
                 *chosen = model;
                 report.model = Some(model);
                 report.loss = loss;
                 if let (Err(reason), true) = (&layer.own, self.settings.profile.is_portable()) {
-                    report.model = Some(Model::None);
+                    if !self.settings.profile.has_pyramid() {
+                        report.model = Some(Model::None);
+                    }
                     report.notes.push(reason.clone());
                 }
                 if let Some(loss) = loss.filter(|l| model == Model::Isotropic && l.isotropic > self.settings.max_error)
@@ -75,6 +82,12 @@ impl Job<'_> {
                     ));
                 }
                 if let Some(folded) = &folded {
+                    if model == Model::Isotropic && layers[*user].layer.anisotropy.is_some() {
+                        *circle = Some(layers[*user].pointer("extensions/KHR_materials_anisotropy"));
+                        report
+                            .notes
+                            .push("a circle took the place of the material's own anisotropy, as asked for".into());
+                    }
                     *unit_factor = Some(layers[*user].roughness_factor_pointer());
                     *anisotropy = folded
                         .anisotropy
@@ -117,9 +130,9 @@ impl Job<'_> {
     }
 
     /// The layer's own lobe on a grid that holds it and the bumps.
-    fn base<'r>(&self, relief: &Relief, layer: &LayerPlan, own: &'r OwnImages) -> BaseRows<'r> {
+    fn base<'r>(&self, relief: &Relief, layer: &LayerPlan, own: &'r OwnImages) -> Result<BaseRows<'r>, JobError> {
         let sizes = [&own.roughness, &own.anisotropy].into_iter().flatten().map(|i| (i.width, i.height));
-        let (width, height) = grid(self.settings.target, sizes.chain([(relief.width(), relief.height())]));
+        let (width, height) = grid(self.settings, sizes.chain([(relief.width(), relief.height())]))?;
         let anisotropy = layer.layer.anisotropy.as_ref().map(|a| {
             let rotation = f64::from(a.rotation);
             BaseAnisotropy {
@@ -129,7 +142,7 @@ impl Job<'_> {
             }
         });
         let roughness = own.roughness.as_ref().map(Rgba);
-        BaseRows::new(width, height, roughness, layer.layer.roughness_factor, anisotropy)
+        Ok(BaseRows::new(width, height, roughness, layer.layer.roughness_factor, anisotropy))
     }
 }
 

@@ -19,7 +19,7 @@ use crate::bump::{Frame, MAX_SLOPE};
 use crate::gltf::material::Mapping;
 use crate::gltf::rewrite::Slot;
 use crate::gltf::texture::{ImageLocation, TextureSource};
-use crate::map::{DecodeOptions, HeightMap, Image, NormalLayout, NormalMap, decode};
+use crate::map::{DecodeError, DecodeOptions, HeightMap, Image, NormalLayout, NormalMap, decode};
 use crate::pyramid::{Area, Pyramid, Rows};
 use crate::texture::ktx2::{Ktx2, PROVENANCE_KEY};
 
@@ -53,6 +53,8 @@ pub struct LayerOutcome {
     pub unit_factor: Option<String>,
     /// JSON pointer of `KHR_materials_anisotropy`, where it was written.
     pub anisotropy: Option<String>,
+    /// JSON pointer of `KHR_materials_anisotropy`, where a circle took the place of the material's own ellipse.
+    pub circle: Option<String>,
     /// What the vendor extension says, where it is written.
     pub pyramid: Option<PyramidUse>,
 }
@@ -95,6 +97,11 @@ pub fn run(
     let steep = relief.steep_texels();
     for layer in &plan.layers {
         let mut notes = layer.notes.clone();
+        if !plan.source.samples_mips {
+            notes.push(
+                "the sampler's minFilter never reads mips: the bake has no effect in engines that obey it".into(),
+            );
+        }
         if steep > 0 {
             notes.push(format!(
                 "{steep} of {} texels are steeper than {} or point below the surface: taken as that steep",
@@ -104,6 +111,7 @@ pub fn run(
         }
         output.layers.push(LayerOutcome {
             report: LayerReport {
+                index: layer.material,
                 material: layer.name.clone(),
                 layer: layer.layer.kind,
                 model: None,
@@ -113,10 +121,11 @@ pub fn run(
             model: Model::None,
             unit_factor: None,
             anisotropy: None,
+            circle: None,
             pyramid: None,
         });
     }
-    let (width, height) = grid(settings.target, [(relief.width(), relief.height())]);
+    let (width, height) = grid(settings, [(relief.width(), relief.height())])?;
     let moments = Pyramid::new(Area::new(&relief, width, height));
     if settings.profile.is_portable() {
         output.textures.push(JobTexture {
@@ -140,6 +149,9 @@ pub fn run(
 /// The bumps of a map on the grid of its texture.
 type ReliefPyramid<'a> = Pyramid<Area<&'a Relief>>;
 
+/// [`decode`] for bumps, [`crate::map::decode_colours`] for all else.
+type Decode = fn(&[u8], &DecodeOptions) -> Result<Image, DecodeError>;
+
 struct Job<'a> {
     plan: &'a ReliefPlan,
     source: &'a Source<'a>,
@@ -149,9 +161,9 @@ struct Job<'a> {
 
 impl Job<'_> {
     fn relief(&self) -> Result<Relief, JobError> {
-        let image = self.image(&self.plan.source)?;
-        let failed =
-            |error| JobError::Map { material: self.material(), texture: describe(&self.plan.source.location), error };
+        let material = self.plan.layers.first().map(|l| l.name.clone()).unwrap_or_default();
+        let image = self.image(&self.plan.source, &material, decode)?;
+        let failed = |error| JobError::Map { material, texture: describe(&self.plan.source.location), error };
         match self.plan.kind {
             ReliefKind::Normals => {
                 Ok(Relief::Normals(NormalMap::new(image, NormalLayout::Auto, false).map_err(failed)?))
@@ -164,8 +176,9 @@ impl Job<'_> {
         }
     }
 
-    fn image(&self, texture: &TextureSource) -> Result<Image, JobError> {
-        let (material, name) = (self.material(), describe(&texture.location));
+    /// Decodes the image of `texture`, which `material` uses.
+    fn image(&self, texture: &TextureSource, material: &str, decode: Decode) -> Result<Image, JobError> {
+        let (material, name) = (material.to_owned(), describe(&texture.location));
         let read = |location: &ImageLocation| {
             self.source.image(location).map_err(|error| JobError::Source {
                 material: material.clone(),
@@ -186,10 +199,6 @@ impl Job<'_> {
         let options = DecodeOptions { max_pixels: self.settings.max_texels, extension, ..Default::default() };
         decode(&bytes, &options).map_err(|error| JobError::Decode { material, texture: name, error })
     }
-
-    fn material(&self) -> String {
-        self.plan.layers.first().map(|l| l.name.clone()).unwrap_or_default()
-    }
 }
 
 fn is_baked(file: &[u8]) -> bool {
@@ -203,6 +212,6 @@ pub fn describe(location: &ImageLocation) -> String {
             format!("{}...", uri.chars().take(32).collect::<String>())
         }
         ImageLocation::Uri(uri) => uri.clone(),
-        ImageLocation::BufferView(view) => format!("in bufferViews[{view}]"),
+        ImageLocation::BufferView(view) => format!("bufferViews[{view}]"),
     }
 }

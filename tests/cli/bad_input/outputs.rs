@@ -3,7 +3,7 @@
 use std::fs;
 use std::process::Command;
 
-use super::super::process::{bake, files};
+use super::super::process::{bake, files, skipped};
 use super::*;
 
 /// Bakes the scene to `output`, which does not work, and returns the one line.
@@ -131,7 +131,7 @@ fn a_full_and_a_read_only_disk() {
         let run = match command.map(Run::from) {
             Ok(run) if run.code != 77 && !run.err.starts_with("unshare") => run,
             _ => {
-                eprintln!("skipped: a disk with {options} needs the right to mount one");
+                skipped(&format!("a disk with {options} needs the right to mount one"));
                 return;
             }
         };

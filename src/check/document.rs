@@ -1,0 +1,215 @@
+//! A baked glTF document and everything that it refers to.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::io;
+use std::path::{Path, PathBuf};
+
+use ::gltf::json::Root;
+use serde_json::Value;
+
+use super::extension::RoughnessPyramid;
+use super::findings::{Code, Finding, Findings};
+use super::materials::check_materials;
+use super::origin::Origin;
+use super::sources::{Sources, Textures};
+use super::texture::{Usage, check_texture};
+use crate::bake::{Source, SourceError};
+use crate::gltf::document::{Document, DocumentError};
+use crate::gltf::texture::ImageLocation;
+use crate::gltf::uri::{Uri, relative_path};
+
+const KTX2_MIME: &str = "image/ktx2";
+
+/// What was found in a document.
+pub struct CheckedDocument {
+    /// In a fixed order: the document's own, then those of its images.
+    pub findings: Vec<Finding>,
+    /// Files that it names, relative to it.
+    pub files: Vec<PathBuf>,
+}
+
+/// Checks the document `name`, whose bytes are `bytes`. `read` takes paths relative to it.
+pub fn check_document(
+    name: &str,
+    bytes: &[u8],
+    read: &(dyn Fn(&Path) -> io::Result<Vec<u8>> + Sync),
+    origin: Option<&Origin<'_>>,
+) -> CheckedDocument {
+    let mut findings = Findings::new(name, "");
+    let parsed = Document::parse(bytes).and_then(|document| {
+        let value = document.json().value("")?.unwrap_or_default();
+        Ok((document, value))
+    });
+    // The typed reader is somebody else's: what it refuses, engines refuse.
+    let parsed = parsed.map_err(|e: DocumentError| e.to_string()).and_then(|(document, value)| {
+        let root = ::gltf::json::deserialize::from_value(value.clone()).map_err(|e| e.to_string())?;
+        Ok((document, value, root))
+    });
+    let (document, value, root): (Document, Value, Root) = match parsed {
+        Ok(parsed) => parsed,
+        Err(reason) => {
+            findings.add(
+                Code::UnreadableDocument,
+                "",
+                format!("expected a glTF 2.0 document, found: {reason}; bake again"),
+            );
+            return CheckedDocument { findings: findings.into_list(), files: Vec::new() };
+        }
+    };
+    let textures = Textures::of(&root, &mut findings);
+    let uses = check_materials(&root, &value, &textures, &mut findings);
+    textures.check_declarations(&root, &value, &mut findings);
+    let source = Source { stem: "", document: &document, read };
+    check_buffers(&root, &source, &mut findings);
+
+    let mut images = Images { name, source, root: &root, origin, contents: BTreeMap::new(), list: Vec::new() };
+    for image in 0..root.images.len() {
+        images.check(image, &textures, &uses.normals, &mut findings);
+    }
+    for (pointer, pyramid) in &uses.pyramids {
+        check_contents(pointer, pyramid, &textures, &images.contents, &mut findings);
+    }
+    let mut list = findings.into_list();
+    list.append(&mut images.list);
+    CheckedDocument { findings: list, files: files(&root) }
+}
+
+fn check_buffers(root: &Root, source: &Source<'_>, findings: &mut Findings) {
+    for (index, buffer) in root.buffers.iter().enumerate() {
+        let Some(uri) = &buffer.uri else { continue };
+        let place = format!("/buffers/{index}");
+        match source.uri(uri) {
+            Ok(bytes) if (bytes.len() as u64) < buffer.byte_length.0 => {
+                let message = format!("expected {} bytes, found {}; bake again", buffer.byte_length.0, bytes.len());
+                findings.add(Code::BadReference, place, message);
+            }
+            result => report(result.err(), &place, findings),
+        }
+    }
+}
+
+fn report(error: Option<SourceError>, place: &str, findings: &mut Findings) {
+    match error {
+        None => {}
+        Some(error @ SourceError::Read { .. }) => findings.add(Code::MissingFile, place, error.to_string()),
+        Some(error) => findings.add(Code::BadReference, place, error.to_string()),
+    }
+}
+
+/// The images of a document, checked one by one.
+struct Images<'a> {
+    name: &'a str,
+    source: Source<'a>,
+    root: &'a Root,
+    origin: Option<&'a Origin<'a>>,
+    /// What the provenance of KTX2 images says that they hold; no entry for other images.
+    contents: BTreeMap<usize, Option<String>>,
+    list: Vec<Finding>,
+}
+
+impl Images<'_> {
+    fn check(&mut self, index: usize, textures: &Textures, normals: &BTreeSet<usize>, findings: &mut Findings) {
+        let Some(image) = self.root.images.get(index) else { return };
+        let place = format!("/images/{index}");
+        let location = match (&image.uri, &image.buffer_view) {
+            (Some(uri), _) => ImageLocation::Uri(uri.clone()),
+            (None, Some(view)) => ImageLocation::BufferView(view.value()),
+            (None, None) => {
+                findings.add(Code::BadReference, place, "expected a uri or a bufferView, found neither; bake again");
+                return;
+            }
+        };
+        let bytes = match self.source.image(&location) {
+            Ok(bytes) => bytes,
+            Err(error) => return report(Some(error), &place, findings),
+        };
+        let users = || textures.iter();
+        let is_ktx2 = bytes.starts_with(&ktx2::MAGIC);
+        let mime = image.mime_type.as_ref().map(|m| m.0.as_str());
+        for (texture, sources) in users().filter(|(_, t)| t.core == Some(index)) {
+            self.check_core_source(texture, *sources, is_ktx2, &bytes, mime, findings);
+        }
+        let usage = Usage {
+            by_basisu: users().any(|(_, t)| t.basisu == Some(index)),
+            normals: users().any(|(i, t)| normals.contains(&i) && [t.core, t.basisu].contains(&Some(index))),
+        };
+        if is_ktx2 || usage.by_basisu {
+            let mut of_image = match external(&location) {
+                Some(path) => Findings::new(beside(self.name, &path), ""),
+                None => Findings::new(self.name, place),
+            };
+            let content = check_texture(&bytes, usage, self.origin, &mut of_image);
+            self.contents.insert(index, content);
+            self.list.append(&mut of_image.into_list());
+        }
+    }
+
+    fn check_core_source(
+        &self,
+        texture: usize,
+        sources: Sources,
+        is_ktx2: bool,
+        bytes: &[u8],
+        mime: Option<&str>,
+        findings: &mut Findings,
+    ) {
+        let place = format!("/textures/{texture}/source");
+        let is_plain = matches!(bytes, [0x89, b'P', b'N', b'G', ..] | [0xFF, 0xD8, 0xFF, ..]);
+        if mime == Some(KTX2_MIME) {
+            let message = "expected image/png, image/jpeg or none, found image/ktx2: validators and Bevy refuse it; bake to \
+                           external files";
+            findings.add(Code::KtxMimeType, place, message);
+        } else if is_ktx2 && sources.basisu == sources.core {
+            let message = "expected PNG or JPEG, found the KTX2 itself: off the specification, as --gltf dual is";
+            findings.add(Code::DualSource, place, message);
+        } else if !is_plain {
+            let message =
+                "expected PNG or JPEG, found something else: some engines show nothing; bake with --gltf fallback";
+            findings.add(Code::SourceFormat, place, message);
+        }
+    }
+}
+
+/// Textures of the extension: a KTX2 each, holding what the extension says.
+fn check_contents(
+    pointer: &str,
+    pyramid: &RoughnessPyramid,
+    textures: &Textures,
+    contents: &BTreeMap<usize, Option<String>>,
+    findings: &mut Findings,
+) {
+    for (member, texture, expected) in pyramid.textures().into_iter().filter(|(_, t, _)| *t < textures.len()) {
+        let place = format!("{pointer}/{member}");
+        match textures.get(texture).basisu.and_then(|image| contents.get(&image)) {
+            None => {
+                let message = "expected a texture with a KTX2 image on KHR_texture_basisu, found none; bake again";
+                findings.add(Code::ExtensionTexture, place, message);
+            }
+            Some(Some(found)) if found != expected => {
+                let message = format!("expected a texture of content {expected}, found {found}; bake again");
+                findings.add(Code::ExtensionContent, place, message);
+            }
+            Some(_) => {}
+        }
+    }
+}
+
+fn files(root: &Root) -> Vec<PathBuf> {
+    let images = root.images.iter().filter_map(|i| i.uri.as_ref());
+    let uris = images.chain(root.buffers.iter().filter_map(|b| b.uri.as_ref()));
+    uris.filter_map(|uri| relative_path(uri).ok()).collect()
+}
+
+fn external(location: &ImageLocation) -> Option<PathBuf> {
+    match location {
+        ImageLocation::Uri(uri) => match Uri::parse(uri) {
+            Ok(Uri::Path(path)) => Some(path),
+            _ => None,
+        },
+        ImageLocation::BufferView(_) => None,
+    }
+}
+
+fn beside(document: &str, path: &Path) -> String {
+    Path::new(document).with_file_name("").join(path).display().to_string()
+}

@@ -1,0 +1,164 @@
+//! What `check` can find: one table. `docs/findings.md` gives cause and remedy of each; a test holds the two together.
+
+use std::fmt;
+
+use serde::{Serialize, Serializer};
+
+/// How bad a finding is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Severity {
+    /// Some engine will show it wrong or refuse it, or it is not what its source says.
+    Error,
+    /// Fine for some engines only, or a sign of something forgotten.
+    Warning,
+    /// Nothing to act upon by itself.
+    Note,
+}
+
+impl Severity {
+    /// As in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Error => "error",
+            Self::Warning => "warning",
+            Self::Note => "note",
+        }
+    }
+}
+
+/// Declares the table: variant, number, severity, title.
+macro_rules! codes {
+    ($($variant:ident $number:literal $severity:ident $title:literal;)*) => {
+        /// The kind of a finding. Numbers are grouped by hundreds and never used again for anything else.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub enum Code {
+            $(#[doc = $title] $variant = $number,)*
+        }
+
+        impl Code {
+            /// All of them, in the order of their numbers.
+            pub const ALL: &'static [Self] = &[$(Self::$variant,)*];
+
+            /// How bad it is.
+            pub fn severity(self) -> Severity {
+                match self { $(Self::$variant => Severity::$severity,)* }
+            }
+
+            /// What is wrong, in a few words.
+            pub fn title(self) -> &'static str {
+                match self { $(Self::$variant => $title,)* }
+            }
+        }
+    };
+}
+
+codes! {
+    // 10xx: the KTX2 container (KTX File Format Specification 2.0).
+    UnreadableTexture 1001 Error "the KTX2 file cannot be read";
+    IncompleteChain 1002 Error "the mip chain is not complete";
+    LevelOrder 1003 Error "levels are not stored smallest first, one after the other";
+    LevelAlignment 1004 Error "a level is not aligned";
+    LevelLength 1005 Error "a level does not have the length that its size and format make";
+    KeyOrder 1006 Error "keys are not sorted";
+    KeyEntry 1007 Error "the key/value data is malformed";
+    NoWriter 1008 Note "KTXwriter is missing";
+    Orientation 1009 Error "KTXorientation is not rd";
+    Swizzle 1010 Error "KTXswizzle is not rgba";
+    Descriptor 1011 Error "the data format descriptor does not match the format";
+    TypeSize 1012 Error "typeSize does not match the format";
+    Transfer 1013 Error "the transfer function is not linear";
+    Primaries 1014 Error "the colour primaries are not unspecified";
+    // 11xx: KHR_texture_basisu, section "KTX v2 Images with Basis Universal Supercompression".
+    NotBasis 1101 Warning "KHR_texture_basisu names a texture that is not Basis Universal";
+    NotUastc 1102 Warning "the payload is ETC1S";
+    Scheme 1103 Error "the supercompression scheme is not allowed for the payload";
+    Channels 1104 Error "the payload's channels are not RGB";
+    SizeMultiple 1105 Error "width or height is not a multiple of 4";
+    NotPlain2d 1106 Error "the texture is not a plain 2D one";
+    AlphaPremultiplied 1107 Error "alpha is marked as premultiplied";
+    // 12xx: glTF.
+    UnreadableDocument 1201 Error "the glTF file cannot be read";
+    MissingFile 1202 Error "a file that the document names cannot be read";
+    BadReference 1203 Error "a reference of the document leads nowhere";
+    NoImage 1204 Error "a texture has no image";
+    DualSource 1205 Note "source and KHR_texture_basisu name the same KTX2";
+    KtxMimeType 1206 Error "a core source is declared as image/ktx2";
+    SourceFormat 1207 Warning "a core source is neither PNG nor JPEG";
+    NotDeclared 1208 Error "an extension is used but not in extensionsUsed";
+    NeedlesslyRequired 1209 Warning "KHR_texture_basisu is required though every texture has a fallback";
+    NotRequired 1210 Error "a texture has no fallback but KHR_texture_basisu is not required";
+    VendorRequired 1211 Error "the roughness pyramid extension is required";
+    NoTangentSpace 1212 Error "anisotropy without a normal texture or tangents";
+    LeftOver 1213 Warning "no document names this baked texture";
+    // 13xx: ROUGHCAST_materials_roughness_pyramid.
+    ExtensionSchema 1301 Error "the extension does not satisfy its schema";
+    ExtensionTexture 1302 Error "a texture of the extension has no KTX2 image";
+    ExtensionContent 1303 Error "a texture of the extension holds something else";
+    // 14xx: texels.
+    UndecodableLevel 1401 Error "a level cannot be decoded";
+    NormalLength 1402 Error "normals are not of unit length";
+    NotFinite 1403 Error "texels are NaN or infinite";
+    // 15xx: where textures come from.
+    NoProvenance 1501 Note "the texture has no provenance";
+    BadProvenance 1502 Error "the provenance cannot be read";
+    OtherVersion 1503 Note "the texture was baked by another version";
+    MissingSource 1504 Error "a source cannot be read";
+    Stale 1505 Error "a source has changed since the bake";
+    Untraceable 1506 Warning "without provenance, staleness cannot be told";
+}
+
+impl fmt::Display for Code {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "RC{:04}", *self as u16)
+    }
+}
+
+impl Serialize for Code {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+/// One thing that is wrong, or worth knowing.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Finding {
+    /// Its kind.
+    pub code: Code,
+    /// How bad it is.
+    pub severity: Severity,
+    /// The file.
+    pub file: String,
+    /// Where in the file: a JSON pointer, `level <n>`, `key <name>` and the like; empty for the whole file.
+    pub place: String,
+    /// What was expected, what was found, what to do.
+    pub message: String,
+}
+
+/// The findings about one file, while they are made.
+pub struct Findings {
+    file: String,
+    /// Place of an image inside the file; empty for a file by itself.
+    within: String,
+    list: Vec<Finding>,
+}
+
+impl Findings {
+    /// For `file`, or for the image at `within` it.
+    pub fn new(file: impl Into<String>, within: impl Into<String>) -> Self {
+        Self { file: file.into(), within: within.into(), list: Vec::new() }
+    }
+
+    /// Adds one. `place` is relative to the image where the findings are about one inside a document.
+    pub fn add(&mut self, code: Code, place: impl AsRef<str>, message: impl Into<String>) {
+        let parts = [self.within.as_str(), place.as_ref()];
+        let place = parts.into_iter().filter(|p| !p.is_empty()).collect::<Vec<_>>().join(", ");
+        let (severity, file, message) = (code.severity(), self.file.clone(), message.into());
+        self.list.push(Finding { code, severity, file, place, message });
+    }
+
+    /// All that were added, in their order.
+    pub fn into_list(self) -> Vec<Finding> {
+        self.list
+    }
+}

@@ -1,0 +1,25 @@
+//! Reading baked files again: findings as data, from readers that are not our writers.
+//!
+//! Containers and descriptors are read with crate `ktx2`, payloads with `basisu` and `bcdec_rs`, documents with crate
+//! `gltf`. This room does no I/O and knows no kernels.
+
+mod basisu;
+mod container;
+mod descriptor;
+mod document;
+mod extension;
+mod findings;
+mod materials;
+mod origin;
+mod render;
+mod sources;
+mod texels;
+mod texture;
+
+pub use document::{CheckedDocument, check_document};
+pub use extension::{FrameName, RoughnessModel, RoughnessPyramid, TextureInfo};
+pub use findings::{Code, Finding, Findings, Severity};
+pub use origin::Origin;
+pub use render::{Report, json, text};
+pub use texels::MAX_LENGTH_DEVIATION;
+pub use texture::{Usage, check_texture};

@@ -1,0 +1,50 @@
+//! One KTX2 file, whatever refers to it.
+
+use super::basisu::check_basisu;
+use super::container::{check_keys, check_levels};
+use super::descriptor::check_descriptor;
+use super::findings::{Code, Findings};
+use super::origin::{Origin, check_origin};
+use super::texels::check_texels;
+use crate::texture::ktx2::{Ktx2, PROVENANCE_KEY};
+
+/// How a document uses a texture.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Usage {
+    /// `KHR_texture_basisu` names it.
+    pub by_basisu: bool,
+    /// A material reads normals from it.
+    pub normals: bool,
+}
+
+/// Checks a KTX2 file; returns what its provenance says that its texels are. Files that name another writer are only
+/// read: their making is not ours to judge.
+pub fn check_texture(
+    bytes: &[u8],
+    usage: Usage,
+    origin: Option<&Origin<'_>>,
+    findings: &mut Findings,
+) -> Option<String> {
+    let file = match Ktx2::parse(bytes) {
+        Ok(file) => file,
+        Err(error) => {
+            findings.add(Code::UnreadableTexture, "", format!("expected a KTX2 file, found: {error}"));
+            return None;
+        }
+    };
+    if is_foreign(&file) {
+        return None;
+    }
+    check_levels(&file, findings);
+    check_keys(&file, bytes, findings);
+    check_descriptor(&file, findings);
+    check_basisu(&file, usage.by_basisu, findings);
+    let content = check_origin(&file, origin, findings).map(|provenance| provenance.content);
+    check_texels(&file, usage.normals || content.as_deref() == Some("normal"), findings);
+    content
+}
+
+fn is_foreign(file: &Ktx2<'_>) -> bool {
+    let value = |name: &str| file.key_values().find(|(key, _)| *key == name).map(|(_, value)| value);
+    value(PROVENANCE_KEY).is_none() && value("KTXwriter").is_some_and(|writer| !writer.starts_with(b"roughcast"))
+}

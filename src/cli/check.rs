@@ -1,0 +1,170 @@
+//! `roughcast check`.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use clap::ValueEnum;
+use walkdir::WalkDir;
+
+use super::Outcome;
+use crate::bake::read_file;
+use crate::check::{self, Code, Findings, Origin, Report, Usage};
+use crate::gltf::document::Document;
+
+/// Read baked files again and report what engines would stumble over, or what is not up to date.
+///
+/// Ends with exit code 3 when there is an error or a warning; notes alone are fine. docs/findings.md explains each
+/// finding.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Example:\n  roughcast check baked --source assets --format json")]
+pub struct Args {
+    /// .gltf, .glb or .ktx2 files, or folders of them.
+    #[arg(required = true, value_name = "BAKED")]
+    baked: Vec<PathBuf>,
+    /// Folder of the sources: compare them with the digests that were recorded when they were baked.
+    #[arg(long, value_name = "DIR")]
+    source: Option<PathBuf>,
+    /// How to print the findings.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Format {
+    /// A line per finding, and a summary
+    Text,
+    /// schemas/check.schema.json
+    Json,
+}
+
+/// A file to check.
+struct Target {
+    path: PathBuf,
+    /// Its place below the argument: that of its source below the source folder.
+    below: PathBuf,
+}
+
+/// Checks what `args` name.
+///
+/// # Errors
+/// When `out` or `err` cannot be written to.
+pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<Outcome> {
+    let mut outcome = Outcome::Done;
+    let mut targets = Vec::new();
+    for argument in &args.baked {
+        match find(argument) {
+            Ok(found) => targets.extend(found),
+            Err(error) => {
+                writeln!(err, "error: {}: expected a baked file or folder, found: {error}", argument.display())?;
+                outcome = outcome.and(Outcome::Failed);
+            }
+        }
+    }
+    let (textures, documents): (Vec<_>, Vec<_>) = targets.into_iter().partition(|t| has_extension(&t.path, "ktx2"));
+    let mut report = Report { version: env!("CARGO_PKG_VERSION"), files: Vec::new(), findings: Vec::new() };
+    let mut named: BTreeSet<PathBuf> = BTreeSet::new();
+    for target in &documents {
+        match read_file(&target.path) {
+            Ok(bytes) => named.extend(check_document(target, &bytes, args.source.as_deref(), &mut report)),
+            Err(error) => {
+                writeln!(err, "error: {}: expected a readable file, found: {error}", target.path.display())?;
+                outcome = outcome.and(Outcome::Failed);
+            }
+        }
+    }
+    for target in &textures {
+        if fs::canonicalize(&target.path).is_ok_and(|path| named.contains(&path)) {
+            continue;
+        }
+        match read_file(&target.path) {
+            Ok(bytes) => check_texture(target, &bytes, args.source.as_deref(), &mut report),
+            Err(error) => {
+                writeln!(err, "error: {}: expected a readable file, found: {error}", target.path.display())?;
+                outcome = outcome.and(Outcome::Failed);
+            }
+        }
+    }
+    match args.format {
+        Format::Text => out.write_all(check::text(&report).as_bytes())?,
+        Format::Json => out.write_all(check::json(&report).map_err(io::Error::other)?.as_bytes())?,
+    }
+    Ok(if report.is_failure() { outcome.and(Outcome::Findings) } else { outcome })
+}
+
+/// Documents and textures at `argument`, in a fixed order.
+fn find(argument: &Path) -> io::Result<Vec<Target>> {
+    if !fs::metadata(argument)?.is_dir() {
+        let known = ["gltf", "glb", "ktx2"].iter().any(|e| has_extension(argument, e));
+        let name = argument.file_name().map(PathBuf::from).filter(|_| known);
+        let below = name.ok_or_else(|| io::Error::other("a file that is neither .gltf, .glb nor .ktx2"))?;
+        return Ok(vec![Target { path: argument.to_owned(), below }]);
+    }
+    let mut targets = Vec::new();
+    for entry in WalkDir::new(argument).follow_links(true).sort_by_file_name() {
+        let entry = entry?;
+        if entry.file_type().is_file() && ["gltf", "glb", "ktx2"].iter().any(|e| has_extension(entry.path(), e)) {
+            let below = entry.path().strip_prefix(argument).unwrap_or(entry.path()).to_owned();
+            targets.push(Target { path: entry.into_path(), below });
+        }
+    }
+    if targets.is_empty() { Err(io::Error::other("no .gltf, .glb or .ktx2 files in it")) } else { Ok(targets) }
+}
+
+/// Checks a document and what it refers to; returns the real paths of the files that it names.
+fn check_document(target: &Target, bytes: &[u8], source: Option<&Path>, report: &mut Report) -> Vec<PathBuf> {
+    let name = target.path.display().to_string();
+    let folder = target.path.parent().unwrap_or(Path::new(""));
+    let mut findings = Findings::new(&name, "");
+    let source_path = source.map(|folder| folder.join(&target.below));
+    let source_folder = source_path.as_deref().and_then(Path::parent).unwrap_or(Path::new("")).to_owned();
+    let read_source = |path: &Path| read_file(&source_folder.join(path));
+    let origin = source_path.and_then(|path| match source_document(&path) {
+        Ok(document) => Some(Origin::new(Some(document), &read_source)),
+        Err(reason) => {
+            let message =
+                format!("expected the document that this was baked from at {}, found: {reason}", path.display());
+            findings.add(Code::MissingSource, "", message);
+            None
+        }
+    });
+    let checked = check::check_document(&name, bytes, &|path| read_file(&folder.join(path)), origin.as_ref());
+    report.files.push(name);
+    report.findings.extend(findings.into_list());
+    report.findings.extend(checked.findings);
+    checked.files.iter().filter_map(|file| fs::canonicalize(folder.join(file)).ok()).collect()
+}
+
+/// The document that `path` was baked from: of the same name, in either container.
+fn source_document(path: &Path) -> Result<Document, String> {
+    let candidates = [path.to_owned(), path.with_extension("gltf"), path.with_extension("glb")];
+    let existing = candidates.iter().find(|c| c.is_file()).ok_or("no .gltf or .glb of that name")?;
+    let bytes = read_file(existing).map_err(|e| e.to_string())?;
+    Document::parse(&bytes).map_err(|e| e.to_string())
+}
+
+fn check_texture(target: &Target, bytes: &[u8], source: Option<&Path>, report: &mut Report) {
+    let name = target.path.display().to_string();
+    let mut findings = Findings::new(&name, "");
+    if is_of_document(&target.below) {
+        let message = "expected a document that names it, found none: an earlier bake left it behind; delete it";
+        findings.add(Code::LeftOver, "", message);
+    } else {
+        let source_folder = source.map(|folder| folder.join(target.below.parent().unwrap_or(Path::new(""))));
+        let read_source = |path: &Path| read_file(&source_folder.as_deref().unwrap_or(Path::new("")).join(path));
+        let origin = source_folder.as_ref().map(|_| Origin::new(None, &read_source));
+        check::check_texture(bytes, Usage::default(), origin.as_ref(), &mut findings);
+    }
+    report.files.push(name);
+    report.findings.extend(findings.into_list());
+}
+
+/// Whether `bake` would have put it there for a document: into a folder `<stem>.roughcast`.
+fn is_of_document(below: &Path) -> bool {
+    below.parent().is_some_and(|folder| has_extension(folder, "roughcast"))
+}
+
+fn has_extension(path: &Path, extension: &str) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case(extension))
+}

@@ -1,0 +1,160 @@
+//! `roughcast inspect`.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+use serde_json::Value;
+
+use super::Outcome;
+use crate::bake::{PublishError, Source, SourceError, read_file, write_file};
+use crate::gltf::document::{Document, DocumentError};
+use crate::gltf::texture::ImageLocation;
+use crate::inspect::{
+    DocumentFacts, ExtractError, TextureFacts, document_text, extract, inspect_document, inspect_texture, texture_text,
+};
+use crate::texture::ktx2::ReadError;
+
+/// Tell what is in a KTX2 or glTF file: levels, formats, ranges, where it comes from.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Example:\n  roughcast inspect baked/helmet.gltf --extract levels")]
+pub struct Args {
+    /// .ktx2, .gltf or .glb.
+    file: PathBuf,
+    /// Print JSON (schemas/inspect.schema.json).
+    #[arg(long)]
+    json: bool,
+    /// Write every level of every KTX2 texture as PNG, or EXR where it holds floats: <name>.level0.png and so on.
+    #[arg(long, value_name = "DIR")]
+    extract: Option<PathBuf>,
+}
+
+/// Why a file cannot be inspected.
+#[derive(Debug, thiserror::Error)]
+enum InspectError {
+    #[error("expected a readable file, found: {0}")]
+    Read(#[from] io::Error),
+    #[error(transparent)]
+    Ktx2(#[from] ReadError),
+    #[error(transparent)]
+    Document(#[from] DocumentError),
+    #[error("image {image}: {error}")]
+    Source { image: String, error: SourceError },
+    #[error("image {image}: {error}")]
+    Extract { image: String, error: ExtractError },
+    #[error(transparent)]
+    Publish(#[from] PublishError),
+    #[error("expected an output folder apart from the inputs, found that {} is one; choose another", path.display())]
+    OverInput { path: PathBuf },
+}
+
+/// What a file is.
+#[derive(Serialize)]
+#[serde(tag = "kind", rename_all = "lowercase")]
+enum Facts {
+    Ktx2(Box<TextureFacts>),
+    Gltf(DocumentFacts),
+}
+
+/// Inspects the file that `args` name.
+///
+/// # Errors
+/// When `out` or `err` cannot be written to.
+pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<Outcome> {
+    match inspect(args) {
+        Err(error) => {
+            writeln!(err, "error: {}: {error}", args.file.display())?;
+            Ok(Outcome::Failed)
+        }
+        Ok((facts, written)) => {
+            let name = args.file.display().to_string();
+            if args.json {
+                writeln!(out, "{}", serde_json::to_string_pretty(&facts).map_err(io::Error::other)?)?;
+            } else {
+                let text = match &facts {
+                    Facts::Ktx2(facts) => texture_text(&name, facts),
+                    Facts::Gltf(facts) => document_text(&name, facts),
+                };
+                out.write_all(text.as_bytes())?;
+                for path in written {
+                    writeln!(out, "wrote {}", path.display())?;
+                }
+            }
+            Ok(Outcome::Done)
+        }
+    }
+}
+
+fn inspect(args: &Args) -> Result<(Facts, Vec<PathBuf>), InspectError> {
+    let bytes = read_file(&args.file)?;
+    let mut inputs: BTreeSet<PathBuf> = fs::canonicalize(&args.file).into_iter().collect();
+    if bytes.starts_with(&ktx2::MAGIC) || args.file.extension().is_some_and(|e| e.eq_ignore_ascii_case("ktx2")) {
+        let facts = inspect_texture(&bytes)?;
+        let written = match &args.extract {
+            Some(folder) => write_levels(&stem(&args.file), &bytes, folder, &inputs)?,
+            None => Vec::new(),
+        };
+        return Ok((Facts::Ktx2(Box::new(facts)), written));
+    }
+    let document = Document::parse(&bytes)?;
+    let folder = args.file.parent().unwrap_or(Path::new(""));
+    let source = Source { stem: "", document: &document, read: &|path| read_file(&folder.join(path)) };
+    let facts = inspect_document(&source)?;
+    let mut written = Vec::new();
+    if let Some(output) = &args.extract {
+        let images = images(&document)?;
+        inputs.extend(images.iter().filter_map(|(name, _)| fs::canonicalize(folder.join(name)).ok()));
+        let mut taken = BTreeSet::new();
+        for (image, location) in images {
+            let bytes =
+                source.image(&location).map_err(|error| InspectError::Source { image: image.clone(), error })?;
+            if bytes.starts_with(&ktx2::MAGIC) {
+                let stem = stem(Path::new(&image));
+                // Case-insensitive file systems see one file where names differ by case only.
+                let numbered = |n: u32| if n == 1 { stem.clone() } else { format!("{stem}-{n}") };
+                let unique = (1..).map(numbered).find(|name| taken.insert(name.to_lowercase())).unwrap_or_default();
+                written.extend(write_levels(&unique, &bytes, output, &inputs)?);
+            }
+        }
+    }
+    Ok((Facts::Gltf(facts), written))
+}
+
+/// The images of a document, each with a name: its path, or `image<index>`.
+fn images(document: &Document) -> Result<Vec<(String, ImageLocation)>, DocumentError> {
+    let list: Vec<Value> = document.json().read("/images")?.unwrap_or_default();
+    let image = |(index, image): (usize, &Value)| {
+        let uri = image.get("uri").and_then(Value::as_str);
+        let view = image.get("bufferView").and_then(Value::as_u64).and_then(|v| usize::try_from(v).ok());
+        let path = uri.and_then(|uri| crate::gltf::uri::relative_path(uri).ok());
+        let name = path.map_or_else(|| format!("image{index}"), |p| p.to_string_lossy().into_owned());
+        let location = uri.map(|uri| ImageLocation::Uri(uri.to_owned())).or(view.map(ImageLocation::BufferView))?;
+        Some((name, location))
+    };
+    Ok(list.iter().enumerate().filter_map(image).collect())
+}
+
+fn write_levels(
+    stem: &str,
+    bytes: &[u8],
+    folder: &Path,
+    inputs: &BTreeSet<PathBuf>,
+) -> Result<Vec<PathBuf>, InspectError> {
+    let pictures = extract(bytes).map_err(|error| InspectError::Extract { image: stem.to_owned(), error })?;
+    let mut written = Vec::with_capacity(pictures.len());
+    for picture in pictures {
+        let path = folder.join(format!("{stem}.level{}.{}", picture.level, picture.extension));
+        if fs::canonicalize(&path).is_ok_and(|path| inputs.contains(&path)) {
+            return Err(InspectError::OverInput { path });
+        }
+        write_file(&path, &picture.bytes)?;
+        written.push(path);
+    }
+    Ok(written)
+}
+
+fn stem(path: &Path) -> String {
+    path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+}

@@ -1,0 +1,230 @@
+//! The facts of a glTF document that have to do with bumps and roughness.
+
+use ktx2::MAGIC;
+use serde::Serialize;
+use serde_json::Value;
+
+use super::texture::{TextureFacts, inspect_texture};
+use crate::bake::{EXTENSION, Source};
+use crate::check::RoughnessPyramid;
+use crate::gltf::document::DocumentError;
+use crate::gltf::rewrite::references;
+use crate::gltf::texture::ImageLocation;
+use crate::map::{DecodeOptions, Format, decode};
+
+/// A glTF document.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct DocumentFacts {
+    /// `asset.generator`.
+    pub generator: Option<String>,
+    /// `extensionsUsed`.
+    pub extensions_used: Vec<String>,
+    /// `extensionsRequired`.
+    pub extensions_required: Vec<String>,
+    /// In the file's order.
+    pub materials: Vec<MaterialFacts>,
+}
+
+/// A material.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct MaterialFacts {
+    /// Its name, or `material <index>`.
+    pub name: String,
+    /// `roughnessFactor`.
+    pub roughness_factor: f64,
+    /// References to textures of bumps, roughness and anisotropy.
+    pub slots: Vec<SlotFacts>,
+    /// `ROUGHCAST_materials_roughness_pyramid` as it stands.
+    pub pyramid: Option<Value>,
+    /// What is wrong with it.
+    pub errors: Vec<String>,
+}
+
+/// A reference of a material to a texture.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct SlotFacts {
+    /// JSON pointer inside the material, without the leading slash.
+    pub slot: String,
+    /// Index into `textures`.
+    pub texture: usize,
+    /// Its images: `source` and those of extensions.
+    pub images: Vec<ImageFacts>,
+}
+
+/// An image of a texture.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct ImageFacts {
+    /// `source`, or the extension that names it.
+    pub named_by: String,
+    /// Index into `images`.
+    pub image: usize,
+    /// Its URI, shortened where it holds data, or `bufferViews[n]`.
+    pub location: String,
+    /// Format, size and so on of images that are not KTX2.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub picture: Option<PictureFacts>,
+    /// Facts of a KTX2.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ktx2: Option<TextureFacts>,
+    /// Why there are no facts.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error: Option<String>,
+}
+
+/// An image that is not KTX2.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PictureFacts {
+    /// `PNG`, `JPEG` and so on.
+    pub format: String,
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// 1 to 4.
+    pub channels: u32,
+    /// Bits of a channel as decoded.
+    pub bits: u32,
+}
+
+/// References that have to do with bumps and roughness.
+const SLOTS: [&str; 7] = [
+    "normalTexture",
+    "metallicRoughnessTexture",
+    "anisotropyTexture",
+    "clearcoatNormalTexture",
+    "clearcoatRoughnessTexture",
+    "offsetTexture",
+    "roughnessTexture",
+];
+
+/// Reads the facts of the document of `source`. What is wrong inside is told among them.
+///
+/// # Errors
+/// [`DocumentError`] when the JSON cannot be read as a tree.
+pub fn inspect_document(source: &Source<'_>) -> Result<DocumentFacts, DocumentError> {
+    let root: Value = source.document.json().value("")?.unwrap_or_default();
+    let texts = |key: &str| {
+        let list = root.get(key).and_then(Value::as_array).into_iter().flatten();
+        list.filter_map(Value::as_str).map(str::to_owned).collect()
+    };
+    let references = references(&root);
+    let materials = root.get("materials").and_then(Value::as_array).into_iter().flatten().enumerate();
+    let materials = materials.map(|(index, material)| {
+        let prefix = format!("/materials/{index}/");
+        let slots = references.iter().filter_map(|(pointer, texture)| {
+            let slot = pointer.strip_prefix(&prefix)?;
+            SLOTS.contains(&slot.rsplit('/').next()?).then(|| (slot.to_owned(), *texture))
+        });
+        material_facts(index, material, slots.collect(), &root, source)
+    });
+    Ok(DocumentFacts {
+        generator: root.pointer("/asset/generator").and_then(Value::as_str).map(str::to_owned),
+        extensions_used: texts("extensionsUsed"),
+        extensions_required: texts("extensionsRequired"),
+        materials: materials.collect(),
+    })
+}
+
+fn material_facts(
+    index: usize,
+    material: &Value,
+    slots: Vec<(String, usize)>,
+    root: &Value,
+    source: &Source<'_>,
+) -> MaterialFacts {
+    let mut errors = Vec::new();
+    let pyramid = material.get("extensions").and_then(|e| e.get(EXTENSION)).cloned();
+    if let Some(Err(reason)) = pyramid.as_ref().map(RoughnessPyramid::read) {
+        errors.push(format!("{EXTENSION}: expected what its schema describes, found: {reason}"));
+    }
+    let count = root.get("textures").and_then(Value::as_array).map_or(0, Vec::len);
+    let slots = slots.into_iter().map(|(slot, texture)| {
+        if texture >= count {
+            errors.push(format!("{slot}: expected an index below {count}, found {texture}"));
+        }
+        SlotFacts { slot, texture, images: images(texture, root, source) }
+    });
+    let slots = slots.collect();
+    MaterialFacts {
+        name: material.get("name").and_then(Value::as_str).map_or_else(|| format!("material {index}"), str::to_owned),
+        roughness_factor: material
+            .pointer("/pbrMetallicRoughness/roughnessFactor")
+            .and_then(Value::as_f64)
+            .unwrap_or(1.0),
+        slots,
+        pyramid,
+        errors,
+    }
+}
+
+fn images(texture: usize, root: &Value, source: &Source<'_>) -> Vec<ImageFacts> {
+    let Some(texture) = root.pointer(&format!("/textures/{texture}")) else { return Vec::new() };
+    let extensions = texture.get("extensions").and_then(Value::as_object).into_iter().flatten();
+    let named = extensions.filter_map(|(name, e)| Some((name.clone(), e.get("source")?)));
+    let core = texture.get("source").map(|index| ("source".to_owned(), index));
+    let all = core.into_iter().chain(named);
+    all.filter_map(|(name, index)| Some((name, usize::try_from(index.as_u64()?).ok()?)))
+        .map(|(named_by, image)| image_facts(named_by, image, root, source))
+        .collect()
+}
+
+fn image_facts(named_by: String, image: usize, root: &Value, source: &Source<'_>) -> ImageFacts {
+    let mut facts = ImageFacts { named_by, image, location: String::new(), picture: None, ktx2: None, error: None };
+    let Some(location) = location(root, image) else {
+        facts.error = Some(format!("expected images[{image}] with a uri or a bufferView, found none"));
+        return facts;
+    };
+    let options = match &location {
+        ImageLocation::Uri(uri) => {
+            facts.location =
+                if uri.len() > 256 { format!("{}...", uri.chars().take(32).collect::<String>()) } else { uri.clone() };
+            let extension = uri.rsplit_once('.').map(|(_, e)| e.to_owned());
+            DecodeOptions { extension, ..DecodeOptions::default() }
+        }
+        ImageLocation::BufferView(view) => {
+            facts.location = format!("bufferViews[{view}]");
+            DecodeOptions::default()
+        }
+    };
+    let bytes = match source.image(&location) {
+        Ok(bytes) => bytes,
+        Err(error) => {
+            facts.error = Some(error.to_string());
+            return facts;
+        }
+    };
+    if bytes.starts_with(&MAGIC) {
+        match inspect_texture(&bytes) {
+            Ok(ktx2) => facts.ktx2 = Some(ktx2),
+            Err(error) => facts.error = Some(error.to_string()),
+        }
+        return facts;
+    }
+    let format = Format::detect(&bytes, options.extension.as_deref());
+    match decode(&bytes, &options) {
+        Ok(image) => {
+            facts.picture = Some(PictureFacts {
+                format: format.map(|f| f.to_string()).unwrap_or_default(),
+                width: image.width,
+                height: image.height,
+                channels: image.channels,
+                bits: image.samples.bits(),
+            });
+        }
+        Err(error) => facts.error = Some(error.to_string()),
+    }
+    facts
+}
+
+/// Where image `image` of the document is.
+pub fn location(root: &Value, image: usize) -> Option<ImageLocation> {
+    let image = root.pointer(&format!("/images/{image}"))?;
+    match (image.get("uri").and_then(Value::as_str), image.get("bufferView").and_then(Value::as_u64)) {
+        (Some(uri), _) => Some(ImageLocation::Uri(uri.to_owned())),
+        (None, view) => Some(ImageLocation::BufferView(usize::try_from(view?).ok()?)),
+    }
+}

@@ -1,0 +1,11 @@
+//! What is in a KTX2 or glTF file, as facts, as text for a person, and as pictures. This room does no I/O.
+
+mod document;
+mod extract;
+mod render;
+mod texture;
+
+pub use document::{DocumentFacts, ImageFacts, MaterialFacts, PictureFacts, SlotFacts, inspect_document};
+pub use extract::{ExtractError, Picture, extract};
+pub use render::{document_text, texture_text};
+pub use texture::{DescriptorFacts, KeyFacts, LevelFacts, SampleFacts, TextureFacts, inspect_texture};

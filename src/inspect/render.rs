@@ -1,0 +1,110 @@
+//! Facts as text for a person.
+
+use serde_json::Value;
+
+use super::document::{DocumentFacts, ImageFacts, MaterialFacts};
+use super::texture::TextureFacts;
+
+/// A KTX2 file in full.
+pub fn texture_text(name: &str, facts: &TextureFacts) -> String {
+    let mut text = format!("{name}: {}\n", summary(facts));
+    if let Some(d) = &facts.descriptor {
+        let alpha = if d.alpha_premultiplied { "premultiplied" } else { "straight" };
+        text += &format!(
+            "  descriptor: model {}, primaries {}, transfer {}, alpha {alpha}, blocks of {} x {} texels in {} bytes\n",
+            d.model, d.primaries, d.transfer, d.block[0], d.block[1], d.block_bytes
+        );
+    }
+    text += "  level          size      offset      stored  uncompressed\n";
+    for (index, level) in facts.levels.iter().enumerate() {
+        let size = format!("{} x {}", level.width, level.height);
+        text += &format!(
+            "  {index:>5} {size:>13} {:>11} {:>11} {:>13}\n",
+            level.offset, level.stored_bytes, level.uncompressed_bytes
+        );
+    }
+    for entry in &facts.keys {
+        text += &format!("  {}: {}\n", entry.key, entry.value);
+    }
+    if let Some(provenance) = &facts.provenance {
+        text += &format!("  provenance: {} baked by version {}\n", provenance.content, provenance.version);
+        for (key, value) in provenance.settings.as_object().into_iter().flatten() {
+            text += &format!("    {key}: {}\n", plain(value));
+        }
+        for source in &provenance.sources {
+            text += &format!("    source {} (BLAKE3 {})\n", source.uri, source.blake3);
+        }
+    }
+    text
+}
+
+/// A glTF document: what its materials make of bumps and roughness.
+pub fn document_text(name: &str, facts: &DocumentFacts) -> String {
+    let list = |names: &[String]| if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+    let mut text = format!("{name}: {} material(s)\n", facts.materials.len());
+    text += &format!("  extensions used: {}\n", list(&facts.extensions_used));
+    text += &format!("  extensions required: {}\n", list(&facts.extensions_required));
+    for material in &facts.materials {
+        text += &material_text(material);
+    }
+    text
+}
+
+fn material_text(material: &MaterialFacts) -> String {
+    let mut text = format!("  {} (roughness factor {})\n", material.name, material.roughness_factor);
+    if material.slots.is_empty() {
+        text += "    no textures of bumps or roughness\n";
+    }
+    for slot in &material.slots {
+        text += &format!("    {}: textures[{}]\n", slot.slot, slot.texture);
+        for image in &slot.images {
+            text += &format!("      {}: {}\n", image.named_by, image_text(image));
+        }
+    }
+    for (key, value) in material.pyramid.as_ref().and_then(Value::as_object).into_iter().flatten() {
+        if !key.ends_with("Texture") {
+            text += &format!("    {key}: {}\n", plain(value));
+        }
+    }
+    for error in &material.errors {
+        text += &format!("    error: {error}\n");
+    }
+    text
+}
+
+fn image_text(image: &ImageFacts) -> String {
+    let facts = match (&image.ktx2, &image.picture, &image.error) {
+        (Some(ktx2), ..) => {
+            let content = ktx2.provenance.as_ref().map(|p| format!("{}, ", p.content)).unwrap_or_default();
+            format!("{content}{}", summary(ktx2))
+        }
+        (None, Some(p), _) => {
+            format!("{} x {}, {}, {} channel(s) of {} bits", p.width, p.height, p.format, p.channels, p.bits)
+        }
+        (None, None, error) => format!("error: {}", error.as_deref().unwrap_or_default()),
+    };
+    format!("{} ({facts})", image.location)
+}
+
+/// Size, format and levels in a line.
+fn summary(facts: &TextureFacts) -> String {
+    let model = facts.descriptor.as_ref().map_or("no descriptor", |d| d.model.as_str());
+    let format = if facts.format == "UNDEFINED" { model } else { &facts.format };
+    let stored: u64 = facts.levels.iter().map(|l| l.stored_bytes).sum();
+    let mut text = format!("{} x {}", facts.width, facts.height);
+    for (count, what) in [(facts.depth, "slices"), (facts.layers, "layers")] {
+        if count > 0 {
+            text += &format!(", {count} {what}");
+        }
+    }
+    if facts.faces > 1 {
+        text += &format!(", {} faces", facts.faces);
+    }
+    let levels = facts.levels.len();
+    text + &format!(", {format}, supercompression {}, {levels} level(s), {stored} bytes", facts.supercompression)
+}
+
+/// JSON without the quotes of a text.
+fn plain(value: &Value) -> String {
+    value.as_str().map_or_else(|| value.to_string(), str::to_owned)
+}

@@ -1,0 +1,190 @@
+//! One damaged bake for each finding about documents, the extension and provenance.
+
+use std::fs;
+
+use base64::Engine;
+use roughcast::bake::EXTENSION;
+use roughcast::check::Code;
+use roughcast::cli::Outcome;
+use roughcast::gltf::document::Document;
+use roughcast::gltf::json::Json;
+use serde_json::{Value, json};
+
+use crate::fixture::{Bake, bake, findings, roughcast, write_asset};
+
+const PYRAMID: &str = "/materials/0/extensions/ROUGHCAST_materials_roughness_pyramid";
+
+struct Fixture {
+    code: Code,
+    options: &'static [&'static str],
+    damage: fn(&Bake),
+    file: &'static str,
+    place: &'static str,
+    with_source: bool,
+}
+
+const fn fixture(code: Code, options: &'static [&'static str], place: &'static str, damage: fn(&Bake)) -> Fixture {
+    Fixture { code, options, damage, file: "ridges.gltf", place, with_source: false }
+}
+
+const fn with_source(code: Code, file: &'static str, place: &'static str, damage: fn(&Bake)) -> Fixture {
+    Fixture { code, options: &[], damage, file, place, with_source: true }
+}
+
+fn remove(value: &mut Value, key: &str) {
+    value.as_object_mut().unwrap().remove(key);
+}
+
+/// The index of the texture that the normals are in.
+fn normal_texture(document: &Value) -> usize {
+    document["materials"][0]["normalTexture"]["index"].as_u64().unwrap() as usize
+}
+
+const FIXTURES: &[Fixture] = &[
+    fixture(Code::UnreadableDocument, &[], "", |b| fs::write(b.document(), "{\"asset\": ").unwrap()),
+    fixture(Code::UnreadableDocument, &[], "", |b| b.edit(|d| d["images"] = json!(3))),
+    fixture(Code::MissingFile, &[], "/images/0", |b| fs::remove_file(b.texture("bumps.normal.ktx2")).unwrap()),
+    fixture(Code::MissingFile, &[], "/buffers/0", |b| fs::remove_file(b.baked.join("mesh.bin")).unwrap()),
+    fixture(Code::BadReference, &[], "/textures/0/source", |b| b.edit(|d| d["textures"][0]["source"] = json!(99))),
+    fixture(Code::BadReference, &[], "/materials/0/normalTexture/index", |b| {
+        b.edit(|d| d["materials"][0]["normalTexture"]["index"] = json!(99));
+    }),
+    fixture(Code::BadReference, &[], "/images/0", |b| b.edit(|d| d["images"][0]["uri"] = json!("../up.png"))),
+    fixture(Code::BadReference, &[], "/buffers/0", |b| fs::write(b.baked.join("mesh.bin"), [0; 95]).unwrap()),
+    fixture(Code::NoImage, &[], "/textures/0", |b| b.edit(|d| d["textures"][0] = json!({}))),
+    fixture(Code::DualSource, &["--gltf", "dual"], "/textures/0/source", |_| {}),
+    fixture(Code::KtxMimeType, &["--gltf", "dual"], "/textures/0/source", |b| {
+        b.edit(|d| {
+            let image = d["textures"][0]["source"].as_u64().unwrap() as usize;
+            d["images"][image]["mimeType"] = json!("image/ktx2");
+        });
+    }),
+    fixture(Code::SourceFormat, &["--gltf", "dual"], "/textures/0/source", |b| {
+        b.edit(|d| remove(&mut d["textures"][0], "extensions"));
+    }),
+    fixture(Code::NotDeclared, &[], "/extensionsUsed", |b| b.edit(|d| remove(d, "extensionsUsed"))),
+    fixture(Code::NeedlesslyRequired, &[], "/extensionsRequired", |b| {
+        b.edit(|d| d["extensionsRequired"] = json!(["KHR_texture_basisu"]));
+    }),
+    fixture(Code::NotRequired, &["--gltf", "strict"], "/textures/0", |b| b.edit(|d| remove(d, "extensionsRequired"))),
+    fixture(Code::VendorRequired, &["--profile", "pyramid"], "/extensionsRequired", |b| {
+        b.edit(|d| d["extensionsRequired"] = json!([EXTENSION]));
+    }),
+    fixture(Code::NoTangentSpace, &["--model", "anisotropic"], "/meshes/0/primitives/0", |b| {
+        b.edit(|d| remove(&mut d["materials"][0], "normalTexture"));
+    }),
+    fixture(Code::ExtensionSchema, &["--profile", "pyramid"], PYRAMID, |b| {
+        b.edit(|d| remove(d.pointer_mut(PYRAMID).unwrap(), "frame"));
+    }),
+    fixture(
+        Code::ExtensionTexture,
+        &["--profile", "pyramid"],
+        "/materials/0/extensions/ROUGHCAST_materials_roughness_pyramid/offsetTexture",
+        |b| {
+            b.edit(|d| {
+                let texture = d.pointer(PYRAMID).unwrap()["offsetTexture"]["index"].as_u64().unwrap() as usize;
+                remove(&mut d["textures"][texture], "extensions");
+            });
+        },
+    ),
+    fixture(
+        Code::ExtensionContent,
+        &["--profile", "both"],
+        "/materials/0/extensions/ROUGHCAST_materials_roughness_pyramid/offsetTexture",
+        |b| {
+            b.edit(|d| {
+                let normals = normal_texture(d);
+                d.pointer_mut(PYRAMID).unwrap()["offsetTexture"]["index"] = json!(normals);
+            });
+        },
+    ),
+    Fixture {
+        file: "old.normal.ktx2",
+        ..fixture(Code::LeftOver, &[], "", |b| {
+            fs::copy(b.texture("bumps.normal.ktx2"), b.texture("old.normal.ktx2")).unwrap();
+        })
+    },
+    with_source(Code::MissingSource, "ridges.gltf", "", |b| fs::remove_file(b.source.join("ridges.gltf")).unwrap()),
+    with_source(Code::MissingSource, "bumps.normal.ktx2", "key roughcast", |b| {
+        fs::remove_file(b.source.join("bumps.png")).unwrap();
+    }),
+    with_source(Code::Stale, "bumps.normal.ktx2", "key roughcast", |b| {
+        fs::copy(b.source.join("surface.png"), b.source.join("bumps.png")).map(drop).unwrap();
+    }),
+    Fixture {
+        options: &["--no-provenance"],
+        ..with_source(Code::Untraceable, "bumps.normal.ktx2", "key roughcast", |_| {})
+    },
+];
+
+/// What documents are tested for.
+pub fn codes() -> Vec<Code> {
+    FIXTURES.iter().map(|f| f.code).collect()
+}
+
+#[test]
+fn each_damage_is_found_at_its_place() {
+    for fixture in FIXTURES {
+        let bake = bake(fixture.options);
+        (fixture.damage)(&bake);
+        let (outcome, report) = if fixture.with_source { bake.check_source() } else { bake.check(&[]) };
+        let expected = (fixture.code.to_string(), fixture.file.to_owned(), fixture.place.to_owned());
+        assert!(findings(&report).contains(&expected), "{expected:?}: {report:#}");
+        let is_note = fixture.code == Code::DualSource;
+        assert_eq!(outcome, if is_note { Outcome::Done } else { Outcome::Findings }, "{expected:?}");
+    }
+}
+
+/// Damage to one source is told of the textures made from it only.
+#[test]
+fn staleness_is_told_of_the_right_textures() {
+    let bake = bake(&[]);
+    fs::copy(bake.source.join("bumps.png"), bake.source.join("surface.png")).unwrap();
+    let (_, report) = bake.check_source();
+    let stale: Vec<String> = findings(&report).into_iter().filter(|f| f.0 == "RC1505").map(|f| f.1).collect();
+    assert!(!stale.is_empty() && stale.iter().all(|file| file.starts_with("surface.")), "{report}");
+}
+
+/// Textures inside a .glb are named by their image.
+#[test]
+fn embedded_textures_have_a_place() {
+    let bake = bake(&["--glb", "--no-provenance"]);
+    let (_, report) = bake.check_source();
+    let places: Vec<_> = findings(&report).into_iter().filter(|f| f.0 == "RC1506").map(|f| (f.1, f.2)).collect();
+    assert!(places.contains(&("ridges.glb".to_owned(), "/images/0, key roughcast".to_owned())), "{report}");
+}
+
+/// Sources may be buffer views of a .glb, or data URIs.
+#[test]
+fn embedded_sources_are_compared() {
+    let folder = tempfile::tempdir().unwrap();
+    let (source, baked) = (folder.path().join("source"), folder.path().join("baked"));
+    write_asset(&source);
+    let read = |name: &str| fs::read(source.join(name)).unwrap();
+    let text = read("ridges.gltf");
+    let embedded = |bumps: &str, surface: &str| {
+        let mut document = Document::glb(Json::parse(&text).unwrap(), Some(read("mesh.bin")));
+        document.json_mut().remove("/buffers/0/uri").unwrap();
+        let (offset, length) = document.append_bin(&read(bumps)).unwrap();
+        let json = document.json_mut();
+        json.push("/bufferViews", &json!({ "buffer": 0, "byteOffset": offset, "byteLength": length })).unwrap();
+        json.set("/images/0", &json!({ "bufferView": 1, "mimeType": "image/png" })).unwrap();
+        let data = base64::engine::general_purpose::STANDARD.encode(read(surface));
+        json.set("/images/1/uri", &format!("data:image/png;base64,{data}")).unwrap();
+        document.to_bytes().unwrap()
+    };
+    let paths = [source.to_str().unwrap(), baked.to_str().unwrap()];
+    let check = |bumps: &str, surface: &str| {
+        fs::write(source.join("ridges.glb"), embedded(bumps, surface)).unwrap();
+        let (_, out, _) = roughcast(&["check", paths[1], "--source", paths[0], "--format", "json"]);
+        findings(&serde_json::from_str(&out).unwrap()).into_iter().map(|f| (f.0, f.1)).collect::<Vec<_>>()
+    };
+    fs::write(source.join("ridges.glb"), embedded("bumps.png", "surface.png")).unwrap();
+    fs::remove_file(source.join("ridges.gltf")).unwrap();
+    assert_eq!(roughcast(&["bake", paths[0], "-o", paths[1], "-q"]).0, Outcome::Done);
+    assert_eq!(check("bumps.png", "surface.png"), []);
+    let stale = check("surface.png", "surface.png");
+    assert!(stale.contains(&("RC1505".to_owned(), "image1.normal.ktx2".to_owned())), "{stale:?}");
+    let stale = check("bumps.png", "bumps.png");
+    assert!(!stale.is_empty() && stale.iter().all(|f| f.1 != "image1.normal.ktx2"), "{stale:?}");
+}

@@ -1,0 +1,9 @@
+//! `check` and `inspect` on fresh bakes, whole and damaged, and their outputs against the schemas.
+
+mod clean;
+mod documents;
+mod fixture;
+mod inspect;
+mod schemas;
+mod table;
+mod textures;

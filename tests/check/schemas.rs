@@ -1,0 +1,161 @@
+//! The schemas accept what the commands write and refuse what is broken, and the strict reader of the extension agrees
+//! with its schema.
+
+use std::fs;
+
+use jsonschema::Validator;
+use roughcast::bake::EXTENSION;
+use roughcast::check::RoughnessPyramid;
+use roughcast::cli::Outcome;
+use serde_json::{Value, json};
+
+use crate::fixture::{bake, roughcast};
+
+fn schema(name: &str) -> Validator {
+    let text = fs::read(format!("schemas/{name}.schema.json")).unwrap();
+    let schema: Value = serde_json::from_slice(&text).unwrap();
+    assert!(jsonschema::meta::is_valid(&schema), "{name}");
+    assert_eq!(schema["$id"], format!("{name}.schema.json"));
+    jsonschema::validator_for(&schema).unwrap()
+}
+
+fn assert_valid(schema: &Validator, value: &Value) {
+    let errors: Vec<String> = schema.iter_errors(value).map(|e| format!("{}: {e}", e.instance_path())).collect();
+    assert!(errors.is_empty(), "{errors:#?}\n{value:#}");
+}
+
+fn extension_of(options: &[&str]) -> Value {
+    let bake = bake(options);
+    let document: Value = serde_json::from_slice(&fs::read(bake.document()).unwrap()).unwrap();
+    document["materials"][0]["extensions"][EXTENSION].clone()
+}
+
+#[test]
+fn extensions_satisfy_their_schema_and_the_strict_reader() {
+    let schema = schema(&format!("material.{EXTENSION}"));
+    for model in ["none", "isotropic", "anisotropic"] {
+        for (frame, name) in [("natural", "natural"), ("unit", "unit"), ("main-direction", "mainDirection")] {
+            for target in ["basis", "float"] {
+                let options = ["--profile", "pyramid", "--model", model, "--frame", frame, "--target", target];
+                let extension = extension_of(&options);
+                assert_valid(&schema, &extension);
+                RoughnessPyramid::read(&extension).unwrap();
+                assert_eq!(
+                    (&extension["frame"], extension.get("roughnessModel").is_some()),
+                    (&json!(name), model != "none")
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn schema_and_strict_reader_refuse_the_same() {
+    let schema = schema(&format!("material.{EXTENSION}"));
+    let whole = json!({
+        "offsetTexture": { "index": 1, "texCoord": 1, "extensions": { "KHR_texture_transform": { "scale": [2, 2] } } },
+        "offsetMin": [-1.0, -1.0], "offsetMax": [1.0, 1.0],
+        "roughnessModel": "covarianceFactor",
+        "roughnessTexture": { "index": 2 },
+        "roughnessMin": [0, -1, 0], "roughnessMax": [1, 1, 1],
+        "correctionFactor": 0.9,
+        "frame": "mainDirection",
+        "mainDirection": [0, 1, 0],
+        "extras": { "note": 1 }
+    });
+    assert_valid(&schema, &whole);
+    RoughnessPyramid::read(&whole).unwrap();
+    let edits: &[(&str, Value)] = &[
+        ("/offsetTexture", Value::Null),
+        ("/offsetTexture", json!({})),
+        ("/offsetTexture", json!({ "index": -1 })),
+        ("/offsetTexture", json!({ "index": 1.5 })),
+        ("/offsetTexture", json!({ "index": 1, "texcoord": 1 })),
+        ("/offsetMin", json!([0])),
+        ("/offsetMax", json!([0, 0, 0])),
+        ("/offsetMax", json!(["0", 0])),
+        ("/roughnessModel", json!("lambda")),
+        ("/roughnessModel", json!("standardDeviation")),
+        ("/roughnessMin", json!([0])),
+        ("/roughnessMax", json!([1, 1])),
+        ("/correctionFactor", json!(-0.5)),
+        ("/correctionFactor", json!("0.9")),
+        ("/frame", json!("unit")),
+        ("/frame", json!("tangent")),
+        ("/mainDirection", json!([0, 1])),
+        ("/roughnesstexture", json!({ "index": 2 })),
+    ];
+    for (pointer, value) in edits {
+        let mut broken = whole.clone();
+        broken[&pointer[1..]] = value.clone();
+        assert!(!schema.is_valid(&broken), "the schema takes {pointer} = {value}");
+        assert!(RoughnessPyramid::read(&broken).is_err(), "the reader takes {pointer} = {value}");
+    }
+    for member in whole.as_object().unwrap().keys().filter(|k| *k != "extras") {
+        let mut broken = whole.clone();
+        broken.as_object_mut().unwrap().remove(member);
+        assert!(!schema.is_valid(&broken), "the schema misses no {member}");
+        assert!(RoughnessPyramid::read(&broken).is_err(), "the reader misses no {member}");
+    }
+}
+
+#[test]
+fn bake_reports_satisfy_their_schema() {
+    let schema = schema("report");
+    let made = bake(&[]);
+    fs::write(made.source.join("broken.gltf"), "{").unwrap();
+    fs::write(made.source.join("flat.gltf"), r#"{"asset":{"version":"2.0"}}"#).unwrap();
+    let output = made.baked.join("again");
+    let paths = ["bake", made.source.to_str().unwrap(), "-o", output.to_str().unwrap(), "--json"];
+    let (outcome, out, _) = roughcast(&[&paths[..], &["--profile", "both", "--frame", "main-direction"]].concat());
+    assert_eq!(outcome, Outcome::Failed);
+    let report: Value = serde_json::from_str(&out).unwrap();
+    let statuses: Vec<&Value> = report["assets"].as_array().unwrap().iter().map(|a| &a["status"]).collect();
+    assert_eq!(statuses, ["failed", "copied", "baked"]);
+    assert_valid(&schema, &report);
+    for (pointer, value) in [
+        ("/assets/0/status", json!("baked")),
+        ("/assets/2/status", json!("failed")),
+        ("/assets/2/textures/0/content", json!("colour")),
+        ("/settings/target", json!("jpeg")),
+        ("/version", json!(1)),
+    ] {
+        let mut broken = report.clone();
+        *broken.pointer_mut(pointer).unwrap() = value;
+        assert!(!schema.is_valid(&broken), "{pointer}");
+    }
+}
+
+#[test]
+fn check_reports_satisfy_their_schema() {
+    let schema = schema("check");
+    let bake = bake(&["--gltf", "dual", "--target", "float"]);
+    let (_, report) = bake.check(&[]);
+    assert!(!report["findings"].as_array().unwrap().is_empty());
+    assert_valid(&schema, &report);
+    for (pointer, value) in
+        [("/findings/0/code", json!("1205")), ("/findings/0/severity", json!("fatal")), ("/files", json!(1))]
+    {
+        let mut broken = report.clone();
+        *broken.pointer_mut(pointer).unwrap() = value;
+        assert!(!schema.is_valid(&broken), "{pointer}");
+    }
+}
+
+#[test]
+fn inspected_facts_satisfy_their_schema() {
+    let schema = schema("inspect");
+    let bake = bake(&["--profile", "both"]);
+    fs::remove_file(bake.texture("bumps.offset.ktx2")).unwrap();
+    for path in [bake.document(), bake.texture("bumps.normal.ktx2")] {
+        let (_, out, _) = roughcast(&["inspect", path.to_str().unwrap(), "--json"]);
+        let facts: Value = serde_json::from_str(&out).unwrap();
+        assert_valid(&schema, &facts);
+        let mut broken = facts.clone();
+        broken["kind"] = json!("png");
+        assert!(!schema.is_valid(&broken));
+        let mut broken = facts.clone();
+        broken["surplus"] = json!(1);
+        assert!(!schema.is_valid(&broken));
+    }
+}

@@ -1,0 +1,182 @@
+//! One damaged KTX2 for each finding about textures.
+
+use std::fs;
+use std::sync::LazyLock;
+
+use roughcast::check::{Code, Findings, Usage, check_texture};
+use roughcast::texture::ktx2::{Key, Ktx2, Ktx2Writer, Provenance};
+use roughcast::texture::uastc::Effort;
+use roughcast::texture::{Format, Texels, encode};
+use serde_json::json;
+
+use crate::fixture::bake;
+
+/// Offsets of the header (KTX 2.0, "File Structure").
+const TYPE_SIZE: usize = 16;
+const WIDTH: usize = 20;
+const LAYERS: usize = 32;
+const LEVELS: usize = 40;
+const SCHEME: usize = 44;
+const DESCRIPTOR: usize = 48;
+const KEYS: usize = 56;
+const INDEX: usize = 80;
+
+/// A UASTC normal texture of 16 x 16, and one of half floats.
+static UASTC: LazyLock<Vec<u8>> = LazyLock::new(|| fs::read(bake(&[]).texture("bumps.normal.ktx2")).unwrap());
+static FLOAT: LazyLock<Vec<u8>> =
+    LazyLock::new(|| fs::read(bake(&["--target", "float"]).texture("bumps.normal.ktx2")).unwrap());
+
+fn word(file: &[u8], at: usize) -> usize {
+    u32::from_le_bytes(file[at..at + 4].try_into().unwrap()) as usize
+}
+
+fn set(file: &mut [u8], at: usize, value: u32) {
+    file[at..at + 4].copy_from_slice(&value.to_le_bytes());
+}
+
+/// Sets a byte of the descriptor's block: 8 is the colour model, 9 primaries, 10 transfer, 11 flags, 27 the channel.
+fn set_descriptor(file: &mut [u8], byte: usize, value: u8) {
+    let at = word(file, DESCRIPTOR) + 4 + byte;
+    file[at] = value;
+}
+
+/// Replaces the first `from` by the equally long `to`.
+fn replace(file: &mut [u8], from: &[u8], to: &[u8]) {
+    assert_eq!(from.len(), to.len());
+    let at = file.windows(from.len()).position(|w| w == from).unwrap();
+    file[at..at + to.len()].copy_from_slice(to);
+}
+
+/// Offset and stored length of level 0.
+fn level_0(file: &[u8]) -> (usize, usize) {
+    (word(file, INDEX), word(file, INDEX + 8))
+}
+
+fn write(format: Format, size: u32, levels: &[Vec<u8>], keys: &[Key]) -> Vec<u8> {
+    Ktx2Writer { format, width: size, height: size, levels, keys, effort: Effort::Fast }.to_bytes()
+}
+
+fn normals(texel: [f32; 4], format: Format) -> Vec<u8> {
+    let level = |size| {
+        let row = |_: u32, out: &mut [[f32; 4]]| out.fill(texel);
+        encode(&Texels { width: size, height: size, row: &row }, format, Effort::Fast).unwrap()
+    };
+    let provenance =
+        Provenance { version: "0.1.0".into(), content: "normal".into(), settings: json!({}), sources: vec![] };
+    write(format, 4, &[level(4), level(2), level(1)], &provenance.keys())
+}
+
+fn with_key(file: &[u8], key: &str, value: &str) -> Vec<u8> {
+    let parsed = Ktx2::parse(file).unwrap();
+    let levels: Vec<Vec<u8>> = (0..parsed.level_count()).map(|l| parsed.level_bytes(l).unwrap().into_owned()).collect();
+    write(Format::UastcRgb, 16, &levels, &[Key { key: key.into(), value: value.into() }])
+}
+
+type Damage = fn() -> Vec<u8>;
+
+fn uastc(change: impl FnOnce(&mut Vec<u8>)) -> Vec<u8> {
+    let mut file = UASTC.clone();
+    change(&mut file);
+    file
+}
+
+/// A damaged file for each finding, and the place where it is to be found.
+pub const FIXTURES: &[(Code, &str, Damage)] = &[
+    (Code::UnreadableTexture, "", || uastc(|f| f.truncate(100))),
+    (Code::IncompleteChain, "header", || uastc(|f| set(f, LEVELS, 4))),
+    (Code::LevelOrder, "level 0", || {
+        uastc(|f| {
+            let second = word(f, INDEX + 24);
+            set(f, INDEX, second as u32);
+        })
+    }),
+    (Code::LevelAlignment, "level 0", || {
+        let mut file = FLOAT.clone();
+        let moved = level_0(&file).0 as u32 + 4;
+        set(&mut file, INDEX, moved);
+        file.extend([0; 4]);
+        file
+    }),
+    (Code::LevelLength, "level 2", || uastc(|f| set(f, INDEX + 2 * 24 + 16, 32))),
+    (Code::KeyOrder, "key AAAwriter", || uastc(|f| replace(f, b"KTXwriter", b"AAAwriter"))),
+    (Code::KeyEntry, "key/value data", || {
+        uastc(|f| {
+            let keys = word(f, KEYS);
+            set(f, keys, u32::MAX);
+        })
+    }),
+    (Code::NoWriter, "key KTXwriter", || uastc(|f| replace(f, b"KTXwriter", b"KTXwritex"))),
+    (Code::Orientation, "key KTXorientation", || uastc(|f| replace(f, b"orientation\0rd", b"orientation\0ru"))),
+    (Code::Swizzle, "key KTXswizzle", || with_key(&UASTC, "KTXswizzle", "bgra")),
+    (Code::Descriptor, "data format descriptor", || uastc(|f| set_descriptor(f, 8, 1))),
+    (Code::TypeSize, "header", || uastc(|f| set(f, TYPE_SIZE, 2))),
+    (Code::Transfer, "data format descriptor", || uastc(|f| set_descriptor(f, 10, 2))),
+    (Code::Primaries, "data format descriptor", || uastc(|f| set_descriptor(f, 9, 1))),
+    (Code::NotBasis, "header", || FLOAT.clone()),
+    (Code::NotUastc, "header", || uastc(|f| set_descriptor(f, 8, 163))),
+    (Code::Scheme, "header", || uastc(|f| set(f, SCHEME, 3))),
+    (Code::Channels, "data format descriptor", || uastc(|f| set_descriptor(f, 27, 3))),
+    (Code::SizeMultiple, "header", || uastc(|f| set(f, WIDTH, 18))),
+    (Code::NotPlain2d, "header", || uastc(|f| set(f, LAYERS, 1))),
+    (Code::AlphaPremultiplied, "data format descriptor", || uastc(|f| set_descriptor(f, 11, 1))),
+    (Code::UndecodableLevel, "level 0", || {
+        uastc(|f| {
+            let (offset, length) = level_0(f);
+            f[offset..offset + length].fill(0xFF);
+        })
+    }),
+    // (0, 0, 1/2)
+    (Code::NormalLength, "level 1", || normals([0.5, 0.5, 0.75, 1.0], Format::UastcRgb)),
+    (Code::NotFinite, "level 0", || normals([0.5, f32::NAN, 1.0, 1.0], Format::Rgba16Float)),
+    (Code::NoProvenance, "key roughcast", || with_key(&UASTC, "KTXwriter", "roughcast 0.1.0")),
+    (Code::BadProvenance, "key roughcast", || uastc(|f| replace(f, b"{\"version\"", b"[\"version\""))),
+    (Code::OtherVersion, "key roughcast", || uastc(|f| replace(f, b"\"version\":\"0.1.0\"", b"\"version\":\"0.0.9\""))),
+];
+
+fn check(file: &[u8]) -> Vec<(Code, String)> {
+    let mut findings = Findings::new("file.ktx2", "");
+    check_texture(file, Usage { by_basisu: true, normals: false }, None, &mut findings);
+    findings.into_list().into_iter().map(|f| (f.code, f.place)).collect()
+}
+
+#[test]
+fn whole_textures_are_clean() {
+    assert_eq!(check(&UASTC), []);
+    assert_eq!(check(&normals([0.5, 0.5, 1.0, 1.0], Format::UastcRgb)), []);
+}
+
+#[test]
+fn each_damage_is_found_at_its_place() {
+    for (code, place, damage) in FIXTURES {
+        let found = check(&damage());
+        assert!(found.contains(&(*code, (*place).to_owned())), "{code} {place}: {found:?}");
+    }
+}
+
+/// Whatever is cut off, something is found and nothing panics.
+#[test]
+fn every_truncation_is_an_error() {
+    for length in 0..UASTC.len() {
+        let found = check(&UASTC[..length]);
+        assert!(found.iter().any(|(code, _)| code.severity() == roughcast::check::Severity::Error), "{length}");
+    }
+}
+
+/// No byte may make it panic.
+#[test]
+fn every_changed_byte_is_survived() {
+    for at in 0..UASTC.len().min(600) {
+        for value in [0, 1, 0x7F, 0xFF] {
+            check(&uastc(|f| f[at] = value));
+        }
+    }
+}
+
+/// Another writer's file is read, and not judged.
+#[test]
+fn foreign_textures_are_only_read() {
+    let mut file = with_key(&UASTC, "KTXwriter", "toktx v4.3");
+    set_descriptor(&mut file, 10, 2);
+    assert_eq!(check(&file), []);
+    assert_eq!(check(&file[..file.len() - 1]), [(Code::UnreadableTexture, String::new())]);
+}
