@@ -119,7 +119,7 @@ fn read_as(
         BumpSource::Heights(_, scale) => {
             let scale = settings.height_scale.unwrap_or(*scale);
             let (slope_per_repeat, square_texels) = match (settings.frame, layout) {
-                // Heights in scene units: the slope is what the geometry makes of them.
+                // Heights in mesh units: the slope is what the geometry makes of them.
                 (Frame::Natural, Some(layout)) => (layout.units_per_repeat.map(|units| scale / units), false),
                 (Frame::Natural, None) => {
                     notes.push(

@@ -82,7 +82,7 @@ pub struct Settings {
     pub glb: bool,
     /// Frame of the pyramid profile's offsets.
     pub frame: Frame,
-    /// Height maps: relief in widths of a repeat (in scene units under [`Frame::Natural`]), overriding the asset's.
+    /// Height maps: relief in widths of a repeat (in mesh units under [`Frame::Natural`]), overriding the asset's.
     pub height_scale: Option<f32>,
     /// Largest number of texels of an input image.
     pub max_texels: u64,

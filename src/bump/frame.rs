@@ -7,7 +7,7 @@ use crate::symmetric::Symmetric2;
 /// The frame in which stored offsets are to be read.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Frame {
-    /// Frame 1: offsets are df/du and df/dv in scene units per repeat of the texture; the reader divides by |p_u| and
+    /// Frame 1: offsets are df/du and df/dv in mesh units per repeat of the texture; the reader divides by |p_u| and
     /// |p_v|, so bumps keep their height however the map is scaled.
     Natural,
     /// Frame 2: offsets are slopes along unit vectors: glTF's tangent frame. Bumps scale with the map.
@@ -29,7 +29,7 @@ impl FrameTransform {
     /// M = 1: the tangent frame itself.
     pub const IDENTITY: Self = Self { matrix: [[1.0, 0.0], [0.0, 1.0]] };
 
-    /// To the natural frame of a surface with |p_u| and |p_v| scene units per repeat.
+    /// To the natural frame of a surface with |p_u| and |p_v| mesh units per repeat.
     pub fn natural(p_u: f32, p_v: f32) -> Self {
         Self { matrix: [[p_u, 0.0], [0.0, p_v]] }
     }

@@ -73,7 +73,7 @@ impl RoughnessModel {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub enum FrameName {
-    /// Offsets in scene units.
+    /// Offsets in mesh units.
     Natural,
     /// glTF's tangent frame.
     Unit,

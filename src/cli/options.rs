@@ -58,7 +58,7 @@ pub struct DocumentOptions {
     /// Direction m of --frame main-direction, in the space of the mesh.
     #[arg(long, value_parser = direction, default_value = "0,1,0", value_name = "X,Y,Z", allow_hyphen_values = true)]
     main_direction: [f32; 3],
-    /// Relief of height maps, in widths of a repeat (in scene units with --frame natural), instead of the asset's own.
+    /// Relief of height maps, in widths of a repeat (in mesh units with --frame natural), instead of the asset's own.
     #[arg(long, value_parser = finite, value_name = "S", allow_hyphen_values = true)]
     height_scale: Option<f32>,
 }
@@ -182,7 +182,7 @@ names! {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum FrameName {
-    /// Offsets in scene units per repeat: bumps keep their height when the map is scaled
+    /// Offsets in mesh units per repeat: bumps keep their height when the map is scaled
     Natural,
     /// Slopes in glTF's tangent frame
     Unit,

@@ -9,7 +9,7 @@ use super::triangles::{Accessors, cross, dot, length, minus};
 /// How texture coordinates lie on the triangles of a material, averaged over their area in mesh space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Layout {
-    /// Mean of |p_u| and |p_v|: scene units per repeat of the texture, across and up.
+    /// Mean of |p_u| and |p_v|: mesh units per repeat of the texture, across and up.
     pub units_per_repeat: [f32; 2],
     /// Mean cosine and sine of the angle from e1 to the tangent, for the main direction asked for.
     pub turn: [f32; 2],
