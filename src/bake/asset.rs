@@ -96,7 +96,7 @@ pub fn bake(source: &Source<'_>, settings: &Settings, advance: &dyn Fn(f32)) -> 
     // References that cannot be followed are an error before any work is done.
     container::files(source.document.json())?;
     source.check_buffers()?;
-    let geometry = Geometry::new(&root, source, settings)?;
+    let geometry = Geometry::new(&root, source, settings);
     let flat: Vec<LayerReport> = materials.iter().filter(|m| m.layers.is_empty()).map(LayerReport::flat).collect();
     let plans = plan(&root, materials, settings, &geometry)?;
     let mut assembly = Assembly::new(source, settings)?;

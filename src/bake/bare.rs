@@ -66,7 +66,7 @@ pub fn bake_map(relief: &Relief, own: Option<&OwnRoughness>, settings: &Settings
     }
     let image = own.and_then(|o| o.image.as_ref());
     let (width, height) = grid(settings, image.map(|i| (i.width, i.height)).into_iter().chain([size]))?;
-    let base = BaseRows::new(width, height, image.map(Rgba), own.map_or(1.0, |o| o.factor), None);
+    let base = BaseRows::new(width, height, image.map(Rgba), own.map_or(1.0, |o| o.factor), None, relief.wrap());
     let resampled = ((width, height) != moments.sizes()[0]).then(|| Pyramid::new(Area::new(relief, width, height)));
     let fold_moments = resampled.as_ref().unwrap_or(&moments);
     let fold = Fold::new(base, fold_moments, 1.0, settings.distribution.correction());

@@ -1,5 +1,6 @@
 //! The material's own roughness: what its textures and factors say before any bump is lost.
 
+use crate::bump::Wrap;
 use crate::lobe::{Anisotropy, Roughness};
 use crate::map::Rgba;
 use crate::pyramid::{Linear, Rows};
@@ -30,15 +31,16 @@ pub struct BaseRows<'a> {
 
 impl<'a> BaseRows<'a> {
     /// On a grid of `width` x `height` texels; coarser textures are magnified as a sampler does. The roughness is the
-    /// green channel of `roughness` times `roughness_factor`.
+    /// green channel of `roughness` times `roughness_factor`; `wrap` is the sampler's mode across and down.
     pub fn new(
         width: u32,
         height: u32,
         roughness: Option<Rgba<'a>>,
         roughness_factor: f32,
         anisotropy: Option<BaseAnisotropy<'a>>,
+        wrap: [Wrap; 2],
     ) -> Self {
-        let on_grid = |rows| Linear::new(rows, width, height);
+        let on_grid = |rows| Linear::new(rows, width, height, wrap);
         let (strength, rotation, direction) = match anisotropy {
             None => (0.0, [1.0, 0.0], None),
             Some(a) => (a.strength, a.rotation, a.texture.map(on_grid)),

@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use super::settings::Settings;
-use super::source::{Source, SourceError};
+use super::source::Source;
 use crate::bump::Frame;
 use crate::gltf::geometry::{Layout, layout};
 use crate::gltf::material::Mapping;
@@ -18,16 +18,16 @@ pub struct Geometry<'a> {
 }
 
 impl<'a> Geometry<'a> {
-    /// Reads the buffers if the frame needs them.
-    pub fn new(root: &'a Value, source: &Source<'_>, settings: &Settings) -> Result<Self, SourceError> {
+    /// Reads the buffers if the frame needs them. One without data, such as the fallback of compressed ones, is empty.
+    pub fn new(root: &'a Value, source: &Source<'_>, settings: &Settings) -> Self {
         let count = root.get("buffers").and_then(Value::as_array).map_or(0, Vec::len);
-        let read = || (0..count).map(|index| source.buffer(index)).collect::<Result<Vec<_>, _>>();
+        let read = || (0..count).map(|index| source.buffer(index).unwrap_or_default()).collect();
         let main_direction = match settings.frame {
             Frame::MainDirection(m) => m,
             Frame::Natural | Frame::Unit => [0.0, 1.0, 0.0],
         };
-        let buffers = if settings.frame == Frame::Unit { None } else { Some(read()?) };
-        Ok(Self { root, buffers, main_direction })
+        let buffers = (settings.frame != Frame::Unit).then(read);
+        Self { root, buffers, main_direction }
     }
 
     /// See [`layout`]; `None` under the unit frame.

@@ -21,6 +21,14 @@ pub enum Relief {
 }
 
 impl Relief {
+    /// The sampler's mode, across and down, as far as the relief knows it.
+    pub fn wrap(&self) -> [Wrap; 2] {
+        match self {
+            Self::Normals(_) => [Wrap::Repeat; 2],
+            Self::Heights { wrap, .. } => *wrap,
+        }
+    }
+
     /// Texels steeper than [`crate::bump::MAX_SLOPE`] or pointing below the surface.
     pub fn steep_texels(&self) -> u64 {
         match self {

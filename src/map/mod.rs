@@ -23,7 +23,9 @@ pub use texels::{Rgba, decode_colours};
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MapError {
     /// Too few channels.
-    #[error("expected {expected}, found an image of {found} channel(s); use a map that has them")]
+    #[error(
+        "expected {expected}, found an image of {found} channel(s); use a map that has them, or read it as heights"
+    )]
     Channels {
         /// What the map needs.
         expected: &'static str,

@@ -1,6 +1,7 @@
 //! Level 0 at another size: block formats demand multiples of 4, and two maps of one material need one grid.
 
 use super::{Merge, Rows};
+use crate::bump::Wrap;
 
 /// Resampling by area: each new texel merges the old texels under it, weighted by overlap. It conserves the moments
 /// of the whole map exactly: what the mean loses where a new texel straddles old ones, the covariance gains.
@@ -67,18 +68,19 @@ fn overlaps(old: u32, new: u32, i: u32) -> Vec<(u32, f32)> {
         .collect()
 }
 
-/// Resampling to a finer grid as a sampler magnifies: linear between texel centres, the border texels repeated.
+/// Resampling to a finer grid as a sampler magnifies: linear between texel centres, across the border as it wraps.
 /// For maps whose own variance no one needs (roughness, metallic, occlusion).
 pub struct Linear<R> {
     source: R,
     width: u32,
     height: u32,
+    wrap: [Wrap; 2],
 }
 
 impl<R: Rows> Linear<R> {
-    /// `source` on a grid of `width` x `height` texels.
-    pub fn new(source: R, width: u32, height: u32) -> Self {
-        Self { source, width, height }
+    /// `source` on a grid of `width` x `height` texels; `wrap` is the sampler's mode across and down.
+    pub fn new(source: R, width: u32, height: u32, wrap: [Wrap; 2]) -> Self {
+        Self { source, width, height, wrap }
     }
 }
 
@@ -98,13 +100,13 @@ impl<R: Rows> Rows for Linear<R> {
             return self.source.row(y, out);
         }
         let fine_width = self.source.width() as usize;
-        let down = neighbours(self.source.height(), self.height, y);
+        let down = neighbours(self.source.height(), self.height, y, self.wrap[1]);
         let mut rows = vec![R::Texel::default(); fine_width * 2];
         let (upper, lower) = rows.split_at_mut(fine_width);
         self.source.row(down[0].0, upper);
         self.source.row(down[1].0, lower);
         for (x, texel) in out.iter_mut().enumerate() {
-            let [left, right] = neighbours(self.source.width(), self.width, x as u32);
+            let [left, right] = neighbours(self.source.width(), self.width, x as u32, self.wrap[0]);
             let weights = [down[0].1 * left.1, down[0].1 * right.1, down[1].1 * left.1, down[1].1 * right.1];
             let (l, r) = (left.0 as usize, right.0 as usize);
             *texel = R::Texel::merge(&weights, &[upper[l], upper[r], lower[l], lower[r]]);
@@ -113,13 +115,16 @@ impl<R: Rows> Rows for Linear<R> {
 }
 
 /// The two old texels around the centre of new texel `i` and their weights.
-fn neighbours(old: u32, new: u32, i: u32) -> [(u32, f32); 2] {
+fn neighbours(old: u32, new: u32, i: u32, wrap: Wrap) -> [(u32, f32); 2] {
     // Centre (i + 1/2) * old/new - 1/2 in old texels; doubled to stay in integers: numerator / (2 new).
     let doubled = (2 * i64::from(i) + 1) * i64::from(old) - i64::from(new);
     let unit = 2 * i64::from(new);
     let fraction = doubled.rem_euclid(unit) as f32 / unit as f32;
-    let last = i64::from(old) - 1;
     let below = doubled.div_euclid(unit);
-    let texel = |i: i64| i.clamp(0, last) as u32;
+    let texel = |i: i64| match wrap {
+        Wrap::Repeat => i.rem_euclid(i64::from(old)) as u32,
+        // One texel beyond the border, a mirrored map repeats it too.
+        Wrap::Mirror | Wrap::Clamp => i.clamp(0, i64::from(old) - 1) as u32,
+    };
     [(texel(below), 1.0 - fraction), (texel(below + 1), fraction)]
 }

@@ -1,5 +1,5 @@
 use super::*;
-use crate::bump::Offset;
+use crate::bump::{Offset, Wrap};
 use crate::symmetric::Symmetric2;
 use rayon::prelude::*;
 
@@ -236,14 +236,20 @@ fn resampling_by_area_keeps_total_variance() {
 fn the_same_size_resamples_to_the_same_bits() {
     let source = level(9, 6, 4);
     assert_eq!(rows(&Area::new(source.clone(), 9, 6)), source);
-    assert_eq!(rows(&Linear::new(source.clone(), 9, 6)), source);
+    assert_eq!(rows(&Linear::new(source.clone(), 9, 6, [Wrap::Repeat; 2])), source);
 }
 
 #[test]
 fn magnifying_interpolates_between_centres() {
     let source = Level { width: 2, height: 1, texels: vec![[0.0_f32], [1.0]] };
-    let texels: Vec<f32> = rows(&Linear::new(source, 4, 1)).texels.iter().map(|t| t[0]).collect();
-    assert_eq!(texels, [0.0, 0.25, 0.75, 1.0]);
+    let magnified = |wrap| {
+        let rows = rows(&Linear::new(source.clone(), 4, 1, [wrap; 2]));
+        rows.texels.iter().map(|t| t[0]).collect::<Vec<f32>>()
+    };
+    assert_eq!(magnified(Wrap::Clamp), [0.0, 0.25, 0.75, 1.0]);
+    assert_eq!(magnified(Wrap::Mirror), [0.0, 0.25, 0.75, 1.0]);
+    // Across the seam, the neighbour of the first texel is the last.
+    assert_eq!(magnified(Wrap::Repeat), [0.25, 0.25, 0.75, 0.75]);
 }
 
 #[test]

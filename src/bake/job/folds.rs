@@ -142,7 +142,7 @@ impl Job<'_> {
             }
         });
         let roughness = own.roughness.as_ref().map(Rgba);
-        Ok(BaseRows::new(width, height, roughness, layer.layer.roughness_factor, anisotropy))
+        Ok(BaseRows::new(width, height, roughness, layer.layer.roughness_factor, anisotropy, self.plan.source.wrap))
     }
 }
 
