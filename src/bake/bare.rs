@@ -64,21 +64,24 @@ pub fn bake_map(relief: &Relief, own: Option<&OwnRoughness>, settings: &Settings
     if settings.profile.is_portable() {
         textures.push(plain(Content::Normal, bake_normals(&moments, Encoding::of_normals(settings))?));
     }
-    let image = own.and_then(|o| o.image.as_ref());
-    let (width, height) = grid(settings, image.map(|i| (i.width, i.height)).into_iter().chain([size]))?;
-    let base = BaseRows::new(width, height, image.map(Rgba), own.map_or(1.0, |o| o.factor), None, relief.wrap());
-    let resampled = ((width, height) != moments.sizes()[0]).then(|| Pyramid::new(Area::new(relief, width, height)));
-    let fold_moments = resampled.as_ref().unwrap_or(&moments);
-    let fold = Fold::new(base, fold_moments, 1.0, settings.distribution.correction());
     // Without a lobe of its own nothing tells how much of the ellipse will be seen: keep all of it.
-    let (model, loss) = match (own, settings.model) {
-        (None, Model::Auto) => (Model::Anisotropic, None),
-        _ => fold.model(settings, Model::Anisotropic),
+    let (mut model, mut loss) = match settings.model {
+        Model::Auto => (Model::Anisotropic, None),
+        model => (model, None),
     };
-    if own.is_some() && settings.profile.is_portable() && model != Model::None {
-        let folded = fold.bake(model, Encoding::of(settings, 3))?;
-        textures.push(plain(Content::Roughness, folded.roughness));
-        textures.extend(folded.anisotropy.map(|chain| plain(Content::Anisotropy, chain)));
+    if let Some(own) = own {
+        let image = own.image.as_ref();
+        let (width, height) = grid(settings, image.map(|i| (i.width, i.height)).into_iter().chain([size]))?;
+        let base = BaseRows::new(width, height, image.map(Rgba), own.factor, None, relief.wrap());
+        let resampled = ((width, height) != moments.sizes()[0]).then(|| Pyramid::new(Area::new(relief, width, height)));
+        let fold_moments = resampled.as_ref().unwrap_or(&moments);
+        let fold = Fold::new(base, fold_moments, 1.0, settings.distribution.correction());
+        (model, loss) = fold.model(settings, Model::Anisotropic);
+        if settings.profile.is_portable() && model != Model::None {
+            let folded = fold.bake(model, Encoding::of(settings, 3))?;
+            textures.push(plain(Content::Roughness, folded.roughness));
+            textures.extend(folded.anisotropy.map(|chain| plain(Content::Anisotropy, chain)));
+        }
     }
     if settings.profile.has_pyramid() {
         let roughness = match model {
