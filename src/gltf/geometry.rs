@@ -4,7 +4,7 @@
 use serde_json::Value;
 
 use super::material::Mapping;
-use super::triangles::{Accessors, cross, dot, length, minus};
+use super::triangles::{Accessors, Vertex, cross, dot, length, minus, tangents};
 
 /// How texture coordinates lie on the triangles of a material, averaged over their area in mesh space.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,7 +29,7 @@ pub fn layout<'a>(
 ) -> Option<Layout> {
     let mut sums = Sums::default();
     Accessors { root, buffer }.visit_material(material, mapping, |triangle| {
-        sums.add(triangle.map(|v| v.position), triangle.map(|v| v.uv), main_direction.map(f64::from));
+        sums.add(triangle, main_direction.map(f64::from));
     });
     sums.layout()
 }
@@ -44,18 +44,14 @@ struct Sums {
 }
 
 impl Sums {
-    fn add(&mut self, [p0, p1, p2]: [[f64; 3]; 3], [t0, t1, t2]: [[f64; 2]; 3], m: [f64; 3]) {
-        let (e1, e2) = (minus(p1, p0), minus(p2, p0));
-        let (du1, dv1, du2, dv2) = (t1[0] - t0[0], t1[1] - t0[1], t2[0] - t0[0], t2[1] - t0[1]);
-        let det = du1 * dv2 - du2 * dv1;
-        let normal = cross(e1, e2);
+    fn add(&mut self, triangle: [Vertex; 3], m: [f64; 3]) {
+        let Some([p_u, p_v]) = tangents(triangle) else { return };
+        let [a, b, c] = triangle.map(|v| v.position);
+        let normal = cross(minus(b, a), minus(c, a));
         let area = 0.5 * length(normal);
-        if area <= 0.0 || det == 0.0 || !det.is_finite() {
+        if area <= 0.0 {
             return;
         }
-        // v runs down the image, B up.
-        let p_u: [f64; 3] = std::array::from_fn(|i| (e1[i] * dv2 - e2[i] * dv1) / det);
-        let p_v: [f64; 3] = std::array::from_fn(|i| (e1[i] * du2 - e2[i] * du1) / det);
         let (u, v) = (length(p_u), length(p_v));
         if u <= 0.0 || v <= 0.0 || !(u + v).is_finite() {
             return;

@@ -151,6 +151,20 @@ fn component_bytes(component_type: u32) -> Option<usize> {
     }
 }
 
+/// p_u and -p_v (up the image) of a triangle; `None` where texture coordinates are degenerate.
+pub fn tangents([a, b, c]: [Vertex; 3]) -> Option<[[f64; 3]; 2]> {
+    let (e1, e2) = (minus(b.position, a.position), minus(c.position, a.position));
+    let (du1, dv1) = (b.uv[0] - a.uv[0], b.uv[1] - a.uv[1]);
+    let (du2, dv2) = (c.uv[0] - a.uv[0], c.uv[1] - a.uv[1]);
+    let det = du1 * dv2 - du2 * dv1;
+    if det == 0.0 || !det.is_finite() {
+        return None;
+    }
+    let across = std::array::from_fn(|i| (e1[i] * dv2 - e2[i] * dv1) / det);
+    let up = std::array::from_fn(|i| (e1[i] * du2 - e2[i] * du1) / det);
+    Some([across, up])
+}
+
 /// a - b.
 pub fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]

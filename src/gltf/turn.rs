@@ -4,7 +4,7 @@
 use serde_json::Value;
 
 use super::material::Mapping;
-use super::triangles::{Accessors, Vertex, cross, dot, length, minus};
+use super::triangles::{Accessors, Vertex, cross, dot, length, minus, tangents};
 use crate::bump::FrameTransform;
 
 /// A transform for each texel of a map.
@@ -136,20 +136,6 @@ impl Raster {
         }
         is_open
     }
-}
-
-/// p_u and -p_v (up the image) of a triangle.
-fn tangents([a, b, c]: [Vertex; 3]) -> Option<[[f64; 3]; 2]> {
-    let (e1, e2) = (minus(b.position, a.position), minus(c.position, a.position));
-    let (du1, dv1) = (b.uv[0] - a.uv[0], b.uv[1] - a.uv[1]);
-    let (du2, dv2) = (c.uv[0] - a.uv[0], c.uv[1] - a.uv[1]);
-    let det = du1 * dv2 - du2 * dv1;
-    if det == 0.0 || !det.is_finite() {
-        return None;
-    }
-    let across = std::array::from_fn(|i| (e1[i] * dv2 - e2[i] * dv1) / det);
-    let up = std::array::from_fn(|i| (e1[i] * du2 - e2[i] * du1) / det);
-    Some([across, up])
 }
 
 /// Weights of the corners at `point`; `None` outside.
