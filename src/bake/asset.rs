@@ -202,6 +202,7 @@ impl<'a> Assembly<'a> {
             width: chain.width,
             height: chain.height,
             levels: chain.levels.len(),
+            trimmed: chain.trimmed,
             bytes: ktx2.len(),
             range: texture.range.clone(),
         });

@@ -11,6 +11,8 @@ use crate::texture::{EncodeError, Format, Target, Texels, encode};
 pub struct Chain {
     /// How texels are stored.
     pub format: Format,
+    /// Levels of the pyramid that are finer than level 0.
+    pub trimmed: usize,
     /// Columns of level 0.
     pub width: u32,
     /// Rows of level 0.
@@ -28,6 +30,8 @@ pub struct Encoding {
     pub format: Format,
     /// Search effort of block encoders.
     pub effort: Effort,
+    /// Finest level that is written; a coarser one where its size does not suit the format.
+    pub finest: usize,
     /// Whether level 0 is kept for a PNG.
     pub fallback: bool,
 }
@@ -38,6 +42,7 @@ impl Encoding {
         Self {
             format: settings.target.format(channels),
             effort: settings.effort,
+            finest: 0,
             fallback: settings.form == Form::Fallback,
         }
     }
@@ -45,6 +50,17 @@ impl Encoding {
     /// For normals: two channels where the engine's BC5 path rebuilds z, else three.
     pub fn of_normals(settings: &Settings) -> Self {
         Self::of(settings, if settings.target == Target::Bc { 2 } else { 3 })
+    }
+
+    /// Without levels finer than `finest`.
+    pub fn starting_at(self, finest: usize) -> Self {
+        Self { finest, ..self }
+    }
+
+    /// Which of the levels of `sizes` becomes level 0.
+    pub fn first(&self, sizes: &[(u32, u32)]) -> usize {
+        let suits = |&(width, height): &(u32, u32)| is_whole(self.format, width, height);
+        sizes.iter().take(self.finest + 1).rposition(suits).unwrap_or(0)
     }
 }
 
@@ -71,26 +87,33 @@ pub fn grid(settings: &Settings, sizes: impl IntoIterator<Item = (u32, u32)>) ->
     if u64::from(width) * u64::from(height) > limit {
         return Err(GridError { width, height, limit });
     }
-    let is_block = settings.target.format(3).is_block();
-    Ok(if is_block { (width.next_multiple_of(4), height.next_multiple_of(4)) } else { (width, height) })
+    let is_whole = is_whole(settings.target.format(3), width, height);
+    Ok(if !is_whole { (width.next_multiple_of(4), height.next_multiple_of(4)) } else { (width, height) })
+}
+
+/// Whether level 0 may have the size.
+fn is_whole(format: Format, width: u32, height: u32) -> bool {
+    !format.is_block() || (width.is_multiple_of(4) && height.is_multiple_of(4))
 }
 
 /// Writes row y of a level to a slice of values: `(level, y, out)`.
 pub type LevelRow<'a> = dyn Fn(usize, u32, &mut [[f32; 4]]) + Sync + 'a;
 
-/// Encodes all levels.
+/// Encodes the levels of `sizes` that `encoding` asks for.
 pub fn encode_chain(sizes: &[(u32, u32)], encoding: Encoding, row: &LevelRow<'_>) -> Result<Chain, EncodeError> {
+    let first = encoding.first(sizes);
+    let kept = &sizes[first..];
     let encode_level = |(level, &(width, height)): (usize, &(u32, u32))| {
-        let row = |y: u32, out: &mut [[f32; 4]]| row(level, y, out);
+        let row = |y: u32, out: &mut [[f32; 4]]| row(first + level, y, out);
         encode(&Texels { width, height, row: &row }, encoding.format, encoding.effort)
     };
-    let levels = sizes.par_iter().enumerate().map(encode_level).collect::<Result<_, _>>()?;
-    let (width, height) = sizes[0];
+    let levels = kept.par_iter().enumerate().map(encode_level).collect::<Result<_, _>>()?;
+    let (width, height) = kept[0];
     let fallback = encoding.fallback.then(|| {
-        let row = |y: u32, out: &mut [[f32; 4]]| row(0, y, out);
+        let row = |y: u32, out: &mut [[f32; 4]]| row(first, y, out);
         Texels { width, height, row: &row }.to_rgba8()
     });
-    Ok(Chain { format: encoding.format, width, height, levels, fallback })
+    Ok(Chain { format: encoding.format, trimmed: first, width, height, levels, fallback })
 }
 
 impl Chain {

@@ -19,6 +19,7 @@ mod relief;
 pub mod report;
 mod settings;
 mod source;
+mod view;
 
 pub use asset::{BakeError, Baked, NewFile, bake};
 pub use bare::{BareBake, BareError, BareTexture, OwnRoughness, bake_map};
@@ -31,3 +32,4 @@ pub use pyramids::Range;
 pub use relief::Relief;
 pub use settings::{Form, Model, Profile, Settings};
 pub use source::{Source, SourceError};
+pub use view::{Finest, View};

@@ -95,7 +95,7 @@ impl Quantity {
     }
 }
 
-/// The texture of one quantity over `moments`. Integer formats use the smallest range that holds every level.
+/// The texture of one quantity over `moments`. Integer formats use the smallest range that holds every level that is written.
 pub fn bake_quantity<R>(moments: &Pyramid<R>, quantity: Quantity, encoding: Encoding) -> Result<Ranged, EncodeError>
 where
     R: Rows<Texel = Moments>,
@@ -104,24 +104,27 @@ where
         moments.row(level, y, texels);
         texels.iter().map(move |m| quantity.of(*m)).collect::<Vec<_>>()
     };
-    let channels = quantity.channels();
+    let (channels, sizes) = (quantity.channels(), moments.sizes());
     // A PNG fallback holds [0, 1] only, so with one floats have a range too.
     let range = if encoding.format.is_normalised() || encoding.fallback {
-        let bounds = moments.sizes().iter().enumerate().fold([0.0_f32; 3], |bounds, (level, &(width, height))| {
-            let of_level = (0..height)
-                .into_par_iter()
-                .map_init(
-                    || vec![Moments::default(); width as usize],
-                    |texels, y| values(level, y, texels).into_iter().fold([0.0; 3], larger),
-                )
-                .reduce(|| [0.0; 3], larger);
-            larger(bounds, of_level)
-        });
+        let bounds = sizes.iter().enumerate().skip(encoding.first(&sizes)).fold(
+            [0.0_f32; 3],
+            |bounds, (level, &(width, height))| {
+                let of_level = (0..height)
+                    .into_par_iter()
+                    .map_init(
+                        || vec![Moments::default(); width as usize],
+                        |texels, y| values(level, y, texels).into_iter().fold([0.0; 3], larger),
+                    )
+                    .reduce(|| [0.0; 3], larger);
+                larger(bounds, of_level)
+            },
+        );
         Range::new(&bounds[..channels], quantity.signed())
     } else {
         Range::identity(channels)
     };
-    let chain = encode_chain(&moments.sizes(), encoding, &|level, y, out| {
+    let chain = encode_chain(&sizes, encoding, &|level, y, out| {
         let mut texels = vec![Moments::default(); out.len()];
         for (texel, value) in out.iter_mut().zip(values(level, y, &mut texels)) {
             for (c, out) in texel.iter_mut().enumerate().take(channels) {

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::pyramids::Range;
 use super::settings::Model;
+use super::view::Finest;
 use crate::choose::ModelLoss;
 use crate::gltf::material::{LayerKind, Material};
 
@@ -33,6 +34,9 @@ pub struct LayerReport {
     /// What smaller models would lose.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub loss: Option<ModelLoss>,
+    /// The finest level of its bump map that the view can sample; absent where no view is told, or no one can tell.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub finest: Option<Finest>,
     /// What was left as it was, or is not as exact as it could be, and why.
     pub notes: Vec<String>,
 }
@@ -46,6 +50,7 @@ impl LayerReport {
             layer: LayerKind::Base,
             model: None,
             loss: None,
+            finest: None,
             notes: vec!["no normal or height map: left as it was".to_owned()],
         }
     }
@@ -65,11 +70,18 @@ pub struct TextureReport {
     pub height: u32,
     /// Mip levels.
     pub levels: usize,
+    /// Finer levels that were left out.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub trimmed: usize,
     /// Bytes of the KTX2 file.
     pub bytes: usize,
     /// What texels of 0 and 1 stand for; only for the pyramid profile.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub range: Option<Range>,
+}
+
+fn is_zero(n: &usize) -> bool {
+    *n == 0
 }
 
 /// What the texels of a baked texture are.

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
+use super::view::View;
 use crate::bump::Frame;
 use crate::roughness::Distribution;
 use crate::texture::Target;
@@ -84,6 +85,8 @@ pub struct Settings {
     pub frame: Frame,
     /// Height maps: relief in widths of a repeat (in mesh units under [`Frame::Natural`]), overriding the asset's.
     pub height_scale: Option<f32>,
+    /// The camera, where one is told.
+    pub view: Option<View>,
     /// Largest number of texels of an input image.
     pub max_texels: u64,
     /// Write version, settings and source digests into each KTX2.
@@ -103,6 +106,7 @@ impl Default for Settings {
             glb: false,
             frame: Frame::default(),
             height_scale: None,
+            view: None,
             max_texels: 1 << 28,
             provenance: true,
         }
@@ -117,7 +121,7 @@ impl Settings {
             Frame::Unit => json!("unit"),
             Frame::MainDirection(m) => json!({ "mainDirection": m.map(f64::from) }),
         };
-        json!({
+        let mut settings = json!({
             "profile": self.profile,
             "model": model,
             "maxError": f64::from(self.max_error),
@@ -131,6 +135,10 @@ impl Settings {
             "gltf": self.form,
             "frame": frame,
             "heightScale": self.height_scale.map(f64::from),
-        })
+        });
+        if let Some(view) = self.view {
+            settings["view"] = json!(view);
+        }
+        settings
     }
 }

@@ -9,6 +9,7 @@ use super::inputs::{self, Input, InputError};
 use super::options::{DocumentOptions, TextureOptions};
 use super::progress::Progress;
 use super::report::{Asset, Report, Status};
+use super::view::ViewOptions;
 use crate::bake::report::AssetReport;
 use crate::bake::{
     BakeError, JobError, Places, PublishError, Settings, Source, SourceError, bake, publish, read_file, write_file,
@@ -41,6 +42,8 @@ pub struct Args {
     texture: TextureOptions,
     #[command(flatten)]
     document: DocumentOptions,
+    #[command(flatten)]
+    view: ViewOptions,
 }
 
 /// Why an asset is not baked.
@@ -89,7 +92,7 @@ impl AssetError {
 /// # Errors
 /// When `out` or `err` cannot be written to.
 pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<Outcome> {
-    let settings = args.texture.settings(Some(&args.document));
+    let settings = Settings { view: args.view.view(), ..args.texture.settings(Some(&args.document)) };
     if let Err(reason) = check_settings(&settings) {
         writeln!(err, "error: {reason}")?;
         return Ok(Outcome::Usage);

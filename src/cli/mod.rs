@@ -8,6 +8,7 @@ mod map;
 mod options;
 mod progress;
 mod report;
+mod view;
 
 use std::io::Write;
 

@@ -79,6 +79,7 @@ impl TextureOptions {
             glb: document.is_some_and(|d| d.glb),
             frame: document.map_or(defaults.frame, DocumentOptions::frame),
             height_scale: document.and_then(|d| d.height_scale),
+            view: None,
             max_texels: self.max_texels,
             provenance: !self.no_provenance,
         }

@@ -88,7 +88,10 @@ impl Asset {
                 crate::gltf::material::LayerKind::Base => "",
                 crate::gltf::material::LayerKind::Clearcoat => ", clearcoat",
             };
-            text += &format!("  {}{which}: {model}{loss}\n", layer.material);
+            let finest = layer.finest.map_or_else(String::new, |f| {
+                format!(", sampled from level {} on, typically {}", f.level, f.typical_level)
+            });
+            text += &format!("  {}{which}: {model}{loss}{finest}\n", layer.material);
             for note in &layer.notes {
                 text += &format!("    note: {note}\n");
             }

@@ -28,7 +28,7 @@ pub fn layout<'a>(
     buffer: &dyn Fn(usize) -> Option<&'a [u8]>,
 ) -> Option<Layout> {
     let mut sums = Sums::default();
-    Accessors { root, buffer }.visit_material(material, mapping, |triangle| {
+    Accessors { root, buffer }.visit_material(material, mapping, |_, triangle| {
         sums.add(triangle, main_direction.map(f64::from));
     });
     sums.layout()

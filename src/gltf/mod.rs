@@ -1,10 +1,12 @@
 //! glTF documents: lossless editing, and reading what materials say. This room knows nothing of pixels.
 
+pub mod density;
 pub mod document;
 pub mod geometry;
 pub mod json;
 pub mod material;
 pub mod rewrite;
+pub mod scene;
 pub mod texture;
 mod triangles;
 pub mod turn;

@@ -1,6 +1,7 @@
 //! The triangles of a material, read with every index checked: what is not there is not visited.
 
 use serde::Deserialize;
+use serde::de::IgnoredAny;
 use serde_json::Value;
 
 use super::material::Mapping;
@@ -34,6 +35,8 @@ struct Accessor {
     #[serde(default)]
     normalized: bool,
     count: usize,
+    /// Replaces elements; not read.
+    sparse: Option<IgnoredAny>,
 }
 
 #[derive(Deserialize)]
@@ -55,44 +58,69 @@ struct Elements<'a> {
     count: usize,
 }
 
+/// Most triangles that are visited for one material: primitives may repeat accessors, so a small file can name many.
+const MAX_TRIANGLES: usize = 1 << 28;
+
 impl<'a> Accessors<'_, 'a> {
-    /// Calls `visit` for each triangle that uses material `material` and has the texture coordinates of `mapping`.
-    pub fn visit_material(&self, material: usize, mapping: &Mapping, mut visit: impl FnMut([Vertex; 3])) {
+    /// Calls `visit` for each triangle that uses material `material` and has the texture coordinates of `mapping`, with
+    /// the index of its mesh. Returns whether all such triangles could be read.
+    pub fn visit_material(
+        &self,
+        material: usize,
+        mapping: &Mapping,
+        mut visit: impl FnMut(usize, [Vertex; 3]),
+    ) -> bool {
         let transform = mapping.uv();
         let meshes = self.root.get("meshes").and_then(Value::as_array);
-        for primitive in meshes.into_iter().flatten().filter_map(|m| m.get("primitives")?.as_array()).flatten() {
-            let is_used = primitive.get("material").and_then(Value::as_u64) == Some(material as u64);
-            let is_triangles = primitive.get("mode").and_then(Value::as_u64).unwrap_or(4) == 4;
-            if is_used && is_triangles {
-                // A primitive that cannot be read is not there.
-                let _ = self.visit_primitive(primitive, transform.tex_coord, |triangle| {
-                    visit(triangle.map(|v| Vertex { uv: transform.apply(v.uv), ..v }));
+        let (mut is_complete, mut left) = (true, MAX_TRIANGLES);
+        for (mesh, value) in meshes.into_iter().flatten().enumerate() {
+            let primitives = value.get("primitives").and_then(Value::as_array);
+            for primitive in primitives.into_iter().flatten().filter(|p| uses(p, material)) {
+                let read = self.visit_primitive(primitive, transform.tex_coord, &mut left, |triangle| {
+                    visit(mesh, triangle.map(|v| Vertex { uv: transform.apply(v.uv), ..v }));
                 });
+                is_complete &= read.is_some();
             }
         }
+        is_complete
     }
 
-    fn visit_primitive(&self, primitive: &Value, tex_coord: u64, mut visit: impl FnMut([Vertex; 3])) -> Option<()> {
+    /// `None` where the primitive, or a part of it, cannot be read.
+    fn visit_primitive(
+        &self,
+        primitive: &Value,
+        tex_coord: u64,
+        left: &mut usize,
+        mut visit: impl FnMut([Vertex; 3]),
+    ) -> Option<()> {
         let attribute = |name: &str| primitive.get("attributes")?.get(name)?.as_u64();
-        let positions = self.elements(attribute("POSITION")?, 3)?;
-        let uvs = self.elements(attribute(&format!("TEXCOORD_{tex_coord}"))?, 2)?;
+        let (Some(positions), Some(uvs)) = (attribute("POSITION"), attribute(&format!("TEXCOORD_{tex_coord}"))) else {
+            // Without coordinates no texture is seen.
+            return Some(());
+        };
+        let (positions, uvs) = (self.elements(positions, 3)?, self.elements(uvs, 2)?);
         let normals = attribute("NORMAL").and_then(|accessor| self.elements(accessor, 3));
         let indices = match primitive.get("indices").and_then(Value::as_u64) {
             None => None,
             Some(accessor) => Some(self.elements(accessor, 1)?),
         };
         let corners = indices.as_ref().map_or(positions.count, |i| i.count);
-        for first in (0..corners / 3).map(|t| 3 * t) {
-            let read = |corner: usize| {
-                let vertex = indices.as_ref().map_or(Some(corner), |i| i.index(corner))?;
-                let normal = normals.as_ref().and_then(|n| n.vector(vertex));
-                Some(Vertex { position: positions.vector(vertex)?, uv: uvs.vector(vertex)?, normal })
-            };
-            if let (Some(a), Some(b), Some(c)) = (read(first), read(first + 1), read(first + 2)) {
-                visit([a, b, c]);
+        let read = |corner: usize| {
+            let vertex = indices.as_ref().map_or(Some(corner), |i| i.index(corner))?;
+            let normal = normals.as_ref().and_then(|n| n.vector(vertex));
+            Some(Vertex { position: positions.vector(vertex)?, uv: uvs.vector(vertex)?, normal })
+        };
+        let mode = primitive.get("mode").and_then(Value::as_u64).unwrap_or(TRIANGLES);
+        let count = triangle_count(mode, corners);
+        let mut is_complete = count <= *left;
+        for triangle in 0..count.min(*left) {
+            match triangle_corners(mode, triangle).map(read) {
+                [Some(a), Some(b), Some(c)] => visit([a, b, c]),
+                _ => is_complete = false,
             }
         }
-        Some(())
+        *left -= count.min(*left);
+        is_complete.then_some(())
     }
 
     fn elements(&self, accessor: u64, components: usize) -> Option<Elements<'a>> {
@@ -103,7 +131,7 @@ impl<'a> Accessors<'_, 'a> {
         let bytes = bytes.get(view.byte_offset..)?.get(..view.byte_length)?.get(accessor.byte_offset..)?;
         let stride = view.byte_stride.unwrap_or(components * component_bytes(accessor.component_type)?);
         // A stride of 0, and counts beyond the bytes, would make small files take long.
-        if stride == 0 || accessor.count > bytes.len() / stride + 1 {
+        if stride == 0 || accessor.count > bytes.len() / stride + 1 || accessor.sparse.is_some() {
             return None;
         }
         let Accessor { component_type, normalized, count, .. } = accessor;
@@ -113,6 +141,9 @@ impl<'a> Accessors<'_, 'a> {
 
 impl Elements<'_> {
     fn component(&self, index: usize, component: usize) -> Option<&[u8]> {
+        if index >= self.count {
+            return None;
+        }
         let size = component_bytes(self.component_type)?;
         let start = index.checked_mul(self.stride)?.checked_add(component * size)?;
         self.bytes.get(start..start.checked_add(size)?)
@@ -123,12 +154,19 @@ impl Elements<'_> {
         for (i, value) in vector.iter_mut().enumerate() {
             *value = match (self.component_type, self.component(index, i)?) {
                 (5126, &[a, b, c, d]) => f64::from(f32::from_le_bytes([a, b, c, d])),
-                (5121, &[a]) => f64::from(a) / if self.normalized { 255.0 } else { 1.0 },
-                (5123, &[a, b]) => f64::from(u16::from_le_bytes([a, b])) / if self.normalized { 65535.0 } else { 1.0 },
+                // glTF 2.0, section 3.11: f = max(c / 127, -1) and the like.
+                (5120, &[a]) => self.scaled(f64::from(i8::from_le_bytes([a])), 127.0),
+                (5121, &[a]) => self.scaled(f64::from(a), 255.0),
+                (5122, &[a, b]) => self.scaled(f64::from(i16::from_le_bytes([a, b])), 32767.0),
+                (5123, &[a, b]) => self.scaled(f64::from(u16::from_le_bytes([a, b])), 65535.0),
                 _ => return None,
             };
         }
         Some(vector)
+    }
+
+    fn scaled(&self, integer: f64, one: f64) -> f64 {
+        if self.normalized { (integer / one).max(-1.0) } else { integer }
     }
 
     fn index(&self, corner: usize) -> Option<usize> {
@@ -138,6 +176,34 @@ impl Elements<'_> {
             (5125, &[a, b, c, d]) => usize::try_from(u32::from_le_bytes([a, b, c, d])).ok(),
             _ => None,
         }
+    }
+}
+
+/// Whether a primitive is drawn with the material, by itself or in one of its `KHR_materials_variants`.
+fn uses(primitive: &Value, material: usize) -> bool {
+    let is_it = |value: &Value| value.get("material").and_then(Value::as_u64) == Some(material as u64);
+    let mappings = primitive.pointer("/extensions/KHR_materials_variants/mappings").and_then(Value::as_array);
+    is_it(primitive) || mappings.into_iter().flatten().any(is_it)
+}
+
+/// glTF 2.0, section 3.7.2.1: modes with triangles; the others are points and lines.
+const TRIANGLES: u64 = 4;
+const TRIANGLE_STRIP: u64 = 5;
+const TRIANGLE_FAN: u64 = 6;
+
+fn triangle_count(mode: u64, corners: usize) -> usize {
+    match mode {
+        TRIANGLES => corners / 3,
+        TRIANGLE_STRIP | TRIANGLE_FAN => corners.saturating_sub(2),
+        _ => 0,
+    }
+}
+
+fn triangle_corners(mode: u64, i: usize) -> [usize; 3] {
+    match mode {
+        TRIANGLE_STRIP => [i, i + 1 + i % 2, i + 2 - i % 2],
+        TRIANGLE_FAN => [i + 1, i + 2, 0],
+        _ => [3 * i, 3 * i + 1, 3 * i + 2],
     }
 }
 

@@ -41,7 +41,7 @@ pub fn turn_map<'a>(
         sums: vec![Sum::default(); width as usize * height as usize],
         visits: 0.0,
     };
-    Accessors { root, buffer }.visit_material(material, mapping, |triangle| {
+    Accessors { root, buffer }.visit_material(material, mapping, |_, triangle| {
         raster.draw(triangle, main_direction.map(f64::from));
     });
     let has_frame = raster.sums.iter().any(|sum| sum.count > 0.0);

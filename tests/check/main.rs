@@ -7,3 +7,4 @@ mod inspect;
 mod schemas;
 mod table;
 mod textures;
+mod view;

@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 
 use crate::fixture::{bake, roughcast};
 
-fn schema(name: &str) -> Validator {
+pub fn schema(name: &str) -> Validator {
     let text = fs::read(format!("schemas/{name}.schema.json")).unwrap();
     let schema: Value = serde_json::from_slice(&text).unwrap();
     assert!(jsonschema::meta::is_valid(&schema), "{name}");
@@ -19,7 +19,7 @@ fn schema(name: &str) -> Validator {
     jsonschema::validator_for(&schema).unwrap()
 }
 
-fn assert_valid(schema: &Validator, value: &Value) {
+pub fn assert_valid(schema: &Validator, value: &Value) {
     let errors: Vec<String> = schema.iter_errors(value).map(|e| format!("{}: {e}", e.instance_path())).collect();
     assert!(errors.is_empty(), "{errors:#?}\n{value:#}");
 }

@@ -62,6 +62,7 @@ fn bake() {
             "roughcast bake knobs/knobs.gltf -o out --engine bevy",
             "roughcast bake heights -o out --profile pyramid --model isotropic",
             "roughcast bake knobs -o out --quiet",
+            "roughcast bake brushed knobs -o out --nearest 400 --screen-height 1080 --trim",
         ],
     );
 }
@@ -91,6 +92,11 @@ fn usage_errors() {
             "roughcast bake brushed -o out --main-direction 0,0,0",
             "roughcast bake brushed -o out --glb --gltf dual",
             "roughcast bake brushed -o out --quiet --json",
+            "roughcast bake brushed -o out --trim",
+            "roughcast bake brushed -o out --nearest 2",
+            "roughcast bake brushed -o out --nearest -2 --screen-height 1080",
+            "roughcast bake brushed -o out --nearest 2 --screen-height 0",
+            "roughcast bake brushed -o out --nearest 2 --screen-height 1080 --fov 180",
             "roughcast map maps/line_normal.png -o out.ktx2 --wrap round",
             "roughcast frobnicate",
         ],

@@ -52,6 +52,13 @@ fn fallback_is_valid() {
 }
 
 #[test]
+fn trimmed_textures_are_valid() {
+    let view = ["--nearest", "400", "--screen-height", "1080", "--trim", "--profile", "both"];
+    assert_valid(&view);
+    assert_valid(&[&view[..], &["--gltf", "strict", "--glb"]].concat());
+}
+
+#[test]
 fn strict_is_valid() {
     assert_valid(&["--gltf", "strict"]);
     assert_valid(&["--gltf", "strict", "--profile", "both"]);

@@ -52,7 +52,8 @@ impl Job<'_> {
             };
             let folded = match &layer.own {
                 Ok(_) if self.settings.profile.is_portable() && model != Model::None => {
-                    Some(fold.bake(model, Encoding::of(self.settings, 3))?)
+                    let first = self.first_level(users.iter().map(|user| &layers[*user]), size);
+                    Some(fold.bake(model, Encoding::of(self.settings, 3).starting_at(first))?)
                 }
                 _ => None,
             };

@@ -15,7 +15,9 @@ use super::relief::Relief;
 use super::report::{Content, LayerReport};
 use super::settings::{Model, Settings};
 use super::source::Source;
+use super::view::Finest;
 use crate::bump::{Frame, MAX_SLOPE};
+use crate::gltf::density::NoDensity;
 use crate::gltf::material::Mapping;
 use crate::gltf::rewrite::Slot;
 use crate::gltf::texture::{ImageLocation, TextureSource};
@@ -93,6 +95,7 @@ pub fn run(
 ) -> Result<JobOutput, JobError> {
     let job = Job { plan, source, settings, geometry };
     let relief = job.relief()?;
+    let size = grid(settings, [(relief.width(), relief.height())])?;
     let mut output = JobOutput::default();
     let steep = relief.steep_texels();
     for layer in &plan.layers {
@@ -109,6 +112,14 @@ pub fn run(
                 MAX_SLOPE
             ));
         }
+        let finest = match job.finest(layer, size) {
+            None => None,
+            Some(Ok(finest)) => Some(finest),
+            Some(Err(reason)) => {
+                notes.push(format!("every level counts as seen: {reason}"));
+                None
+            }
+        };
         output.layers.push(LayerOutcome {
             report: LayerReport {
                 index: layer.material,
@@ -116,6 +127,7 @@ pub fn run(
                 layer: layer.layer.kind,
                 model: None,
                 loss: None,
+                finest,
                 notes,
             },
             model: Model::None,
@@ -125,12 +137,14 @@ pub fn run(
             pyramid: None,
         });
     }
-    let (width, height) = grid(settings, [(relief.width(), relief.height())])?;
-    let moments = Pyramid::new(Area::new(&relief, width, height));
+    let moments = Pyramid::new(Area::new(&relief, size.0, size.1));
     if settings.profile.is_portable() {
         output.textures.push(JobTexture {
             content: Content::Normal,
-            chain: bake_normals(&moments, Encoding::of_normals(settings))?,
+            chain: bake_normals(
+                &moments,
+                Encoding::of_normals(settings).starting_at(job.first_level(&plan.layers, size)),
+            )?,
             range: None,
             named_after: Ok(plan.source.location.clone()),
             sources: vec![plan.source.location.clone()],
@@ -160,6 +174,22 @@ struct Job<'a> {
 }
 
 impl Job<'_> {
+    /// The finest level that the view can sample of a map of `size` on `layer`, where a view is told.
+    fn finest(&self, layer: &LayerPlan, size: (u32, u32)) -> Option<Result<Finest, NoDensity>> {
+        self.geometry.finest(layer.material, &layer.layer.bumps.texture().mapping, size)
+    }
+
+    /// The finest level that the view can sample of a map of `size` on any of `layers`: 0 where no one can tell.
+    fn finest_level<'l>(&self, layers: impl IntoIterator<Item = &'l LayerPlan>, size: (u32, u32)) -> usize {
+        let level = |layer: &LayerPlan| self.finest(layer, size).and_then(Result::ok).map_or(0, |finest| finest.level);
+        layers.into_iter().map(level).min().unwrap_or(0)
+    }
+
+    /// The first level that is written of such a map.
+    fn first_level<'l>(&self, layers: impl IntoIterator<Item = &'l LayerPlan>, size: (u32, u32)) -> usize {
+        if self.settings.view.is_some_and(|view| view.trim) { self.finest_level(layers, size) } else { 0 }
+    }
+
     fn relief(&self) -> Result<Relief, JobError> {
         let material = self.plan.layers.first().map(|l| l.name.clone()).unwrap_or_default();
         let image = self.image(&self.plan.source, &material, decode)?;

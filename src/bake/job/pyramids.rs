@@ -70,7 +70,8 @@ impl Job<'_> {
         reading: &Reading,
         quantity: Quantity,
     ) -> Result<JobTexture, JobError> {
-        let encoding = Encoding::of(self.settings, quantity.channels() as u32);
+        let first = self.first_level(&self.plan.layers, moments.sizes()[0]);
+        let encoding = Encoding::of(self.settings, quantity.channels() as u32).starting_at(first);
         let Ranged { chain, range } = if *reading == Reading::Uniform(FrameTransform::IDENTITY) {
             bake_quantity(moments, quantity, encoding)?
         } else {

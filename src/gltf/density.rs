@@ -1,0 +1,163 @@
+//! How densely textures lie on the surfaces of the scenes: the size of a texel in scene units.
+
+use serde_json::Value;
+
+use super::material::Mapping;
+use super::scene::{BadNode, Metric, Placement, Unsteady, has_moving_coordinates, product};
+use super::triangles::{Accessors, Vertex, cross, length, minus, tangents};
+
+/// Why no one can tell how large the texels of a material get.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NoDensity {
+    /// A node that cannot be read.
+    #[error(transparent)]
+    Node(#[from] BadNode),
+    /// No triangle with texture coordinates shows the material.
+    #[error("no triangle of the document shows the material")]
+    NoTriangles,
+    /// A mesh that something else than the document puts into a scene.
+    #[error("mesh {mesh}, which shows the material, is in no scene")]
+    InNoScene {
+        /// Index into `meshes`.
+        mesh: usize,
+    },
+    /// A mesh that changes its size.
+    #[error("the size of mesh {mesh}, which shows the material, is not known: {reason}")]
+    Unsteady {
+        /// Index into `meshes`.
+        mesh: usize,
+        /// Why.
+        reason: Unsteady,
+    },
+    /// Texture coordinates that move.
+    #[error("an animation changes the material's texture coordinates")]
+    MovingCoordinates,
+    /// Triangles that are compressed, sparse, broken, or more than can be visited.
+    #[error("some triangles that show the material cannot be read")]
+    Unreadable,
+}
+
+/// How long texels of a map are on the surfaces of the scenes, in scene units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Density {
+    /// Where the map is most magnified: on the worst triangle, along the direction of its largest stretch, as far as
+    /// anisotropic filtering follows.
+    pub longest: f64,
+    /// Side of a square of the area that texels have on average.
+    pub typical: f64,
+}
+
+/// The density of a map of `size` (columns, rows) on the triangles that show material `material`. Those without area, on
+/// the surface or on the map, do not count. `placements` tells how large meshes are, `buffer` returns the bytes of a buffer.
+///
+/// # Errors
+/// [`NoDensity`] when some triangle may be larger than the document tells.
+pub fn density<'a>(
+    root: &Value,
+    placements: &[Placement],
+    material: usize,
+    mapping: &Mapping,
+    size: (u32, u32),
+    buffer: &dyn Fn(usize) -> Option<&'a [u8]>,
+) -> Result<Density, NoDensity> {
+    if has_moving_coordinates(root, material) {
+        return Err(NoDensity::MovingCoordinates);
+    }
+    let (mut sums, mut failure) = (Sums::default(), None);
+    let is_complete =
+        Accessors { root, buffer }.visit_material(material, mapping, |mesh, triangle| match placements.get(mesh) {
+            None | Some(Placement::Absent) => failure = failure.or(Some(NoDensity::InNoScene { mesh })),
+            Some(Placement::Unsteady(reason)) => {
+                failure = failure.or(Some(NoDensity::Unsteady { mesh, reason: *reason }));
+            }
+            Some(Placement::At(metrics)) => {
+                metrics.iter().for_each(|metric| sums.add(triangle, *metric, size));
+            }
+        });
+    match failure {
+        Some(failure) => Err(failure),
+        None if !is_complete => Err(NoDensity::Unreadable),
+        None => sums.density(),
+    }
+}
+
+#[derive(Default)]
+struct Sums {
+    longest_squared: f64,
+    area: f64,
+    texels: f64,
+}
+
+impl Sums {
+    fn add(&mut self, triangle: [Vertex; 3], metric: Metric, size: (u32, u32)) {
+        let Some([a, b]) = texel_sides(triangle, size) else { return };
+        let sides = Sides { aa: product(a, metric, a), ab: product(a, metric, b), bb: product(b, metric, b) };
+        let stretch = sides.stretch_squared();
+        // What is not a number has no bound.
+        self.longest_squared = if stretch.is_nan() { f64::INFINITY } else { self.longest_squared.max(stretch) };
+        let texels = texels_under(triangle, size);
+        self.area += texels * sides.area();
+        self.texels += texels;
+    }
+
+    fn density(&self) -> Result<Density, NoDensity> {
+        match self.longest_squared {
+            0.0 => Err(NoDensity::NoTriangles),
+            f64::INFINITY => Err(NoDensity::Unreadable),
+            square => Ok(Density { longest: square.sqrt(), typical: (self.area / self.texels).sqrt() }),
+        }
+    }
+}
+
+/// Where the sides of a texel lie on the triangle's mesh; `None` for a triangle without area.
+fn texel_sides(triangle: [Vertex; 3], (width, height): (u32, u32)) -> Option<[[f64; 3]; 2]> {
+    let [a, b, c] = triangle.map(|v| v.position);
+    if length(cross(minus(b, a), minus(c, a))) == 0.0 {
+        return None;
+    }
+    let [p_u, p_v] = tangents(triangle)?;
+    Some([p_u.map(|x| x / f64::from(width)), p_v.map(|x| x / f64::from(height))])
+}
+
+/// Largest anisotropy that samplers follow: 16 is the most that any API offers; sqrt 2 is how much shorter than the major
+/// axis the longer of a footprint's two sides can be, which samplers may take for it (Vulkan 1.3, "Scale Factor
+/// Operation").
+const MAX_ANISOTROPY_SQUARED: f64 = 16.0 * 16.0 * 2.0;
+
+/// Texels of the map that lie on the triangle.
+fn texels_under([a, b, c]: [Vertex; 3], (width, height): (u32, u32)) -> f64 {
+    let det = (b.uv[0] - a.uv[0]) * (c.uv[1] - a.uv[1]) - (c.uv[0] - a.uv[0]) * (b.uv[1] - a.uv[1]);
+    0.5 * det.abs() * f64::from(width) * f64::from(height)
+}
+
+/// Products of the sides of a texel on the surface.
+struct Sides {
+    aa: f64,
+    ab: f64,
+    bb: f64,
+}
+
+impl Sides {
+    /// Square of the length whose footprint decides on the level.
+    ///
+    /// The texel's circle becomes an ellipse with semi-axes s1 >= s2. A pixel of length p is p / s2 by p / s1 texels, and
+    /// the level is log2 of the shorter, but of no less than the longer over the largest anisotropy (Vulkan 1.3, "LOD
+    /// Operation"): log2(p / min(s1, 16 s2)).
+    fn stretch_squared(&self) -> f64 {
+        let (mean, half) = (0.5 * (self.aa + self.bb), 0.5 * (self.aa - self.bb));
+        let deviation = (half * half + self.ab * self.ab).sqrt();
+        // The difference is no more certain than rounding leaves it.
+        let (major, minor) = (mean + deviation, (mean - deviation).max(4.0 * f64::EPSILON * mean));
+        let bound = MAX_ANISOTROPY_SQUARED * minor;
+        // Not f64::min, which drops what is not a number.
+        if bound < major { bound } else { major }
+    }
+
+    /// Area of the texel.
+    fn area(&self) -> f64 {
+        (self.aa * self.bb - self.ab * self.ab).max(0.0).sqrt()
+    }
+}
+
+#[cfg(test)]
+mod tests;
