@@ -1,10 +1,15 @@
-//! Decoded levels of a bake against a slow oracle in f64 that shares no code with it.
+//! Decoded levels of a bake against a slow oracle in f64 that shares nothing with it but the table of corrections.
 
 use std::path::Path;
 
 use roughcast::bake::report::Content;
 use roughcast::bake::{Model, OwnRoughness, Relief, Settings, bake_map};
+use roughcast::bump::Offset;
+use roughcast::lobe::SquaredAlpha;
 use roughcast::map::{DecodeOptions, Image, NormalLayout, NormalMap, Samples, decode};
+use roughcast::pyramid::{Moments, ShapedMoments};
+use roughcast::roughness::Distribution;
+use roughcast::symmetric::Symmetric2;
 use roughcast::texture::ktx2::Ktx2;
 use roughcast::texture::uastc::Effort;
 use roughcast::texture::{Target, ktx2};
@@ -42,7 +47,7 @@ struct Expected {
 }
 
 /// Straight from the level-0 texels under the texel, for maps whose sides are powers of two.
-fn oracle(normals: &Image, roughness: Option<&Image>, factor: f64, c: f64, level: u32, x: u32, y: u32) -> Expected {
+fn oracle(normals: &Image, roughness: Option<&Image>, factor: f64, level: u32, x: u32, y: u32) -> Expected {
     let side = 1 << level;
     let texels: Vec<(u32, u32)> = (0..side * side).map(|i| (x * side + i % side, y * side + i / side)).collect();
     let n = texels.len() as f64;
@@ -58,10 +63,14 @@ fn oracle(normals: &Image, roughness: Option<&Image>, factor: f64, c: f64, level
         (factor * green).powi(4)
     };
     let base = texels.iter().map(own).sum::<f64>() / n;
+    let covariance = Symmetric2::new(k(0, 0) as f32, k(0, 1) as f32, k(1, 1) as f32);
+    let own = SquaredAlpha(Symmetric2::diagonal(base as f32, base as f32));
+    let moments = ShapedMoments::normal(Moments { mean: Offset::default(), covariance });
+    let folded = own.fold(Distribution::Normal.correct(&moments, own).covariance).0;
     let length = (mean[0] * mean[0] + mean[1] * mean[1] + 1.0).sqrt();
     Expected {
         normal: [-mean[0] / length, -mean[1] / length, 1.0 / length],
-        squared_alpha: [base + 2.0 * c * k(0, 0), 2.0 * c * k(0, 1), base + 2.0 * c * k(1, 1)],
+        squared_alpha: [folded.uu, folded.uv, folded.vv].map(f64::from),
     }
 }
 
@@ -77,21 +86,21 @@ struct Errors {
 /// the baked axes).
 fn compare(normals: Image, roughness: Option<Image>, factor: f32, target: Target, bounds: (f64, f64)) {
     let relief = Relief::Normals(NormalMap::new(normals.clone(), NormalLayout::Xyz, false).unwrap());
-    let settings = Settings { model: Model::Anisotropic, target, ..Settings::default() };
+    let settings =
+        Settings { model: Model::Anisotropic, distribution: Distribution::Normal, target, ..Settings::default() };
     let own = OwnRoughness { image: roughness.clone(), factor };
     let baked = bake_map(&relief, Some(&own), &settings).unwrap();
     assert_eq!(baked.steep_texels, 0);
     let contents: Vec<Content> = baked.textures.iter().map(|t| t.content).collect();
     assert_eq!(contents, [Content::Normal, Content::Roughness, Content::Anisotropy]);
     let files: Vec<Vec<u8>> = baked.textures.iter().map(|t| t.chain.to_ktx2(&[], Effort::Fast)).collect();
-    let c = f64::from(settings.distribution.correction());
     for level in 0..=6 {
         let [normal, surface, axes] =
             [0, 1, 2].map(|t| ktx2::Ktx2::decode_level(&Ktx2::parse(&files[t]).unwrap(), level).unwrap());
         let mut errors = Errors::default();
         for i in 0..normal.width * normal.height {
             let (x, y) = (i % normal.width, i / normal.width);
-            let expected = oracle(&normals, roughness.as_ref(), f64::from(factor), c, level, x, y);
+            let expected = oracle(&normals, roughness.as_ref(), f64::from(factor), level, x, y);
             let at = |image: &Image, c| f64::from(image.sample(x, y, c).unwrap());
             let n = [0, 1, 2].map(|c| 2.0 * at(&normal, c) - 1.0);
             let length = n.iter().map(|n| n * n).sum::<f64>().sqrt();

@@ -276,7 +276,7 @@ impl<'a> Assembly<'a> {
             let extension = Extension::new(
                 ranged(pyramid.offset, pyramid.slope_scale),
                 pyramid.roughness.map(|index| ranged(index, pyramid.slope_scale.abs())),
-                self.settings.distribution.correction(),
+                pyramid.correction,
                 pyramid.frame,
                 &pyramid.mapping,
             );

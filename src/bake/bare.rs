@@ -1,6 +1,7 @@
 //! A bare map baked: no document, no material.
 
 use super::base::BaseRows;
+use super::bumps::Bumps;
 use super::chain::{Chain, Encoding, GridError, grid};
 use super::fold::Fold;
 use super::normals::bake_normals;
@@ -10,7 +11,7 @@ use super::report::Content;
 use super::settings::{Model, Settings};
 use crate::choose::ModelLoss;
 use crate::map::{Image, Rgba};
-use crate::pyramid::{Area, Pyramid, Rows};
+use crate::pyramid::{Pyramid, Rows};
 use crate::texture::EncodeError;
 
 /// The roughness that a bare map's surface has by itself.
@@ -57,27 +58,34 @@ pub struct BareBake {
 /// Bakes `relief`. The portable profile writes roughness only where `own` tells what to fold the bumps into.
 pub fn bake_map(relief: &Relief, own: Option<&OwnRoughness>, settings: &Settings) -> Result<BareBake, BareError> {
     let size = (relief.width(), relief.height());
-    let (width, height) = grid(settings, [size])?;
-    let moments = Pyramid::new(Area::new(relief, width, height));
+    let bumps = Bumps::new(relief, grid(settings, [size])?);
     let mut textures = Vec::new();
     let plain = |content, chain| BareTexture { content, chain, range: None };
-    if settings.profile.is_portable() {
-        textures.push(plain(Content::Normal, bake_normals(&moments, Encoding::of_normals(settings))?));
-    }
     // Without a lobe of its own nothing tells how much of the ellipse will be seen: keep all of it.
     let (mut model, mut loss) = match settings.model {
         Model::Auto => (Model::Anisotropic, None),
         model => (model, None),
     };
-    if let Some(own) = own {
+    let is_portable = settings.profile.is_portable();
+    let fold = own.map(|own| {
         let image = own.image.as_ref();
         let (width, height) = grid(settings, image.map(|i| (i.width, i.height)).into_iter().chain([size]))?;
-        let base = BaseRows::new(width, height, image.map(Rgba), own.factor, None, relief.wrap());
-        let resampled = ((width, height) != moments.sizes()[0]).then(|| Pyramid::new(Area::new(relief, width, height)));
-        let fold_moments = resampled.as_ref().unwrap_or(&moments);
-        let fold = Fold::new(base, fold_moments, 1.0, settings.distribution.correction());
+        let base = Pyramid::new(BaseRows::new(width, height, image.map(Rgba), own.factor, None, relief.wrap()));
+        let resampled = ((width, height) != bumps.size()).then(|| Bumps::new(relief, (width, height)));
+        let has_own_grid = resampled.is_some();
+        Ok::<_, BareError>((
+            Fold::new(base, resampled.as_ref().unwrap_or(&bumps), 1.0, settings.distribution),
+            has_own_grid,
+        ))
+    });
+    let fold = fold.transpose()?;
+    if is_portable {
+        let lobes = fold.as_ref().filter(|(_, has_own_grid)| !has_own_grid).map(|(fold, _)| fold.lobes());
+        textures.push(plain(Content::Normal, bake_normals(&bumps, lobes, Encoding::of_normals(settings))?));
+    }
+    if let Some((fold, _)) = &fold {
         (model, loss) = fold.model(settings, Model::Anisotropic);
-        if settings.profile.is_portable() && model != Model::None {
+        if is_portable && model != Model::None {
             let folded = fold.bake(model, Encoding::of(settings, 3))?;
             textures.push(plain(Content::Roughness, folded.roughness));
             textures.extend(folded.anisotropy.map(|chain| plain(Content::Anisotropy, chain)));
@@ -91,7 +99,7 @@ pub fn bake_map(relief: &Relief, own: Option<&OwnRoughness>, settings: &Settings
         };
         for (content, quantity) in [(Content::Offset, Quantity::Offset)].into_iter().chain(roughness) {
             let encoding = Encoding::of(settings, quantity.channels() as u32);
-            let Ranged { chain, range } = bake_quantity(&moments, quantity, encoding)?;
+            let Ranged { chain, range } = bake_quantity(bumps.moments(), quantity, encoding)?;
             textures.push(BareTexture { content, chain, range: Some(range) });
         }
     }

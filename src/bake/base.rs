@@ -19,6 +19,7 @@ pub struct BaseAnisotropy<'a> {
 }
 
 /// Roughness and anisotropy of a material on one grid.
+#[derive(Clone)]
 pub struct BaseRows<'a> {
     width: u32,
     height: u32,

@@ -3,20 +3,20 @@
 use rayon::prelude::*;
 
 use super::base::{BaseRows, BaseTexel};
+use super::bumps::Bumps;
 use super::chain::{Chain, Encoding, encode_chain};
+use super::lobes::{Lobes, own_lobe};
 use super::settings::{Model, Settings};
 use crate::choose::ModelLoss;
-use crate::lobe::{Anisotropy, Roughness, SquaredAlpha};
-use crate::pyramid::{Moments, Pyramid, Rows};
-use crate::symmetric::Symmetric2;
+use crate::lobe::{Anisotropy, OrientedLobe, Roughness, SquaredAlpha};
+use crate::pyramid::Pyramid;
+use crate::roughness::Distribution;
 use crate::texture::EncodeError;
 
-/// A material's lobe and the moments of its bumps on one grid.
-pub struct Fold<'a, R: Rows<Texel = Moments>> {
+/// A material's lobe roughened by its bumps.
+pub struct Fold<'a> {
     base: Pyramid<BaseRows<'a>>,
-    moments: &'a Pyramid<R>,
-    /// 2 c s^2 is what K is multiplied by; this is c s^2, with s the scale of the normal texture.
-    weight: f32,
+    lobes: Lobes<'a>,
     /// Whether the material's own lobe is anisotropic.
     is_elliptical: bool,
 }
@@ -29,12 +29,22 @@ pub struct Folded {
     pub anisotropy: Option<Chain>,
 }
 
-impl<'a, R: Rows<Texel = Moments>> Fold<'a, R> {
-    /// Joins `base` with the bumps of `moments` on the same grid. `slope_scale` multiplies offsets
-    /// (`normalTexture.scale`), `correction` is c.
-    pub fn new(base: BaseRows<'a>, moments: &'a Pyramid<R>, slope_scale: f32, correction: f32) -> Self {
-        let is_elliptical = base.is_elliptical();
-        Self { base: Pyramid::new(base), moments, weight: correction * slope_scale * slope_scale, is_elliptical }
+impl<'a> Fold<'a> {
+    /// Joins `base` with `bumps` on the same grid. `slope_scale` multiplies offsets (`normalTexture.scale`).
+    pub fn new<'b: 'a>(
+        base: Pyramid<BaseRows<'a>>,
+        bumps: &Bumps<'b>,
+        slope_scale: f32,
+        distribution: Distribution,
+    ) -> Self {
+        let is_elliptical = base.source().is_elliptical();
+        let lobes = Lobes::new(&base, bumps, slope_scale, distribution);
+        Self { base, lobes, is_elliptical }
+    }
+
+    /// The lobes of all levels.
+    pub fn lobes(&self) -> &Lobes<'a> {
+        &self.lobes
     }
 
     /// Sizes of all levels, level 0 first.
@@ -97,10 +107,7 @@ impl<'a, R: Rows<Texel = Moments>> Fold<'a, R> {
         let sizes = self.sizes();
         let anisotropic = model == Model::Anisotropic;
         // Directions agree with the axis of the whole map.
-        let reference = {
-            let whole = self.base.whole();
-            lobe(&whole).fold(self.moments.whole().covariance, self.weight).0.eigen().axis
-        };
+        let reference = self.lobes.whole().squared_alpha.0.eigen().axis;
         let parameters = |a: SquaredAlpha| {
             if anisotropic {
                 Anisotropy::of(a, reference)
@@ -136,16 +143,11 @@ impl<'a, R: Rows<Texel = Moments>> Fold<'a, R> {
         mut visit: impl FnMut(usize, SquaredAlpha, SquaredAlpha, [f32; 2]),
     ) {
         let mut base = vec![BaseTexel::default(); width];
-        let mut moments = vec![Moments::default(); width];
+        let mut lobes = vec![OrientedLobe::default(); width];
         self.base.row(level, y, &mut base);
-        self.moments.row(level, y, &mut moments);
-        for (x, (texel, m)) in base.iter().zip(&moments).enumerate() {
-            let bare = lobe(texel);
-            visit(x, bare, bare.fold(m.covariance, self.weight), [texel[3], texel[4]]);
+        self.lobes.row(level, y, &mut lobes);
+        for (x, (texel, lobe)) in base.iter().zip(&lobes).enumerate() {
+            visit(x, own_lobe(texel), lobe.squared_alpha, [texel[3], texel[4]]);
         }
     }
-}
-
-fn lobe(texel: &BaseTexel) -> SquaredAlpha {
-    SquaredAlpha(Symmetric2::new(texel[0], texel[1], texel[2]))
 }

@@ -3,12 +3,14 @@
 mod asset;
 mod bare;
 mod base;
+mod bumps;
 mod chain;
 mod container;
 mod extension;
 mod fold;
 mod geometry;
 mod job;
+mod lobes;
 mod names;
 mod normals;
 mod plan;

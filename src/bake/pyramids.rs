@@ -4,8 +4,9 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::chain::{Chain, Encoding, encode_chain};
-use crate::pyramid::{Moments, Pyramid, Rows};
-use crate::roughness::{Factor, lambda_1};
+use crate::lobe::SquaredAlpha;
+use crate::pyramid::{Moments, Pyramid, Rows, ShapedMoments};
+use crate::roughness::{Distribution, Factor, lambda_1};
 use crate::texture::EncodeError;
 
 /// What texels of 0 and 1 stand for, channel by channel: value = min + texel (max - min).
@@ -133,6 +134,30 @@ where
         }
     })?;
     Ok(Ranged { chain, range })
+}
+
+/// The one c of a map under a lobe of `own` squared alphas: what its texels' covariances want, each as far as it is large
+/// and each level alike. 1 for a map without bumps.
+pub fn mean_correction<R>(moments: &Pyramid<R>, distribution: Distribution, own: SquaredAlpha) -> f32
+where
+    R: Rows<Texel = ShapedMoments>,
+{
+    let mut total = [0.0; 2];
+    for (level, (width, height)) in moments.sizes().into_iter().enumerate().skip(1) {
+        let in_row = |texels: &mut Vec<ShapedMoments>, y: u32| {
+            moments.row(level, y, texels);
+            texels.iter().fold([0.0; 2], |sum, m| {
+                let corrected = distribution.correct(m, own).covariance.trace();
+                [sum[0] + f64::from(corrected), sum[1] + f64::from(m.moments.covariance.trace())]
+            })
+        };
+        let empty = || vec![ShapedMoments::default(); width as usize];
+        // Row by row in order, so that the sum does not depend on threads.
+        let rows: Vec<[f64; 2]> = (0..height).into_par_iter().map_init(empty, in_row).collect();
+        let count = f64::from(width) * f64::from(height);
+        total = rows.iter().fold(total, |t, row| [t[0] + row[0] / count, t[1] + row[1] / count]);
+    }
+    if total[1] > 0.0 { (total[0] / total[1]) as f32 } else { 1.0 }
 }
 
 /// The larger magnitude of each channel.

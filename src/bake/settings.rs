@@ -126,7 +126,6 @@ impl Settings {
             "model": model,
             "maxError": f64::from(self.max_error),
             "distribution": self.distribution,
-            "correctionFactor": f64::from(self.distribution.correction()),
             "target": self.target,
             "quality": match self.effort {
                 Effort::Fast => "fast",

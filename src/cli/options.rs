@@ -24,8 +24,8 @@ pub struct TextureOptions {
     /// Search effort of the block encoder.
     #[arg(long, value_enum, default_value_t = QualityName::Fast)]
     quality: QualityName,
-    /// Shape that the slopes under a texel are taken to have.
-    #[arg(long, value_enum, default_value_t = DistributionName::Normal)]
+    /// Shape that the slopes under a texel are taken to have; auto goes by the slopes themselves.
+    #[arg(long, value_enum, default_value_t = DistributionName::Auto)]
     distribution: DistributionName,
     /// Payload: UASTC for every engine, BC4/BC5/BC7, or half floats. [default: basis]
     #[arg(long, value_enum)]
@@ -150,6 +150,8 @@ names! {
 names! {
     /// `--distribution`.
     DistributionName => Distribution {
+        /// The slopes' own: lobes are merged by likelihood, factors follow the kurtosis
+        Auto,
         /// A 2-D normal distribution
         Normal,
         /// Uniform in a rectangle

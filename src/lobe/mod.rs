@@ -7,9 +7,12 @@
 mod anisotropy;
 pub mod blinn_phong;
 mod distance;
+mod merge;
+mod oriented;
 
 pub use anisotropy::Anisotropy;
 pub use distance::{isotropic_distance, shape_distance};
+pub use oriented::OrientedLobe;
 
 use crate::symmetric::Symmetric2;
 
@@ -44,10 +47,10 @@ impl SquaredAlpha {
         Self(Symmetric2::diagonal(squared, squared))
     }
 
-    /// A' = A + 2 c K: the lobe of a surface whose bumps have covariance `k` and whose own lobe is `self`. Exact for
-    /// Beckmann lobes and normal distributions with c = 1, where P22 is a normal density of covariance A/2.
-    pub fn fold(self, k: Symmetric2, correction: f32) -> Self {
-        Self(self.0 + (2.0 * correction) * k)
+    /// A' = A + 2 K: the lobe of a surface whose bumps have covariance `k` (times its correction) and whose own lobe is
+    /// `self`. Exact for Beckmann lobes and normal distributions, where P22 is a normal density of covariance A/2.
+    pub fn fold(self, k: Symmetric2) -> Self {
+        Self(self.0 + 2.0 * k)
     }
 
     /// The alpha of the closest isotropic lobe: alpha^4 = |A|. Of all circles, the one with the lobe's own peak: the
@@ -63,9 +66,9 @@ impl SquaredAlpha {
         if e.major <= 0.0 { 1.0 } else { (e.major / e.minor).sqrt() }
     }
 
-    /// Whether a glTF engine cannot show the lobe because an alpha would be above 1.
+    /// Whether a glTF engine cannot show the lobe because an alpha would be above 1, by more than a fit's own error.
     pub fn exceeds_one(self) -> bool {
-        self.0.eigen().major > 1.0
+        self.0.eigen().major > 1.02
     }
 }
 

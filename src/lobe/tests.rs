@@ -1,4 +1,6 @@
 use super::*;
+use crate::bump::Offset;
+use crate::pyramid::{Moments, ShapedMoments};
 use crate::roughness::Distribution;
 
 /// GGX over slopes in f64.
@@ -32,7 +34,7 @@ fn distance(scale: f64, p: impl Fn([f64; 2]) -> f64, q: impl Fn([f64; 2]) -> f64
 #[test]
 fn folding_is_exact_for_beckmann_and_normal_slopes() {
     // Beckmann alpha 0.3 is a normal density of variance 0.045; normal slopes of variance 0.02 add to 0.065 = 0.13/2.
-    let folded = SquaredAlpha::isotropic(Alpha(0.3)).fold(Symmetric2::diagonal(0.02, 0.02), 1.0);
+    let folded = SquaredAlpha::isotropic(Alpha(0.3)).fold(Symmetric2::diagonal(0.02, 0.02));
     assert!((folded.0.uu - 0.13).abs() < 1e-6);
     assert!((folded.closest_isotropic().0 - 0.13f32.sqrt()).abs() < 1e-6);
 }
@@ -112,7 +114,7 @@ fn the_correction_factor_is_the_best() {
                 let p = (f64::from(i) + 0.5) / f64::from(count);
                 match distribution {
                     Distribution::Normal => sigma * normal_quantile(p),
-                    Distribution::Uniform => sigma * 3f64.sqrt() * (2.0 * p - 1.0),
+                    _ => sigma * 3f64.sqrt() * (2.0 * p - 1.0),
                 }
             })
             .collect();
@@ -130,7 +132,10 @@ fn the_correction_factor_is_the_best() {
             let squared = alpha * alpha + 2.0 * c * sigma * sigma;
             samples.distance(|s| ggx([squared, 0.0, squared], s))
         };
-        let ours = f64::from(distribution.correction());
+        let spread = Symmetric2::diagonal((sigma * sigma) as f32, (sigma * sigma) as f32);
+        let moments = ShapedMoments::normal(Moments { mean: Offset::default(), covariance: spread });
+        let own = SquaredAlpha::isotropic(Alpha(alpha as f32));
+        let ours = f64::from(distribution.correct(&moments, own).covariance.uu) / (sigma * sigma);
         let best = (10..30).map(|i| 0.05 * f64::from(i)).min_by(|a, b| error(*a).total_cmp(&error(*b))).unwrap();
         assert!((best - ours).abs() < 0.051, "{distribution:?}: {best}");
     }

@@ -33,6 +33,7 @@ pub fn decode_colours(bytes: &[u8], options: &DecodeOptions) -> Result<Image, De
 }
 
 /// An image read as RGBA: one channel is grey, two are red and green, alpha is 1 where there is none.
+#[derive(Clone, Copy)]
 pub struct Rgba<'a>(pub &'a Image);
 
 impl Rows for Rgba<'_> {

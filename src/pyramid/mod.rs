@@ -6,10 +6,12 @@
 mod merge;
 mod reduce;
 mod resample;
+mod shaped;
 
 pub use merge::{Merge, Moments};
 pub use reduce::{Level, build, level_size, level_sizes};
 pub use resample::{Area, Linear};
+pub use shaped::{Shaped, ShapedMoments};
 
 /// A grid of texels that can be read row by row, from any thread.
 pub trait Rows: Sync {
@@ -53,6 +55,11 @@ impl<R: Rows> Pyramid<R> {
     pub fn new(source: R) -> Self {
         let coarser = build(&source);
         Self { source, coarser }
+    }
+
+    /// Level 0.
+    pub fn source(&self) -> &R {
+        &self.source
     }
 
     /// Sizes of all levels, level 0 first.

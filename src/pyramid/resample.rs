@@ -5,6 +5,7 @@ use crate::bump::Wrap;
 
 /// Resampling by area: each new texel merges the old texels under it, weighted by overlap. It conserves the moments
 /// of the whole map exactly: what the mean loses where a new texel straddles old ones, the covariance gains.
+#[derive(Clone, Copy)]
 pub struct Area<R> {
     source: R,
     width: u32,
@@ -70,6 +71,7 @@ fn overlaps(old: u32, new: u32, i: u32) -> Vec<(u32, f32)> {
 
 /// Resampling to a finer grid as a sampler magnifies: linear between texel centres, across the border as it wraps.
 /// For maps whose own variance no one needs (roughness, metallic, occlusion).
+#[derive(Clone, Copy)]
 pub struct Linear<R> {
     source: R,
     width: u32,

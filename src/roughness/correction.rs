@@ -1,24 +1,62 @@
-//! The correction factor c: the roughness that a lobe should have is c K, not K.
+//! The correction factor c: the roughness that a lobe should have is c K, not K, and where its centre should be.
+//!
+//! c follows the shape of the distribution along each axis of K and how wide the bumps spread beside the lobe. The
+//! tables are fitted to synthetic distributions by `examples/correction_table`, which prints `table.rs`.
+
+use super::lattice::Place;
+use super::shape::Shape;
+use super::table;
+use crate::bump::Offset;
+use crate::lobe::SquaredAlpha;
+use crate::pyramid::ShapedMoments;
+use crate::symmetric::Symmetric2;
 
 /// The shape that the offsets in a footprint are taken to have.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Distribution {
-    /// A 2-D normal distribution.
+    /// The one that the footprint's own third and fourth moments tell.
     #[default]
+    Auto,
+    /// A 2-D normal distribution.
     Normal,
     /// Uniform in a rectangle: the case that the paper names.
     Uniform,
 }
 
+/// What a lobe should take for the mean and covariance of its bumps.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Corrected {
+    /// The centre: the mean, less what the tails pull it away from where most offsets are.
+    pub centre: Offset,
+    /// c K, with a c for each axis.
+    pub covariance: Symmetric2,
+}
+
 impl Distribution {
-    /// c for a GGX lobe twice as wide as the bumps' deviation or narrower, where it matters. A lobe with GGX's tails
-    /// that matched a normal distribution's variance would be too wide; a rectangle has no tails to lose. Values: least
-    /// lobe error over c in steps of 0.05 (test `lobe::tests::the_correction_factor_is_the_best`).
-    pub fn correction(self) -> f32 {
-        match self {
-            Self::Normal => 0.9,
-            Self::Uniform => 1.0,
+    /// Centre and c K for bumps of moments `m` under a lobe of `own` squared alphas.
+    pub fn correct(self, m: &ShapedMoments, own: SquaredAlpha) -> Corrected {
+        let shape = Shape::of(m);
+        let mut centre = m.moments.mean;
+        let mut corrected = [0.0; 2];
+        for k in 0..2 {
+            let [x, y] = shape.axes[k];
+            let variance = shape.variance[k];
+            let squared_alpha = own.0.uu * x * x + 2.0 * own.0.uv * x * y + own.0.vv * y * y;
+            let place = Place::new(shape.kurtosis[k], variance, squared_alpha);
+            corrected[k] = variance
+                * match self {
+                    Self::Auto => place.interpolate(&table::FACTOR),
+                    Self::Normal => place.along(&table::NORMAL),
+                    Self::Uniform => place.along(&table::UNIFORM),
+                };
+            if self == Self::Auto {
+                // Nothing was fitted beyond a deviation.
+                let shift = (shape.skewness[k] * place.interpolate(&table::SHIFT)).clamp(-1.0, 1.0) * variance.sqrt();
+                centre.u -= shift * x;
+                centre.v -= shift * y;
+            }
         }
+        Corrected { centre, covariance: Symmetric2::from_axes(corrected[0], corrected[1], shape.axes[0]) }
     }
 }

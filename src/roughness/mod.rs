@@ -1,8 +1,13 @@
 //! Roughness from covariances: D, lambda_1 and the correction factor (paper, "The roughness pyramid").
 
 mod correction;
+mod lattice;
+mod shape;
+mod table;
 
-pub use correction::Distribution;
+pub use correction::{Corrected, Distribution};
+pub use lattice::{KURTOSES, Lattice, Place, RATIOS};
+pub use shape::{CROSS_SKEWNESS, Shape};
 
 use crate::symmetric::Symmetric2;
 

@@ -1,9 +1,12 @@
 //! The job's textures of the portable profile that hold folded lobes.
 
-use super::{Job, JobError, JobOutput, JobTexture, LayerOutcome, ReliefPyramid};
+use super::{Job, JobError, JobOutput, JobTexture, LayerOutcome};
 use crate::bake::base::{BaseAnisotropy, BaseRows};
+use crate::bake::bumps::Bumps;
 use crate::bake::chain::{Encoding, grid};
 use crate::bake::fold::Fold;
+use crate::bake::lobes::own_lobe;
+use crate::bake::normals::bake_normals;
 use crate::bake::plan::{LayerPlan, OwnTextures};
 use crate::bake::relief::Relief;
 use crate::bake::report::Content;
@@ -11,17 +14,22 @@ use crate::bake::settings::Model;
 use crate::gltf::material::LayerKind;
 use crate::gltf::texture::TextureSource;
 use crate::map::{Image, Rgba, decode_colours};
-use crate::pyramid::{Area, Pyramid, Rows};
+use crate::pyramid::{Pyramid, Rows};
 
 impl Job<'_> {
-    /// Folds the bumps into each distinct lobe, choosing its model on the way.
-    pub(super) fn folds<'r>(
+    /// Folds the bumps into each distinct lobe, choosing its model on the way. Normals point where the lobes do that are
+    /// folded first on their grid.
+    pub(super) fn portable<'r>(
         &self,
         relief: &'r Relief,
-        moments: &ReliefPyramid<'r>,
+        bumps: &Bumps<'r>,
         output: &mut JobOutput,
     ) -> Result<(), JobError> {
         let layers = &self.plan.layers;
+        let is_portable = self.settings.profile.is_portable();
+        let first = self.first_level(layers, bumps.size());
+        let encoding = Encoding::of_normals(self.settings).starting_at(first);
+        let mut normals = None;
         for (first, layer) in layers.iter().enumerate() {
             let is_done = layers[..first].iter().any(|earlier| earlier.folds_like(layer));
             if is_done {
@@ -36,35 +44,44 @@ impl Job<'_> {
                 anisotropy: own.anisotropy.as_ref().map(|t| self.image(t, &layer.name, decode_colours)).transpose()?,
             };
             let base = self.base(relief, layer, &images)?;
-            let size = (base.width(), base.height());
-            let resampled = (size != moments.sizes()[0]).then(|| Pyramid::new(Area::new(relief, size.0, size.1)));
-            let moments = resampled.as_ref().unwrap_or(moments);
-            let fold = Fold::new(base, moments, layer.slope_scale, self.settings.distribution.correction());
+            let base = Pyramid::new(base);
+            let own_lobe = own_lobe(&base.whole());
+            let needs_lobes = is_portable || self.settings.model == Model::Auto;
+            let size = base.sizes()[0];
+            let fold = (layer.own.is_ok() && needs_lobes).then(|| {
+                let resampled = (size != bumps.size()).then(|| Bumps::new(relief, size));
+                let distribution = self.settings.distribution;
+                Fold::new(base, resampled.as_ref().unwrap_or(bumps), layer.slope_scale, distribution)
+            });
+            if let Some(fold) = fold.as_ref().filter(|f| {
+                is_portable && normals.is_none() && layer.slope_scale != 0.0 && f.sizes()[0] == bumps.size()
+            }) {
+                normals = Some(bake_normals(bumps, Some(fold.lobes()), encoding)?);
+            }
             let widest = match layer.layer.kind {
                 LayerKind::Base => Model::Anisotropic,
                 // glTF's clearcoat has no anisotropy.
                 LayerKind::Clearcoat => Model::Isotropic,
             };
-            let (model, loss) = match (&layer.own, self.settings.model) {
+            let (model, loss) = match (&fold, self.settings.model) {
+                (Some(fold), _) => fold.model(self.settings, widest),
                 // Without its own lobe nothing tells how much of the ellipse will be seen: keep all of it.
-                (Err(_), Model::Auto) => (widest, None),
-                _ => fold.model(self.settings, widest),
+                (None, Model::Auto | Model::Anisotropic) => (widest, None),
+                (None, model) => (model, None),
             };
-            let folded = match &layer.own {
-                Ok(_) if self.settings.profile.is_portable() && model != Model::None => {
-                    let first = self.first_level(users.iter().map(|user| &layers[*user]), size);
-                    Some(fold.bake(model, Encoding::of(self.settings, 3).starting_at(first))?)
-                }
-                _ => None,
-            };
-            let too_wide = if folded.is_some() { fold.texels_above_one(model) } else { 0 };
+            let fold = fold.filter(|_| is_portable && model != Model::None);
+            let first = self.first_level(users.iter().map(|user| &layers[*user]), size);
+            let folding = Encoding::of(self.settings, 3).starting_at(first);
+            let folded = fold.as_ref().map(|f| f.bake(model, folding)).transpose()?;
+            let too_wide = fold.map_or(0, |fold| fold.texels_above_one(model));
             for user in &users {
-                let LayerOutcome { report, model: chosen, unit_factor, anisotropy, circle, .. } =
+                let LayerOutcome { report, model: chosen, own_lobe: own, unit_factor, anisotropy, circle, .. } =
                     &mut output.layers[*user];
                 *chosen = model;
+                *own = own_lobe;
                 report.model = Some(model);
                 report.loss = loss;
-                if let (Err(reason), true) = (&layer.own, self.settings.profile.is_portable()) {
+                if let (Err(reason), true) = (&layer.own, is_portable) {
                     if !self.settings.profile.has_pyramid() {
                         report.model = Some(Model::None);
                     }
@@ -126,6 +143,23 @@ impl Job<'_> {
                     users.iter().map(|u| layers[*u].anisotropy_slot()).collect(),
                 ));
             }
+        }
+        if is_portable {
+            let chain = match normals {
+                Some(chain) => chain,
+                None => bake_normals(bumps, None, encoding)?,
+            };
+            let texture = JobTexture {
+                content: Content::Normal,
+                chain,
+                range: None,
+                named_after: Ok(self.plan.source.location.clone()),
+                sources: vec![self.plan.source.location.clone()],
+                slots: layers.iter().map(LayerPlan::normal_slot).collect(),
+                sampler: self.plan.source.sampler,
+                model: Model::None,
+            };
+            output.textures.insert(0, texture);
         }
         Ok(())
     }

@@ -6,9 +6,9 @@ mod pyramids;
 
 pub use error::JobError;
 
-use super::chain::{Chain, Encoding, grid};
+use super::bumps::Bumps;
+use super::chain::{Chain, grid};
 use super::geometry::Geometry;
-use super::normals::bake_normals;
 use super::plan::{LayerPlan, ReliefKind, ReliefPlan};
 use super::pyramids::Range;
 use super::relief::Relief;
@@ -21,8 +21,9 @@ use crate::gltf::density::NoDensity;
 use crate::gltf::material::Mapping;
 use crate::gltf::rewrite::Slot;
 use crate::gltf::texture::{ImageLocation, TextureSource};
+use crate::lobe::SquaredAlpha;
 use crate::map::{DecodeError, DecodeOptions, HeightMap, Image, NormalLayout, NormalMap, decode};
-use crate::pyramid::{Area, Pyramid, Rows};
+use crate::pyramid::Rows;
 use crate::texture::ktx2::{Ktx2, PROVENANCE_KEY};
 
 /// A baked texture and where it belongs.
@@ -49,6 +50,8 @@ pub struct JobTexture {
 pub struct LayerOutcome {
     /// For the report.
     pub report: LayerReport,
+    /// The material's own lobe, averaged over its map.
+    pub own_lobe: SquaredAlpha,
     /// What is modelled of the lost bumps, also where the report says that nothing could be folded.
     pub model: Model,
     /// JSON pointer of the roughness factor, where the texture now holds it.
@@ -75,6 +78,8 @@ pub struct PyramidUse {
     pub mapping: Mapping,
     /// The frame in which they are read.
     pub frame: Frame,
+    /// c.
+    pub correction: f32,
 }
 
 /// What a job produced.
@@ -130,6 +135,7 @@ pub fn run(
                 finest,
                 notes,
             },
+            own_lobe: SquaredAlpha::default(),
             model: Model::None,
             unit_factor: None,
             anisotropy: None,
@@ -137,31 +143,13 @@ pub fn run(
             pyramid: None,
         });
     }
-    let moments = Pyramid::new(Area::new(&relief, size.0, size.1));
-    if settings.profile.is_portable() {
-        output.textures.push(JobTexture {
-            content: Content::Normal,
-            chain: bake_normals(
-                &moments,
-                Encoding::of_normals(settings).starting_at(job.first_level(&plan.layers, size)),
-            )?,
-            range: None,
-            named_after: Ok(plan.source.location.clone()),
-            sources: vec![plan.source.location.clone()],
-            slots: plan.layers.iter().map(LayerPlan::normal_slot).collect(),
-            sampler: plan.source.sampler,
-            model: Model::None,
-        });
-    }
-    job.folds(&relief, &moments, &mut output)?;
+    let bumps = Bumps::new(&relief, size);
+    job.portable(&relief, &bumps, &mut output)?;
     if settings.profile.has_pyramid() {
-        job.pyramids(&relief, &moments, &mut output)?;
+        job.pyramids(&relief, &bumps, &mut output)?;
     }
     Ok(output)
 }
-
-/// The bumps of a map on the grid of its texture.
-type ReliefPyramid<'a> = Pyramid<Area<&'a Relief>>;
 
 /// [`decode`] for bumps, [`crate::map::decode_colours`] for all else.
 type Decode = fn(&[u8], &DecodeOptions) -> Result<Image, DecodeError>;

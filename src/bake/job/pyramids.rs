@@ -1,28 +1,25 @@
 //! The job's textures of the pyramid profile.
 
-use super::{Job, JobError, JobOutput, JobTexture, PyramidUse, ReliefPyramid};
+use super::{Job, JobError, JobOutput, JobTexture, PyramidUse};
+use crate::bake::bumps::Bumps;
 use crate::bake::chain::Encoding;
 use crate::bake::plan::LayerPlan;
-use crate::bake::pyramids::{Quantity, Ranged, bake_quantity};
+use crate::bake::pyramids::{Quantity, Ranged, bake_quantity, mean_correction};
 use crate::bake::relief::{Framed, Reading, Relief};
 use crate::bake::report::Content;
 use crate::bake::settings::Model;
 use crate::bump::Frame;
 use crate::bump::FrameTransform;
 use crate::gltf::material::LayerKind;
-use crate::pyramid::{Area, Pyramid, Rows};
+use crate::lobe::SquaredAlpha;
+use crate::pyramid::{Area, Pyramid, Rows, Shaped};
 
 /// Root mean square deviation of triangles up to which they count as turned alike: 6 degrees.
 const MAX_TURN_DEVIATION: f32 = 0.1;
 
 impl Job<'_> {
     /// Offsets and D or lambda_1 for the base layers.
-    pub(super) fn pyramids(
-        &self,
-        relief: &Relief,
-        moments: &ReliefPyramid<'_>,
-        output: &mut JobOutput,
-    ) -> Result<(), JobError> {
+    pub(super) fn pyramids(&self, relief: &Relief, bumps: &Bumps<'_>, output: &mut JobOutput) -> Result<(), JobError> {
         let mut made: Vec<(Reading, Quantity, usize)> = Vec::new();
         for (index, layer) in self.plan.layers.iter().enumerate() {
             let outcome = &mut output.layers[index];
@@ -36,6 +33,7 @@ impl Job<'_> {
                 outcome.report.notes.push(reason);
                 (Frame::Unit, Reading::Uniform(FrameTransform::IDENTITY))
             });
+            let outcome_lobe = outcome.own_lobe;
             let roughness = match outcome.model {
                 Model::Anisotropic => Some(Quantity::Factor),
                 Model::Isotropic => Some(Quantity::Lambda1),
@@ -45,7 +43,7 @@ impl Job<'_> {
                 if let Some((.., index)) = made.iter().find(|(r, q, _)| *q == quantity && *r == reading) {
                     return Ok(*index);
                 }
-                output.textures.push(self.pyramid(relief, moments, &reading, quantity)?);
+                output.textures.push(self.pyramid(relief, bumps, &reading, quantity)?);
                 made.push((reading.clone(), quantity, output.textures.len() - 1));
                 Ok::<_, JobError>(output.textures.len() - 1)
             };
@@ -58,6 +56,7 @@ impl Job<'_> {
                 slope_scale: layer.slope_scale,
                 mapping: layer.layer.bumps.texture().mapping.clone(),
                 frame,
+                correction: self.correction(bumps, layer.slope_scale, outcome_lobe),
             });
         }
         Ok(())
@@ -66,16 +65,16 @@ impl Job<'_> {
     fn pyramid(
         &self,
         relief: &Relief,
-        moments: &ReliefPyramid<'_>,
+        bumps: &Bumps<'_>,
         reading: &Reading,
         quantity: Quantity,
     ) -> Result<JobTexture, JobError> {
-        let first = self.first_level(&self.plan.layers, moments.sizes()[0]);
+        let first = self.first_level(&self.plan.layers, bumps.size());
         let encoding = Encoding::of(self.settings, quantity.channels() as u32).starting_at(first);
         let Ranged { chain, range } = if *reading == Reading::Uniform(FrameTransform::IDENTITY) {
-            bake_quantity(moments, quantity, encoding)?
+            bake_quantity(bumps.moments(), quantity, encoding)?
         } else {
-            let (width, height) = moments.sizes()[0];
+            let (width, height) = bumps.size();
             let framed = Pyramid::new(Area::new(Framed { relief, reading }, width, height));
             bake_quantity(&framed, quantity, encoding)?
         };
@@ -94,6 +93,14 @@ impl Job<'_> {
             sampler: self.plan.source.sampler,
             model,
         })
+    }
+
+    /// c for a shader that has one for the whole map: what the levels' covariances want on average.
+    fn correction(&self, bumps: &Bumps<'_>, slope_scale: f32, own: SquaredAlpha) -> f32 {
+        // Offsets scaled by s widen a lobe as much as they do by themselves one that is narrower by s.
+        let squared = (slope_scale * slope_scale).max(f32::MIN_POSITIVE);
+        let own = SquaredAlpha((1.0 / squared) * own.0);
+        mean_correction(&Pyramid::new(Shaped(bumps.rows)), self.settings.distribution, own)
     }
 
     /// How to read the bumps in the frame asked for, or why this layer cannot have it.

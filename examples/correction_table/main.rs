@@ -1,0 +1,164 @@
+//! Fits the correction tables of `src/roughness/table.rs` and prints that file.
+//!
+//! `cargo run --release --example correction_table > src/roughness/table.rs` (some minutes). The tables are those with
+//! the least mean lobe error over synthetic footprints (`synthetic.rs`); no map takes part.
+
+mod synthetic;
+
+use rayon::prelude::*;
+
+use roughcast::bump::Offset;
+use roughcast::judge::{Family, Footprint, Lobe, Part, Reference};
+use roughcast::pyramid::{Merge, Moments, ShapedMoments};
+use roughcast::roughness::{KURTOSES, Lattice, Place, RATIOS, Shape};
+
+const FOOTPRINTS: usize = 6000;
+const SAMPLES: usize = 1024;
+/// Steepest slope: small enough that a tilted lobe is a shifted one, as the tables assume.
+const STEEPEST: f64 = 0.2;
+/// Keeps neighbouring nodes alike where few footprints tell: added per squared difference of neighbours.
+const SMOOTHNESS: f64 = 2.0;
+
+/// A footprint with what the tables know of it.
+struct Case {
+    reference: Reference,
+    shape: Shape,
+    places: [Place; 2],
+    alpha: f64,
+}
+
+impl Case {
+    fn draw(random: &mut synthetic::Random) -> Self {
+        let offsets = synthetic::footprint(random);
+        let ratio = libm::exp2(random.range(-2.0, 5.0));
+        let steepest = offsets.iter().map(|[u, v]| (u * u + v * v).sqrt()).fold(0.0, f64::max);
+        let scale = (STEEPEST / steepest).min(STEEPEST * ratio);
+        let alpha = scale / ratio;
+        let offsets: Vec<[f64; 2]> = offsets.into_iter().map(|o| o.map(|x| x * scale)).collect();
+        let weight = 1.0 / offsets.len() as f64;
+        let part =
+            |[u, v]: &[f64; 2]| Part { weight, normal: [-u, -v, 1.0], base: [alpha * alpha, 0.0, alpha * alpha] };
+        let footprint = Footprint::new(offsets.iter().map(part).collect()).expect("there are offsets");
+        let flat = |[u, v]: &[f64; 2]| ShapedMoments::normal(Moments::flat(Offset { u: *u as f32, v: *v as f32 }));
+        let weights = vec![weight as f32; offsets.len()];
+        let shape = Shape::of(&ShapedMoments::merge(&weights, &offsets.iter().map(flat).collect::<Vec<_>>()));
+        let place = |k: usize| Place::new(shape.kurtosis[k], shape.variance[k], (alpha * alpha) as f32);
+        Self { reference: Reference::new(Family::Ggx, &footprint, SAMPLES), shape, places: [place(0), place(1)], alpha }
+    }
+
+    fn error(&self, tables: &Tables) -> f64 {
+        let (mut centre, mut a) = ([0.0; 2], [self.alpha * self.alpha, 0.0, self.alpha * self.alpha]);
+        for k in 0..2 {
+            let [x, y] = self.shape.axes[k].map(f64::from);
+            let variance = f64::from(self.shape.variance[k]);
+            let widening = 2.0 * variance * f64::from(self.places[k].interpolate(&tables[0]));
+            a = [a[0] + widening * x * x, a[1] + widening * x * y, a[2] + widening * y * y];
+            let shift = f64::from(self.shape.skewness[k] * self.places[k].interpolate(&tables[1])).clamp(-1.0, 1.0);
+            centre = [centre[0] - shift * variance.sqrt() * x, centre[1] - shift * variance.sqrt() * y];
+        }
+        self.reference.error(&Lobe::new(Family::Ggx, [-centre[0], -centre[1], 1.0], a))
+    }
+}
+
+/// Factor, then shift.
+type Tables = [Lattice; 2];
+
+fn main() {
+    let mut random = synthetic::Random::new(1997);
+    let cases: Vec<Case> = (0..FOOTPRINTS).map(|_| Case::draw(&mut random)).collect();
+    let mut users = vec![Vec::new(); RATIOS * KURTOSES];
+    for (index, case) in cases.iter().enumerate() {
+        for place in case.places {
+            for ([i, j], weight) in place.nodes() {
+                let list: &mut Vec<usize> = &mut users[i * KURTOSES + j];
+                if weight > 0.0 && list.last() != Some(&index) {
+                    list.push(index);
+                }
+            }
+        }
+    }
+    let mut tables: Tables = [[[0.6; KURTOSES]; RATIOS], [[0.1; KURTOSES]; RATIOS]];
+    let mean = |tables: &Tables| cases.par_iter().map(|c| c.error(tables)).collect::<Vec<_>>().iter().sum::<f64>();
+    eprintln!("mean lobe error at the start {:.4}", mean(&tables) / FOOTPRINTS as f64);
+    for step in [0.2, 0.1, 0.05, 0.05, 0.025, 0.025, 0.0125] {
+        for table in 0..2 {
+            for i in 0..RATIOS {
+                for j in 0..KURTOSES {
+                    let users = &users[i * KURTOSES + j];
+                    let cost = |tables: &Tables| {
+                        let errors: Vec<f64> = users.par_iter().map(|c| cases[*c].error(tables)).collect();
+                        errors.iter().sum::<f64>() + roughness_of(&tables[table], i, j)
+                    };
+                    let mut least = cost(&tables);
+                    for direction in [step, -step] {
+                        loop {
+                            let mut trial = tables;
+                            trial[table][i][j] = (trial[table][i][j] + direction).clamp(0.0, 1.5);
+                            let cost = cost(&trial);
+                            if cost >= least {
+                                break;
+                            }
+                            (least, tables) = (cost, trial);
+                        }
+                    }
+                }
+            }
+        }
+        eprintln!("steps of {step}: {:.4}", mean(&tables) / FOOTPRINTS as f64);
+    }
+    print(&tables, &synthetic::COLUMNS.map(|(_, quantile)| column(quantile)));
+}
+
+/// The best c at each ratio for footprints whose axes are alike and have these quantiles.
+fn column(quantile: fn(f64) -> f64) -> [f32; RATIOS] {
+    const QUANTILES: usize = 24;
+    let quantiles: Vec<f64> = (0..QUANTILES).map(|i| quantile((i as f64 + 0.5) / QUANTILES as f64)).collect();
+    let variance = quantiles.iter().map(|q| q * q).sum::<f64>() / QUANTILES as f64;
+    std::array::from_fn(|i| {
+        let ratio = libm::exp2(i as f64 - 2.0);
+        let deviation = STEEPEST * ratio.min(1.0) / 4.0;
+        let (scale, alpha) = (deviation / variance.sqrt(), deviation / ratio);
+        let base = [alpha * alpha, 0.0, alpha * alpha];
+        let parts = quantiles.iter().flat_map(|u| quantiles.iter().map(move |v| [u * scale, v * scale]));
+        let parts = parts.map(|[u, v]| Part { weight: 1.0, normal: [-u, -v, 1.0], base }).collect();
+        let reference = Reference::new(Family::Ggx, &Footprint::new(parts).expect("there are parts"), 8 * SAMPLES);
+        let error = |c: f64| {
+            reference.error(&Lobe::isotropic(
+                Family::Ggx,
+                [0.0, 0.0, 1.0],
+                (base[0] + 2.0 * c * deviation * deviation).sqrt(),
+            ))
+        };
+        let steps = (20..80).map(|step| 0.02 * f64::from(step));
+        steps.min_by(|a, b| error(*a).total_cmp(&error(*b))).unwrap_or(1.0) as f32
+    })
+}
+
+/// What the neighbours of a node differ from it.
+fn roughness_of(table: &Lattice, i: usize, j: usize) -> f64 {
+    let neighbours = [(i.wrapping_sub(1), j), (i + 1, j), (i, j.wrapping_sub(1)), (i, j + 1)];
+    let differences = neighbours.iter().filter_map(|&(k, l)| Some(table.get(k)?.get(l)? - table[i][j]));
+    SMOOTHNESS * differences.map(|d| f64::from(d * d)).sum::<f64>()
+}
+
+fn print(tables: &Tables, columns: &[[f32; RATIOS]; 2]) {
+    println!(
+        "//! Correction factor and shift of the centre for GGX lobes, by deviation over alpha (1/4 to 32, a row each) and"
+    );
+    println!("//! kurtosis (1 to 64). Fitted and printed by `cargo run --release --example correction_table`.");
+    println!();
+    println!("use super::lattice::{{Lattice, RATIOS}};");
+    for (name, doc, table) in
+        [("FACTOR", "c.", &tables[0]), ("SHIFT", "Shift of the centre, in deviations for a skewness of 1.", &tables[1])]
+    {
+        println!("\n/// {doc}\npub const {name}: Lattice = [");
+        for row in table {
+            println!("    [{}],", row.map(|v| format!("{v:.3}")).join(", "));
+        }
+        println!("];");
+    }
+    for ((name, _), column) in synthetic::COLUMNS.iter().zip(columns) {
+        println!("\n/// c for a {} distribution, by ratio.", name.to_lowercase());
+        println!("pub const {name}: [f32; RATIOS] = [{}];", column.map(|v| format!("{v:.2}")).join(", "));
+    }
+}

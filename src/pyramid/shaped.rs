@@ -1,0 +1,128 @@
+//! Third and fourth moments: what tells a heavy-tailed or lopsided distribution of offsets from a normal one.
+
+use super::{Merge, Moments, Rows};
+use crate::bump::Offset;
+use crate::symmetric::Symmetric2;
+
+/// Mean, covariance and the third and fourth central moments of the offsets in the area of one texel.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ShapedMoments {
+    /// Mean and covariance.
+    pub moments: Moments,
+    /// E of d_u^3, d_u^2 d_v, d_u d_v^2, d_v^3, with d the offset less its mean.
+    pub third: [f32; 4],
+    /// E of d_u^4, d_u^3 d_v, d_u^2 d_v^2, d_u d_v^3, d_v^4.
+    pub fourth: [f32; 5],
+}
+
+impl ShapedMoments {
+    /// The moments of a normal distribution: no third ones, and fourth ones by Isserlis' theorem.
+    pub fn normal(moments: Moments) -> Self {
+        let Symmetric2 { uu, uv, vv } = moments.covariance;
+        let fourth = [3.0 * uu * uu, 3.0 * uu * uv, uu * vv + 2.0 * uv * uv, 3.0 * uv * vv, 3.0 * vv * vv];
+        Self { moments, third: [0.0; 4], fourth }
+    }
+}
+
+impl Merge for ShapedMoments {
+    /// Exact for any weights: E[(d_i + e)^p] expanded, with d_i central in its part and e from the whole's mean to the
+    /// part's (P. Pebay, "Formulas for robust, one-pass parallel computation of covariances and arbitrary-order
+    /// statistical moments", SAND2008-6212, 2008, section 3; here for two variables and weights that sum to 1).
+    #[inline]
+    fn merge(weights: &[f32], parts: &[Self]) -> Self {
+        let mut mean = Offset::default();
+        for (w, part) in weights.iter().zip(parts) {
+            mean.u += w * part.moments.mean.u;
+            mean.v += w * part.moments.mean.v;
+        }
+        let (mut covariance, mut third, mut fourth) = (Symmetric2::ZERO, [0.0; 4], [0.0; 5]);
+        for (w, part) in weights.iter().zip(parts) {
+            let (u, v) = (part.moments.mean.u - mean.u, part.moments.mean.v - mean.v);
+            let (uu, uv, vv) = (u * u, u * v, v * v);
+            let k = part.moments.covariance;
+            let [t0, t1, t2, t3] = part.third;
+            let [f0, f1, f2, f3, f4] = part.fourth;
+            covariance = covariance + *w * (k + Symmetric2::new(uu, uv, vv));
+            let cubes = [
+                t0 + (3.0 * k.uu + uu) * u,
+                t1 + 2.0 * k.uv * u + (k.uu + uu) * v,
+                t2 + 2.0 * k.uv * v + (k.vv + vv) * u,
+                t3 + (3.0 * k.vv + vv) * v,
+            ];
+            let quartics = [
+                f0 + 4.0 * t0 * u + (6.0 * k.uu + uu) * uu,
+                f1 + 3.0 * t1 * u + t0 * v + 3.0 * k.uv * uu + (3.0 * k.uu + uu) * uv,
+                f2 + 2.0 * (t2 * u + t1 * v) + k.uu * vv + k.vv * uu + (4.0 * k.uv + uv) * uv,
+                f3 + 3.0 * t2 * v + t3 * u + 3.0 * k.uv * vv + (3.0 * k.vv + vv) * uv,
+                f4 + 4.0 * t3 * v + (6.0 * k.vv + vv) * vv,
+            ];
+            third.iter_mut().zip(cubes).for_each(|(sum, cube)| *sum += w * cube);
+            fourth.iter_mut().zip(quartics).for_each(|(sum, quartic)| *sum += w * quartic);
+        }
+        Self { moments: Moments { mean, covariance }, third, fourth }
+    }
+}
+
+/// Offsets read as [`ShapedMoments`].
+pub struct Shaped<R>(pub R);
+
+impl<R: Rows<Texel = Moments>> Rows for Shaped<R> {
+    type Texel = ShapedMoments;
+
+    fn width(&self) -> u32 {
+        self.0.width()
+    }
+
+    fn height(&self) -> u32 {
+        self.0.height()
+    }
+
+    fn row(&self, y: u32, out: &mut [ShapedMoments]) {
+        let mut moments = vec![Moments::default(); out.len()];
+        self.0.row(y, &mut moments);
+        out.iter_mut().zip(moments).for_each(|(texel, m)| *texel = ShapedMoments::normal(m));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Sum of w d_u^p d_v^q over points, in f64.
+    fn central(points: &[([f64; 2], f64)], p: i32, q: i32) -> f64 {
+        let mean = |i: usize| points.iter().map(|(x, w)| w * x[i]).sum::<f64>();
+        let (u, v) = (mean(0), mean(1));
+        points.iter().map(|(x, w)| w * (x[0] - u).powi(p) * (x[1] - v).powi(q)).sum()
+    }
+
+    proptest! {
+        /// Merging in two steps gives the moments of all the points, computed directly in f64.
+        #[test]
+        fn merges_are_exact(points in prop::collection::vec((-2.0f32..2.0, -2.0f32..2.0), 9), split in 1usize..8) {
+            let flat = |(u, v): (f32, f32)| ShapedMoments::normal(Moments::flat(Offset { u, v }));
+            let of = |points: &[(f32, f32)]| {
+                let weights = vec![1.0 / points.len() as f32; points.len()];
+                ShapedMoments::merge(&weights, &points.iter().map(|p| flat(*p)).collect::<Vec<_>>())
+            };
+            let share = split as f32 / 9.0;
+            let merged = ShapedMoments::merge(&[share, 1.0 - share], &[of(&points[..split]), of(&points[split..])]);
+            let all: Vec<_> = points.iter().map(|(u, v)| ([f64::from(*u), f64::from(*v)], 1.0 / 9.0)).collect();
+            for (i, third) in merged.third.into_iter().enumerate() {
+                let expected = central(&all, 3 - i as i32, i as i32);
+                prop_assert!((f64::from(third) - expected).abs() < 1e-4, "third {}: {} for {}", i, third, expected);
+            }
+            for (i, fourth) in merged.fourth.into_iter().enumerate() {
+                let expected = central(&all, 4 - i as i32, i as i32);
+                prop_assert!((f64::from(fourth) - expected).abs() < 3e-4, "fourth {}: {} for {}", i, fourth, expected);
+            }
+        }
+    }
+
+    /// Two normal distributions with one mean and covariance merge to themselves.
+    #[test]
+    fn normal_parts_stay_normal() {
+        let m = ShapedMoments::normal(Moments { mean: Offset::default(), covariance: Symmetric2::new(2.0, 0.5, 1.0) });
+        assert_eq!(ShapedMoments::merge(&[0.25, 0.75], &[m, m]), m);
+    }
+}
