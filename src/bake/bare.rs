@@ -5,7 +5,8 @@ use super::bumps::Bumps;
 use super::chain::{Chain, Encoding, GridError, grid};
 use super::fold::Fold;
 use super::normals::bake_normals;
-use super::pyramids::{Quantity, Range, Ranged, bake_quantity};
+use super::notes;
+use super::pyramids::{Quantity, Range, Ranged, bake_quantity, filter_loss};
 use super::relief::Relief;
 use super::report::Content;
 use super::settings::{Model, Settings};
@@ -51,8 +52,8 @@ pub struct BareBake {
     pub model: Model,
     /// What smaller models would lose, where that decided.
     pub loss: Option<ModelLoss>,
-    /// Texels steeper than the clamp.
-    pub steep_texels: u64,
+    /// What is not as exact as it could be, and why.
+    pub notes: Vec<String>,
 }
 
 /// Bakes `relief`. The portable profile writes roughness only where `own` tells what to fold the bumps into.
@@ -60,6 +61,7 @@ pub fn bake_map(relief: &Relief, own: Option<&OwnRoughness>, settings: &Settings
     let size = (relief.width(), relief.height());
     let bumps = Bumps::new(relief, grid(settings, [size])?);
     let mut textures = Vec::new();
+    let mut notes = notes::of_relief(relief, bumps.size());
     let plain = |content, chain| BareTexture { content, chain, range: None };
     // Without a lobe of its own nothing tells how much of the ellipse will be seen: keep all of it.
     let (mut model, mut loss) = match settings.model {
@@ -87,6 +89,7 @@ pub fn bake_map(relief: &Relief, own: Option<&OwnRoughness>, settings: &Settings
         (model, loss) = fold.model(settings, Model::Anisotropic);
         if is_portable && model != Model::None {
             let folded = fold.bake(model, Encoding::of(settings, 3))?;
+            notes.extend(notes::of_fold(fold, model, relief.noise(), settings));
             textures.push(plain(Content::Roughness, folded.roughness));
             textures.extend(folded.anisotropy.map(|chain| plain(Content::Anisotropy, chain)));
         }
@@ -100,14 +103,12 @@ pub fn bake_map(relief: &Relief, own: Option<&OwnRoughness>, settings: &Settings
         for (content, quantity) in [(Content::Offset, Quantity::Offset)].into_iter().chain(roughness) {
             let encoding = Encoding::of(settings, quantity.channels() as u32);
             let Ranged { chain, range } = bake_quantity(bumps.moments(), quantity, encoding)?;
+            if quantity == Quantity::Factor {
+                notes.extend(notes::of_factor(filter_loss(bumps.moments())));
+            }
             textures.push(BareTexture { content, chain, range: Some(range) });
         }
     }
     let is_modelled = textures.len() > 1;
-    Ok(BareBake {
-        model: if is_modelled { model } else { Model::None },
-        textures,
-        loss,
-        steep_texels: relief.steep_texels(),
-    })
+    Ok(BareBake { model: if is_modelled { model } else { Model::None }, textures, loss, notes })
 }

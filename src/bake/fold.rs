@@ -8,10 +8,14 @@ use super::chain::{Chain, Encoding, encode_chain};
 use super::lobes::{Lobes, own_lobe};
 use super::settings::{Model, Settings};
 use crate::choose::ModelLoss;
-use crate::lobe::{Anisotropy, OrientedLobe, Roughness, SquaredAlpha};
+use crate::lobe::{Anisotropy, OrientedLobe, Roughness, SquaredAlpha, isotropic_distance};
 use crate::pyramid::Pyramid;
 use crate::roughness::Distribution;
+use crate::symmetric::Symmetric2;
 use crate::texture::EncodeError;
+
+/// Axis ratio from which on a direction is worth keeping: a circle in the ellipse's place is off by 0.13.
+const CLEARLY_ELLIPTICAL: f32 = 1.5;
 
 /// A material's lobe roughened by its bumps.
 pub struct Fold<'a> {
@@ -81,6 +85,58 @@ impl<'a> Fold<'a> {
         levels.map(in_level).sum()
     }
 
+    /// Mean distance by which noise of covariance `noise` in the bumps moves lobes of level 1, where it weighs most.
+    pub fn noise_loss(&self, noise: Symmetric2) -> f32 {
+        let Some(&(width, height)) = self.sizes().get(1) else { return 0.0 };
+        let noise = noise.scaled([self.lobes.slope_scale(); 2]);
+        let in_row = |y| {
+            let mut sum = 0.0;
+            self.row(1, y, width as usize, |_, _, full, _| {
+                let noisier = full.fold(noise);
+                sum += f64::from(isotropic_distance(full.closest_isotropic(), noisier.closest_isotropic()));
+            });
+            sum
+        };
+        let rows: Vec<f64> = (0..height).into_par_iter().map(in_row).collect();
+        (rows.iter().sum::<f64>() / (f64::from(width) * f64::from(height))) as f32
+    }
+
+    /// The share of texels of levels 2 and coarser whose stored direction points away from that of the texel to their
+    /// right or below, where both lobes are clearly elliptical: filtering between them loses the direction.
+    pub fn opposed_share(&self) -> f32 {
+        let reference = self.reference();
+        let direction = |full: SquaredAlpha| match full.axis_ratio() > CLEARLY_ELLIPTICAL {
+            true => Anisotropy::of(full, reference).direction,
+            false => [0.0; 2],
+        };
+        let opposed = |a: [f32; 2], b: [f32; 2]| a[0] * b[0] + a[1] * b[1] < 0.0;
+        let (mut count, mut total) = (0, 0);
+        for (level, (width, height)) in self.sizes().into_iter().enumerate().skip(2) {
+            let directions = |y: u32, out: &mut Vec<[f32; 2]>| {
+                out.clear();
+                self.row(level, y, width as usize, |_, _, full, _| out.push(direction(full)));
+            };
+            let in_row = |(row, below): &mut (Vec<[f32; 2]>, Vec<[f32; 2]>), y: u32| {
+                directions(y, row);
+                directions((y + 1).min(height - 1), below);
+                let right = row.iter().skip(1).chain(row.last());
+                row.iter()
+                    .zip(right)
+                    .zip(below.iter())
+                    .filter(|((a, r), b)| opposed(**a, **r) || opposed(**a, **b))
+                    .count()
+            };
+            count += (0..height).into_par_iter().map_init(Default::default, in_row).sum::<usize>();
+            total += width as usize * height as usize;
+        }
+        count as f32 / total.max(1) as f32
+    }
+
+    /// The axis of the whole map, which directions agree with.
+    fn reference(&self) -> [f32; 2] {
+        self.lobes.whole().squared_alpha.0.eigen().axis
+    }
+
     /// The model that `settings` ask for, at most `widest`; under [`Model::Auto`] the smallest within the error bound,
     /// with the losses that decided. A lobe that is elliptical already stays so.
     pub fn model(&self, settings: &Settings, widest: Model) -> (Model, Option<ModelLoss>) {
@@ -106,8 +162,7 @@ impl<'a> Fold<'a> {
     pub fn bake(&self, model: Model, encoding: Encoding) -> Result<Folded, EncodeError> {
         let sizes = self.sizes();
         let anisotropic = model == Model::Anisotropic;
-        // Directions agree with the axis of the whole map.
-        let reference = self.lobes.whole().squared_alpha.0.eigen().axis;
+        let reference = self.reference();
         let parameters = |a: SquaredAlpha| {
             if anisotropic {
                 Anisotropy::of(a, reference)

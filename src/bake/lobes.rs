@@ -37,6 +37,11 @@ impl<'a> Lobes<'a> {
         Self { finest, coarser }
     }
 
+    /// What offsets are multiplied by.
+    pub fn slope_scale(&self) -> f32 {
+        self.finest.slope_scale
+    }
+
     /// Writes the lobes of row `y` of `level` to `out`.
     pub fn row(&self, level: usize, y: u32, out: &mut [OrientedLobe]) {
         match level.checked_sub(1) {

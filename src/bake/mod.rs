@@ -13,6 +13,7 @@ mod job;
 mod lobes;
 mod names;
 mod normals;
+pub(crate) mod notes;
 mod plan;
 mod png;
 mod publish;

@@ -164,3 +164,76 @@ where
 fn larger(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
     [a[0].max(b[0].abs()), a[1].max(b[1].abs()), a[2].max(b[2].abs())]
 }
+
+/// The share of the variance that filtering D in place of K loses halfway between neighbouring texels, at the level
+/// where it is most. With D the mean of D1 and D2, (K1 + K2)/2 - D D^T = (D1 - D2)(D1 - D2)^T / 4: never less than 0.
+pub fn filter_loss<R: Rows<Texel = Moments>>(moments: &Pyramid<R>) -> f32 {
+    let sizes = moments.sizes();
+    let of_level = |(level, &(width, height)): (usize, &(u32, u32))| {
+        let factors = |y: u32, out: &mut Vec<[f32; 3]>| {
+            let mut texels = vec![Moments::default(); width as usize];
+            moments.row(level, y, &mut texels);
+            out.clear();
+            out.extend(texels.into_iter().map(|m| Quantity::Factor.of(m)));
+        };
+        let in_row = |(row, below): &mut (Vec<[f32; 3]>, Vec<[f32; 3]>), y: u32| {
+            factors(y, row);
+            let is_last = y + 1 == height;
+            if !is_last {
+                factors(y + 1, below);
+            }
+            let right = row.iter().zip(row.iter().skip(1));
+            let down = row.iter().zip(below.iter()).filter(|_| !is_last);
+            right.chain(down).fold([0.0; 2], |[lost, total], (a, b)| {
+                let elements = a.iter().zip(b).map(|(a, b)| (f64::from(*a), f64::from(*b)));
+                elements.fold([lost, total], |[lost, total], (a, b)| {
+                    [lost + 0.25 * (a - b) * (a - b), total + 0.5 * (a * a + b * b)]
+                })
+            })
+        };
+        let rows: Vec<[f64; 2]> = (0..height).into_par_iter().map_init(Default::default, in_row).collect();
+        let [lost, total] = rows.iter().fold([0.0; 2], |[l, t], [lost, total]| [l + lost, t + total]);
+        if total > 0.0 { (lost / total) as f32 } else { 0.0 }
+    };
+    // Level 0 has no variance.
+    sizes.iter().enumerate().skip(1).map(of_level).fold(0.0, f32::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pyramid::Level;
+    use crate::symmetric::Symmetric2;
+
+    /// Two texels of rank 1, at +45 and -45 degrees: D = [[0, +-s], [0, s]], so that filtering cancels d2 and with it half
+    /// of the variance, all of it along u.
+    #[test]
+    fn filtering_d_loses_what_its_texels_differ_by() {
+        let texel = |sign: f32| Moments { covariance: Symmetric2::outer([sign, 1.0]), ..Moments::default() };
+        // Level 1 of a map of 4 x 2 texels whose halves vary that way.
+        let offsets = |sign: f32, scale: f32| {
+            let mean = crate::bump::Offset { u: sign * scale, v: scale };
+            Moments::flat(mean)
+        };
+        let row = [offsets(1.0, 1.0), offsets(1.0, -1.0), offsets(-1.0, 1.0), offsets(-1.0, -1.0)];
+        let pyramid = Pyramid::new(Level { width: 4, height: 2, texels: [row, row].concat() });
+        let mut level = [Moments::default(); 2];
+        pyramid.row(1, 0, &mut level);
+        assert_eq!(level, [texel(1.0), texel(-1.0)]);
+        let loss = filter_loss(&pyramid);
+        assert!((loss - 0.5).abs() < 1e-6, "{loss}");
+        let [a, b] = level.map(|m| Quantity::Factor.of(m));
+        let d: [f32; 3] = std::array::from_fn(|i| 0.5 * (a[i] + b[i]));
+        let filtered = Factor { d1: d[0], d2: d[1], d3: d[2] }.covariance();
+        let mean = 0.5 * (level[0].covariance + level[1].covariance);
+        assert!((1.0 - filtered.trace() / mean.trace() - loss).abs() < 1e-6, "{filtered:?} {mean:?}");
+    }
+
+    #[test]
+    fn nothing_is_lost_where_neighbours_are_alike() {
+        let texels = (0..64).map(|i| Moments::flat(crate::bump::Offset { u: (i % 2) as f32, v: 0.0 })).collect();
+        assert_eq!(filter_loss(&Pyramid::new(Level { width: 8, height: 8, texels })), 0.0);
+        let flat = Level { width: 1, height: 1, texels: vec![Moments::default()] };
+        assert_eq!(filter_loss(&Pyramid::new(flat)), 0.0);
+    }
+}

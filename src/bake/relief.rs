@@ -1,9 +1,10 @@
 //! The bumps of a material: a normal map or a height map, read as rows of moments.
 
-use crate::bump::{FrameTransform, HeightOffsets, NormalOffsets, Wrap};
+use crate::bump::{FrameTransform, HeightOffsets, NormalOffsets, Outliers, Wrap};
 use crate::gltf::turn::TurnMap;
 use crate::map::{HeightMap, NormalMap};
 use crate::pyramid::{Moments, Rows};
+use crate::symmetric::Symmetric2;
 
 /// A decoded normal or height map.
 pub enum Relief {
@@ -29,13 +30,19 @@ impl Relief {
         }
     }
 
-    /// Texels steeper than [`crate::bump::MAX_SLOPE`] or pointing below the surface.
-    pub fn steep_texels(&self) -> u64 {
+    /// Texels whose slope is not what the map says.
+    pub fn outliers(&self) -> Outliers {
         match self {
-            Self::Normals(map) => NormalOffsets::new(map).steep_texels(),
-            Self::Heights { map, slope_per_step, wrap } => {
-                HeightOffsets::new(map, *slope_per_step, *wrap).steep_texels()
-            }
+            Self::Normals(map) => NormalOffsets::new(map).outliers(),
+            Self::Heights { map, slope_per_step, wrap } => HeightOffsets::new(map, *slope_per_step, *wrap).outliers(),
+        }
+    }
+
+    /// Covariance that rounding to the map's depth alone gives to slopes where the surface is flat.
+    pub fn noise(&self) -> Symmetric2 {
+        match self {
+            Self::Normals(map) => NormalOffsets::new(map).noise(),
+            Self::Heights { map, slope_per_step, wrap } => HeightOffsets::new(map, *slope_per_step, *wrap).noise(),
         }
     }
 }

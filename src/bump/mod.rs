@@ -24,6 +24,21 @@ pub struct Offset {
     pub v: f32,
 }
 
+/// Texels whose slope is not what the map says.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Outliers {
+    /// Steeper than [`MAX_SLOPE`], above the surface.
+    pub steep: u64,
+    /// Normals that point along the surface or below it.
+    pub below: u64,
+}
+
+impl Outliers {
+    fn plus(self, other: Self) -> Self {
+        Self { steep: self.steep + other.steep, below: self.below + other.below }
+    }
+}
+
 impl Offset {
     /// The same direction, no steeper than [`MAX_SLOPE`]. In f64, where no square of an f32 overflows.
     fn clamped(u: f64, v: f64) -> Self {

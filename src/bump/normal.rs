@@ -2,9 +2,10 @@
 
 use rayon::prelude::*;
 
-use super::{MAX_SLOPE, Offset};
+use super::{MAX_SLOPE, Offset, Outliers};
 use crate::map::NormalMap;
 use crate::pyramid::{Moments, Rows};
+use crate::symmetric::Symmetric2;
 
 /// f_u = -x/z, f_v = -y/z: the length of the normal cancels, so maps need not be normalised. Slopes beyond
 /// [`MAX_SLOPE`], and normals that point below the surface (z <= 0), keep their direction and get that slope; a vector
@@ -41,18 +42,27 @@ impl<'a> NormalOffsets<'a> {
         Self { map }
     }
 
+    /// Covariance that rounding to the map's depth alone gives to slopes where the surface is flat: components are off by
+    /// up to half a step, evenly, and step^2 / 12 is the variance of that.
+    pub fn noise(&self) -> Symmetric2 {
+        let step = self.map.step();
+        let variance = step * step / 12.0;
+        Symmetric2::diagonal(variance, variance)
+    }
+
     /// How many texels are steeper than [`MAX_SLOPE`] or point below the surface.
-    pub fn steep_texels(&self) -> u64 {
+    pub fn outliers(&self) -> Outliers {
         (0..self.map.height())
             .into_par_iter()
             .map_init(
                 || vec![[0.0; 3]; self.map.width() as usize],
                 |normals, y| {
                     self.map.row(y, normals);
-                    normals.iter().filter(|n| is_steep(**n)).count() as u64
+                    let count = |filter: fn(&[f32; 3]) -> bool| normals.iter().filter(|n| filter(n)).count() as u64;
+                    Outliers { steep: count(|n| n[2] > 0.0 && is_steep(*n)), below: count(|n| n[2] <= 0.0) }
                 },
             )
-            .sum()
+            .reduce(Outliers::default, Outliers::plus)
     }
 }
 
@@ -79,6 +89,7 @@ impl Rows for NormalOffsets<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::map::{Image, NormalLayout, Samples};
 
     #[test]
     fn slopes_of_hand_computed_normals() {
@@ -95,6 +106,44 @@ mod tests {
         }
         for normal in [[0.0, 0.0, 0.0], [0.0, 0.0, -1.0]] {
             assert_eq!(offset_from_normal(normal), Offset::default());
+        }
+    }
+
+    #[test]
+    fn outliers_are_counted() {
+        let normals = [[0.0, -0.1, 1.0], [1.0, 0.0, 0.05], [0.6, 0.0, -0.8], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0625]];
+        let image = Image { width: 5, height: 1, channels: 3, samples: Samples::F32(normals.concat()) };
+        let map = NormalMap::new(image, NormalLayout::Xyz, false).unwrap();
+        assert_eq!(NormalOffsets::new(&map).outliers(), Outliers { steep: 1, below: 2 });
+    }
+
+    /// A dome whose slopes cross many steps, in 8 bits: what it differs by from the exact one.
+    #[test]
+    fn noise_is_what_rounding_makes() {
+        let n = 256;
+        let exact: Vec<[f32; 3]> = (0..n * n)
+            .map(|i| {
+                let [x, y] = [i % n, i / n].map(|c| 0.2 * (c as f32 / n as f32 - 0.5));
+                [x, y, (1.0 - x * x - y * y).sqrt()]
+            })
+            .collect();
+        let bytes = exact.iter().flatten().map(|c| ((0.5 * c + 0.5) * 255.0).round() as u8).collect();
+        let image = Image { width: n, height: n, channels: 3, samples: Samples::U8(bytes) };
+        let map = NormalMap::new(image, NormalLayout::Xyz, false).unwrap();
+        let offsets = NormalOffsets::new(&map);
+        let mut row = vec![Moments::default(); n as usize];
+        let mut sums = [0.0; 2];
+        for (y, exact) in exact.chunks_exact(n as usize).enumerate() {
+            offsets.row(y as u32, &mut row);
+            for (found, exact) in row.iter().zip(exact) {
+                let exact = offset_from_normal(*exact);
+                sums[0] += f64::from(found.mean.u - exact.u).powi(2) / f64::from(n * n);
+                sums[1] += f64::from(found.mean.v - exact.v).powi(2) / f64::from(n * n);
+            }
+        }
+        let expected = offsets.noise();
+        for (found, expected) in sums.into_iter().zip([expected.uu, expected.vv]) {
+            assert!((found / f64::from(expected) - 1.0).abs() < 0.1, "{found} {expected}");
         }
     }
 

@@ -10,9 +10,10 @@ use super::Outcome;
 use super::options::{TextureOptions, finite, unit_interval};
 use crate::bake::report::Content;
 use crate::bake::{
-    BareBake, BareError, BareTexture, OwnRoughness, PublishError, Relief, Settings, bake_map, read_file, write_file,
+    BareBake, BareError, BareTexture, OwnRoughness, PublishError, Relief, Settings, bake_map, notes, read_file,
+    write_file,
 };
-use crate::bump::{MAX_SLOPE, Wrap};
+use crate::bump::Wrap;
 use crate::map::{
     DecodeError, DecodeOptions, HeightMap, Image, MapError, NormalLayout, NormalMap, decode, decode_colours,
 };
@@ -139,7 +140,7 @@ impl Written {
         json!({
             "model": self.baked.model,
             "loss": self.baked.loss,
-            "steepTexels": self.baked.steep_texels,
+            "notes": self.baked.notes,
             "textures": textures.collect::<Vec<_>>(),
         })
     }
@@ -158,19 +159,17 @@ impl Written {
                 *bytes as f64 / 1e3
             );
         }
-        if self.baked.steep_texels > 0 {
-            text += &format!(
-                "note: {} texels are steeper than {MAX_SLOPE} or point below the surface: taken as that steep\n",
-                self.baked.steep_texels
-            );
+        for note in &self.baked.notes {
+            text += &format!("note: {note}\n");
         }
         text
     }
 }
 
 fn bake(args: &Args, settings: &Settings) -> Result<Written, MapCommandError> {
-    let (image, digest) = load(&args.image, args.layer.clone(), settings, decode)?;
-    let mut sources = vec![digest];
+    let bytes = read(&args.image)?;
+    let image = decoded(&args.image, &bytes, args.layer.clone(), settings, decode)?;
+    let mut sources = vec![digest(&args.image, &bytes)];
     let failed = |error| MapCommandError::Map { path: args.image.clone(), error };
     let relief = if args.height {
         let slope = args.height_scale * image.width as f32;
@@ -186,15 +185,20 @@ fn bake(args: &Args, settings: &Settings) -> Result<Written, MapCommandError> {
     let own = match (&args.roughness, args.roughness_factor) {
         (None, None) => None,
         (image, factor) => {
-            let image = image.as_deref().map(|path| load(path, None, settings, decode_colours)).transpose()?;
-            let image = image.map(|(image, digest)| {
-                sources.push(digest);
-                image
-            });
-            Some(OwnRoughness { image, factor: factor.unwrap_or(1.0) })
+            let mut load = |path: &PathBuf| {
+                let bytes = read(path)?;
+                let image = decoded(path, &bytes, None, settings, decode_colours)?;
+                image.check_finite().map_err(|error| MapCommandError::Map { path: path.clone(), error })?;
+                sources.push(digest(path, &bytes));
+                Ok::<_, MapCommandError>(image)
+            };
+            Some(OwnRoughness { image: image.as_ref().map(&mut load).transpose()?, factor: factor.unwrap_or(1.0) })
         }
     };
-    let baked = bake_map(&relief, own.as_ref(), settings)?;
+    let mut baked = bake_map(&relief, own.as_ref(), settings)?;
+    if notes::is_jpeg(&bytes) {
+        baked.notes.push(notes::JPEG.to_owned());
+    }
     let mut files = Vec::new();
     for (index, texture) in baked.textures.iter().enumerate() {
         let path = if index == 0 { args.output.clone() } else { beside(&args.output, texture.content) };
@@ -228,18 +232,25 @@ impl Args {
     }
 }
 
-fn load(
+fn read(path: &Path) -> Result<Vec<u8>, MapCommandError> {
+    read_file(path).map_err(|error| MapCommandError::Read { path: path.to_owned(), error })
+}
+
+fn decoded(
     path: &Path,
+    bytes: &[u8],
     layer: Option<String>,
     settings: &Settings,
     decode: fn(&[u8], &DecodeOptions) -> Result<Image, DecodeError>,
-) -> Result<(Image, SourceDigest), MapCommandError> {
-    let bytes = read_file(path).map_err(|error| MapCommandError::Read { path: path.to_owned(), error })?;
+) -> Result<Image, MapCommandError> {
     let extension = path.extension().map(|e| e.to_string_lossy().into_owned());
     let options = DecodeOptions { max_pixels: settings.max_texels, layer, extension };
-    let image = decode(&bytes, &options).map_err(|error| MapCommandError::Decode { path: path.to_owned(), error })?;
+    decode(bytes, &options).map_err(|error| MapCommandError::Decode { path: path.to_owned(), error })
+}
+
+fn digest(path: &Path, bytes: &[u8]) -> SourceDigest {
     let uri = path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
-    Ok((image, SourceDigest { uri, blake3: blake3::hash(&bytes).to_hex().to_string() }))
+    SourceDigest { uri, blake3: blake3::hash(bytes).to_hex().to_string() }
 }
 
 fn texture_file(

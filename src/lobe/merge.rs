@@ -262,10 +262,7 @@ mod tests {
     #[test]
     fn merged_lobes_are_near_the_oracle() {
         let two_peaks = [[0.4, 0.0], [-0.4, 0.0]].map(|o| lobe(o, [0.01, 0.0, 0.01])).to_vec();
-        // One of nine far off: moments would make the lobe seven times as wide.
-        let mut outlier = vec![lobe([0.0, 0.0], [0.02, 0.0, 0.01]); 9];
-        outlier[4] = lobe([2.0, 1.0], [0.02, 0.0, 0.01]);
-        for parts in [rough_parts(), two_peaks, outlier] {
+        for parts in [rough_parts(), two_peaks] {
             let f64s = |lobe: &OrientedLobe| {
                 let a = lobe.squared_alpha.0;
                 (lobe.normal.map(f64::from), [a.uu, a.uv, a.vv].map(f64::from))
@@ -279,6 +276,18 @@ mod tests {
             let error = reference.error(&ours);
             assert!(error <= 1.15 * best + 0.01, "{error} where {best} is possible");
         }
+    }
+
+    /// Moments would make the lobe 49 times as wide in square; likelihood, four times.
+    #[test]
+    fn one_steep_texel_hardly_moves_the_lobe() {
+        let flat = lobe([0.0, 0.0], [0.02, 0.0, 0.02]);
+        let mut parts = vec![flat; 9];
+        parts[4] = lobe([2.0, 1.0], [0.02, 0.0, 0.02]);
+        let merged = merge(&parts);
+        let offset = merged.offset();
+        assert!(merged.squared_alpha.0.trace() < 5.0 * flat.squared_alpha.0.trace(), "{merged:?}");
+        assert!(offset.u.abs() < 0.1 && offset.v.abs() < 0.1, "{merged:?}");
     }
 
     /// Mirroring the parts mirrors the lobe; so does turning them by a right angle.

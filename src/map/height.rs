@@ -27,6 +27,11 @@ impl HeightMap {
         self.image.height
     }
 
+    /// Distance between neighbouring heights.
+    pub fn step(&self) -> f32 {
+        self.image.step()
+    }
+
     /// Writes row `y` (0 is the top) to `out`, which has `width` heights.
     pub fn row(&self, y: u32, out: &mut [f32]) {
         let channels = self.image.channels as usize;

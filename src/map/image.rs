@@ -2,6 +2,9 @@
 
 use std::borrow::Cow;
 
+use half::f16;
+use rayon::prelude::*;
+
 /// A decoded image: rows top to bottom, texels left to right, channels interleaved.
 ///
 /// `samples` holds exactly `width * height * channels` values.
@@ -75,6 +78,20 @@ impl Image {
         self.samples.get(usize::try_from(index).ok()?)
     }
 
+    /// Distance between neighbouring values at the depth of the file; for floats at most that at the largest magnitude,
+    /// of half floats where all values are such.
+    pub fn step(&self) -> f32 {
+        match &self.samples {
+            Samples::U8(_) => 1.0 / 255.0,
+            Samples::U16(_) => 1.0 / 65535.0,
+            Samples::F32(values) => {
+                let largest = values.par_iter().map(|v| v.abs()).reduce(|| 0.0, f32::max);
+                let is_half = values.par_iter().all(|v| f16::from_f32(*v).to_f32() == *v);
+                largest * if is_half { f16::EPSILON.to_f32() } else { f32::EPSILON }
+            }
+        }
+    }
+
     /// The values as little-endian bytes in storage order: the same on every machine, so they can
     /// be hashed. 8-bit images are borrowed.
     pub fn bytes(&self) -> Cow<'_, [u8]> {
@@ -83,5 +100,21 @@ impl Image {
             Samples::U16(values) => values.iter().flat_map(|v| v.to_le_bytes()).collect(),
             Samples::F32(values) => values.iter().flat_map(|v| v.to_le_bytes()).collect(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_are_those_of_the_depth() {
+        let step = |samples| Image { width: 1, height: 2, channels: 1, samples }.step();
+        assert_eq!(step(Samples::U8(vec![0, 7])), 1.0 / 255.0);
+        assert_eq!(step(Samples::U16(vec![0, 7])), 1.0 / 65535.0);
+        // 1024 and 1025 are neighbours among half floats, and 1024 + 2^-13 follows 1024 among single ones.
+        assert_eq!(step(Samples::F32(vec![1024.0, -0.5])), 1.0);
+        assert_eq!(step(Samples::F32(vec![-1024.0, 0.1])), f32::from_bits(1024f32.to_bits() + 1) - 1024.0);
+        assert_eq!(step(Samples::F32(vec![0.0, 0.0])), 0.0);
     }
 }

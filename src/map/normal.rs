@@ -69,6 +69,11 @@ impl NormalMap {
         self.has_z
     }
 
+    /// Distance between neighbouring values of x or y near 0.
+    pub fn step(&self) -> f32 {
+        if self.signed { self.image.step() } else { 2.0 * self.image.step() }
+    }
+
     /// Writes row `y` (0 is the top) to `out`, which has `width` normals of any length.
     pub fn row(&self, y: u32, out: &mut [[f32; 3]]) {
         let channels = self.image.channels as usize;
@@ -114,9 +119,11 @@ impl Image {
         }
     }
 
+    /// Refuses what has no value: no lobe and no mean comes out of it.
+    ///
     /// # Errors
     /// [`MapError::NotFinite`] when a sample is NaN or infinite.
-    pub(super) fn check_finite(&self) -> Result<(), MapError> {
+    pub fn check_finite(&self) -> Result<(), MapError> {
         let Samples::F32(samples) = &self.samples else {
             return Ok(());
         };

@@ -7,13 +7,14 @@ use crate::bake::chain::{Encoding, grid};
 use crate::bake::fold::Fold;
 use crate::bake::lobes::own_lobe;
 use crate::bake::normals::bake_normals;
+use crate::bake::notes;
 use crate::bake::plan::{LayerPlan, OwnTextures};
 use crate::bake::relief::Relief;
 use crate::bake::report::Content;
 use crate::bake::settings::Model;
 use crate::gltf::material::LayerKind;
 use crate::gltf::texture::TextureSource;
-use crate::map::{Image, Rgba, decode_colours};
+use crate::map::{Image, Rgba};
 use crate::pyramid::{Pyramid, Rows};
 
 impl Job<'_> {
@@ -40,8 +41,8 @@ impl Job<'_> {
             let none = OwnTextures { roughness: None, anisotropy: None };
             let own = layer.own.as_ref().unwrap_or(&none);
             let images = OwnImages {
-                roughness: own.roughness.as_ref().map(|t| self.image(t, &layer.name, decode_colours)).transpose()?,
-                anisotropy: own.anisotropy.as_ref().map(|t| self.image(t, &layer.name, decode_colours)).transpose()?,
+                roughness: own.roughness.as_ref().map(|t| self.image(t, &layer.name)).transpose()?,
+                anisotropy: own.anisotropy.as_ref().map(|t| self.image(t, &layer.name)).transpose()?,
             };
             let base = self.base(relief, layer, &images)?;
             let base = Pyramid::new(base);
@@ -73,7 +74,8 @@ impl Job<'_> {
             let first = self.first_level(users.iter().map(|user| &layers[*user]), size);
             let folding = Encoding::of(self.settings, 3).starting_at(first);
             let folded = fold.as_ref().map(|f| f.bake(model, folding)).transpose()?;
-            let too_wide = fold.map_or(0, |fold| fold.texels_above_one(model));
+            let fold_notes =
+                fold.map_or_else(Vec::new, |fold| notes::of_fold(&fold, model, relief.noise(), self.settings));
             for user in &users {
                 let LayerOutcome { report, model: chosen, own_lobe: own, unit_factor, anisotropy, circle, .. } =
                     &mut output.layers[*user];
@@ -94,11 +96,7 @@ impl Job<'_> {
                         loss.isotropic
                     ));
                 }
-                if too_wide > 0 {
-                    report.notes.push(format!(
-                        "{too_wide} texels over all levels are rougher than an engine can show: alpha is clamped to 1"
-                    ));
-                }
+                report.notes.extend(fold_notes.iter().cloned());
                 if let Some(folded) = &folded {
                     if model == Model::Isotropic && layers[*user].layer.anisotropy.is_some() {
                         *circle = Some(layers[*user].pointer("extensions/KHR_materials_anisotropy"));

@@ -9,6 +9,7 @@ pub use error::JobError;
 use super::bumps::Bumps;
 use super::chain::{Chain, grid};
 use super::geometry::Geometry;
+use super::notes;
 use super::plan::{LayerPlan, ReliefKind, ReliefPlan};
 use super::pyramids::Range;
 use super::relief::Relief;
@@ -16,13 +17,13 @@ use super::report::{Content, LayerReport};
 use super::settings::{Model, Settings};
 use super::source::Source;
 use super::view::Finest;
-use crate::bump::{Frame, MAX_SLOPE};
+use crate::bump::Frame;
 use crate::gltf::density::NoDensity;
 use crate::gltf::material::Mapping;
 use crate::gltf::rewrite::Slot;
 use crate::gltf::texture::{ImageLocation, TextureSource};
 use crate::lobe::SquaredAlpha;
-use crate::map::{DecodeError, DecodeOptions, HeightMap, Image, NormalLayout, NormalMap, decode};
+use crate::map::{DecodeError, DecodeOptions, HeightMap, Image, NormalLayout, NormalMap, decode, decode_colours};
 use crate::pyramid::Rows;
 use crate::texture::ktx2::{Ktx2, PROVENANCE_KEY};
 
@@ -99,10 +100,10 @@ pub fn run(
     settings: &Settings,
 ) -> Result<JobOutput, JobError> {
     let job = Job { plan, source, settings, geometry };
-    let relief = job.relief()?;
+    let (relief, mut relief_notes) = job.relief()?;
     let size = grid(settings, [(relief.width(), relief.height())])?;
     let mut output = JobOutput::default();
-    let steep = relief.steep_texels();
+    relief_notes.extend(notes::of_relief(&relief, size));
     for layer in &plan.layers {
         let mut notes = layer.notes.clone();
         if !plan.source.samples_mips {
@@ -110,13 +111,7 @@ pub fn run(
                 "the sampler's minFilter never reads mips: the bake has no effect in engines that obey it".into(),
             );
         }
-        if steep > 0 {
-            notes.push(format!(
-                "{steep} of {} texels are steeper than {} or point below the surface: taken as that steep",
-                u64::from(relief.width()) * u64::from(relief.height()),
-                MAX_SLOPE
-            ));
-        }
+        notes.extend(relief_notes.iter().cloned());
         let finest = match job.finest(layer, size) {
             None => None,
             Some(Ok(finest)) => Some(finest),
@@ -178,28 +173,41 @@ impl Job<'_> {
         if self.settings.view.is_some_and(|view| view.trim) { self.finest_level(layers, size) } else { 0 }
     }
 
-    fn relief(&self) -> Result<Relief, JobError> {
+    /// The bumps, and what the user should know of them.
+    fn relief(&self) -> Result<(Relief, Vec<String>), JobError> {
         let material = self.plan.layers.first().map(|l| l.name.clone()).unwrap_or_default();
-        let image = self.image(&self.plan.source, &material, decode)?;
+        let file = self.file(&self.plan.source, &material)?;
+        let image = self.decoded(&file, &self.plan.source, &material, decode)?;
         let failed = |error| JobError::Map { material, texture: describe(&self.plan.source.location), error };
-        match self.plan.kind {
-            ReliefKind::Normals => {
-                Ok(Relief::Normals(NormalMap::new(image, NormalLayout::Auto, false).map_err(failed)?))
-            }
+        let relief = match self.plan.kind {
+            ReliefKind::Normals => Relief::Normals(NormalMap::new(image, NormalLayout::Auto, false).map_err(failed)?),
             ReliefKind::Heights { slope_per_repeat: [across, up], square_texels, wrap } => {
                 let rows = if square_texels { image.width } else { image.height };
                 let slope_per_step = [across * image.width as f32, up * rows as f32];
-                Ok(Relief::Heights { map: HeightMap::new(image).map_err(failed)?, slope_per_step, wrap })
+                Relief::Heights { map: HeightMap::new(image).map_err(failed)?, slope_per_step, wrap }
             }
-        }
+        };
+        let notes = if notes::is_jpeg(&file) { vec![notes::JPEG.to_owned()] } else { Vec::new() };
+        Ok((relief, notes))
     }
 
-    /// Decodes the image of `texture`, which `material` uses.
-    fn image(&self, texture: &TextureSource, material: &str, decode: Decode) -> Result<Image, JobError> {
-        let (material, name) = (material.to_owned(), describe(&texture.location));
+    /// Decodes the image of `texture`, which `material` uses for a lobe.
+    fn image(&self, texture: &TextureSource, material: &str) -> Result<Image, JobError> {
+        let file = self.file(texture, material)?;
+        let image = self.decoded(&file, texture, material, decode_colours)?;
+        image.check_finite().map_err(|error| JobError::Map {
+            material: material.to_owned(),
+            texture: describe(&texture.location),
+            error,
+        })?;
+        Ok(image)
+    }
+
+    fn file(&self, texture: &TextureSource, material: &str) -> Result<Vec<u8>, JobError> {
+        let material = || material.to_owned();
         let read = |location: &ImageLocation| {
             self.source.image(location).map_err(|error| JobError::Source {
-                material: material.clone(),
+                material: material(),
                 texture: describe(location),
                 error,
             })
@@ -208,14 +216,22 @@ impl Job<'_> {
         // A form that cannot be read is no reason to fail: it is not needed.
         let form_is_baked = |form| read(form).is_ok_and(|bytes| is_baked(&bytes));
         if is_baked(&bytes) || texture.other_forms.iter().any(form_is_baked) {
-            return Err(JobError::AlreadyBaked { material, texture: name });
+            return Err(JobError::AlreadyBaked { material: material(), texture: describe(&texture.location) });
         }
+        Ok(bytes)
+    }
+
+    fn decoded(&self, file: &[u8], texture: &TextureSource, material: &str, decode: Decode) -> Result<Image, JobError> {
         let extension = match &texture.location {
             ImageLocation::Uri(uri) if !uri.starts_with("data:") => uri.rsplit_once('.').map(|(_, e)| e.to_owned()),
             _ => None,
         };
         let options = DecodeOptions { max_pixels: self.settings.max_texels, extension, ..Default::default() };
-        decode(&bytes, &options).map_err(|error| JobError::Decode { material, texture: name, error })
+        decode(file, &options).map_err(|error| JobError::Decode {
+            material: material.to_owned(),
+            texture: describe(&texture.location),
+            error,
+        })
     }
 }
 

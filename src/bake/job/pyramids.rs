@@ -3,8 +3,9 @@
 use super::{Job, JobError, JobOutput, JobTexture, PyramidUse};
 use crate::bake::bumps::Bumps;
 use crate::bake::chain::Encoding;
+use crate::bake::notes;
 use crate::bake::plan::LayerPlan;
-use crate::bake::pyramids::{Quantity, Ranged, bake_quantity, mean_correction};
+use crate::bake::pyramids::{Quantity, Ranged, bake_quantity, filter_loss, mean_correction};
 use crate::bake::relief::{Framed, Reading, Relief};
 use crate::bake::report::Content;
 use crate::bake::settings::Model;
@@ -17,10 +18,13 @@ use crate::pyramid::{Area, Pyramid, Rows, Shaped};
 /// Root mean square deviation of triangles up to which they count as turned alike: 6 degrees.
 const MAX_TURN_DEVIATION: f32 = 0.1;
 
+/// Index of a texture and what the user should know of it.
+type Made = (usize, Option<String>);
+
 impl Job<'_> {
     /// Offsets and D or lambda_1 for the base layers.
     pub(super) fn pyramids(&self, relief: &Relief, bumps: &Bumps<'_>, output: &mut JobOutput) -> Result<(), JobError> {
-        let mut made: Vec<(Reading, Quantity, usize)> = Vec::new();
+        let mut made: Vec<(Reading, Quantity, Made)> = Vec::new();
         for (index, layer) in self.plan.layers.iter().enumerate() {
             let outcome = &mut output.layers[index];
             if layer.layer.kind == LayerKind::Clearcoat {
@@ -40,15 +44,18 @@ impl Job<'_> {
                 Model::None | Model::Auto => None,
             };
             let mut find_or_make = |quantity: Quantity| {
-                if let Some((.., index)) = made.iter().find(|(r, q, _)| *q == quantity && *r == reading) {
-                    return Ok(*index);
+                if let Some((.., made)) = made.iter().find(|(r, q, _)| *q == quantity && *r == reading) {
+                    return Ok(made.clone());
                 }
-                output.textures.push(self.pyramid(relief, bumps, &reading, quantity)?);
-                made.push((reading.clone(), quantity, output.textures.len() - 1));
-                Ok::<_, JobError>(output.textures.len() - 1)
+                let (texture, note) = self.pyramid(relief, bumps, &reading, quantity)?;
+                output.textures.push(texture);
+                let new = (output.textures.len() - 1, note);
+                made.push((reading.clone(), quantity, new.clone()));
+                Ok::<_, JobError>(new)
             };
-            let offset = find_or_make(Quantity::Offset)?;
-            let roughness = roughness.map(find_or_make).transpose()?;
+            let (offset, _) = find_or_make(Quantity::Offset)?;
+            let (roughness, note) = roughness.map(find_or_make).transpose()?.unzip();
+            output.layers[index].report.notes.extend(note.flatten());
             output.layers[index].pyramid = Some(PyramidUse {
                 pointer: layer.pointer("extensions/ROUGHCAST_materials_roughness_pyramid"),
                 offset,
@@ -68,22 +75,23 @@ impl Job<'_> {
         bumps: &Bumps<'_>,
         reading: &Reading,
         quantity: Quantity,
-    ) -> Result<JobTexture, JobError> {
+    ) -> Result<(JobTexture, Option<String>), JobError> {
         let first = self.first_level(&self.plan.layers, bumps.size());
         let encoding = Encoding::of(self.settings, quantity.channels() as u32).starting_at(first);
-        let Ranged { chain, range } = if *reading == Reading::Uniform(FrameTransform::IDENTITY) {
-            bake_quantity(bumps.moments(), quantity, encoding)?
+        let is_factor = quantity == Quantity::Factor;
+        let (Ranged { chain, range }, loss) = if *reading == Reading::Uniform(FrameTransform::IDENTITY) {
+            (bake_quantity(bumps.moments(), quantity, encoding)?, is_factor.then(|| filter_loss(bumps.moments())))
         } else {
             let (width, height) = bumps.size();
             let framed = Pyramid::new(Area::new(Framed { relief, reading }, width, height));
-            bake_quantity(&framed, quantity, encoding)?
+            (bake_quantity(&framed, quantity, encoding)?, is_factor.then(|| filter_loss(&framed)))
         };
         let (content, model) = match quantity {
             Quantity::Offset => (Content::Offset, Model::None),
             Quantity::Factor => (Content::Factor, Model::Anisotropic),
             Quantity::Lambda1 => (Content::Lambda1, Model::Isotropic),
         };
-        Ok(JobTexture {
+        let texture = JobTexture {
             content,
             chain,
             range: Some(range),
@@ -92,7 +100,8 @@ impl Job<'_> {
             slots: Vec::new(),
             sampler: self.plan.source.sampler,
             model,
-        })
+        };
+        Ok((texture, loss.and_then(notes::of_factor)))
     }
 
     /// c for a shader that has one for the whole map: what the levels' covariances want on average.

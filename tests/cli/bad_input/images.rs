@@ -138,6 +138,24 @@ fn heights_of_a_material_that_are_no_numbers() {
     says_of_the_normal_map(&scene.complaint(&[]), &["expected finite values", "column 5, row 3"]);
 }
 
+/// A NaN in a roughness map would come out as a NaN in each of its levels.
+#[test]
+fn roughness_that_is_no_number() {
+    let scene = Scene::new();
+    fs::write(scene.bad("brushed_surface.exr"), exr_with(f32::NAN)).expect("a file");
+    scene.edit("brushed_surface.png", "brushed_surface.exr");
+    let line = scene.complaint(&[]);
+    let says = ["Brushed steel", "brushed_surface.exr", "expected finite values", "column 5, row 3"];
+    assert_says(&line, &says);
+    let folder = tempdir().expect("a folder");
+    let roughness = folder.path().join("rough.exr");
+    fs::write(&roughness, exr_with(f32::INFINITY)).expect("a file");
+    let (image, output) = (fixtures().join("maps/vgroove_normal.png"), folder.path().join("out.ktx2"));
+    let paths = [image.as_os_str(), "-o".as_ref(), output.as_os_str(), "--roughness".as_ref(), roughness.as_os_str()];
+    let run = roughcast(["map".as_ref()].into_iter().chain(paths));
+    assert_says(&one_line(&run), &["rough.exr: expected finite values", "column 5, row 3"]);
+}
+
 /// Heights of 16 x 16 texels, one of them `bad`.
 fn exr_with(bad: f32) -> Vec<u8> {
     use exr::prelude::{Encoding, Image, SpecificChannels, WritableImage};
