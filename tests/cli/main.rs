@@ -3,6 +3,7 @@
 mod bad_input;
 mod bytes;
 mod fixtures;
+mod notes;
 mod process;
 mod transcripts;
 mod validator;

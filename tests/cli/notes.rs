@@ -1,0 +1,40 @@
+//! What summaries and reports tell of sources where the method cannot be exact (docs/stability.md). Kernels' own faults
+//! are tested where the notes are made.
+
+use std::fs;
+use std::path::Path;
+
+use tempfile::tempdir;
+
+use super::process::{bake, copy, fixtures, roughcast};
+
+const NOTE: &str = "note: the bump map is a JPEG";
+
+/// The picture `from` as a JPEG.
+fn to_jpeg(from: &Path, to: &Path) {
+    let picture = image::open(from).expect("a picture").to_rgb8();
+    let (width, height) = (picture.width() as u16, picture.height() as u16);
+    let mut file = Vec::new();
+    let encoder = jpeg_encoder::Encoder::new(&mut file, 90);
+    encoder.encode(&picture, width, height, jpeg_encoder::ColorType::Rgb).expect("a JPEG");
+    fs::write(to, file).expect("a file");
+}
+
+#[test]
+fn jpeg_sources_are_told() {
+    let (source, baked) = (tempdir().expect("a folder"), tempdir().expect("a folder"));
+    copy(&fixtures().join("brushed"), source.path());
+    let (png, jpeg) = (source.path().join("brushed_normal.png"), source.path().join("brushed_normal.jpg"));
+    let document = source.path().join("brushed.gltf");
+    assert!(!bake(&document, baked.path(), &[]).out.contains(NOTE));
+
+    to_jpeg(&png, &jpeg);
+    let text = fs::read_to_string(&document).expect("a document");
+    fs::write(&document, text.replace("brushed_normal.png", "brushed_normal.jpg")).expect("a file");
+    assert!(bake(&document, baked.path(), &[]).out.contains(NOTE));
+
+    let output = baked.path().join("map.ktx2");
+    let map = |image: &Path| roughcast(["map".as_ref(), image.as_os_str(), "-o".as_ref(), output.as_os_str()]).out;
+    assert!(map(&jpeg).contains(NOTE));
+    assert!(!map(&png).contains(NOTE));
+}
