@@ -11,15 +11,26 @@ use roughcast::bake::{BareBake, Model, OwnRoughness, Relief, Settings, bake_map}
 use roughcast::judge::{Decoded, Family, Peer, Surface, mean_errors, oracle, sample_texels};
 use roughcast::lobe::{Alpha, Roughness, SquaredAlpha};
 use roughcast::map::{DecodeOptions, Image, NormalLayout, NormalMap, decode};
+use roughcast::texture::Target;
 use roughcast::texture::ktx2::Ktx2;
+use roughcast::texture::uastc::Effort;
 
 const MAPS: [&str; 5] =
     ["aluminium_normal.png", "wool_normal.png", "sand_normal.jpg", "texture_bricks_normal.jpg", "water_normals.png"];
 const FIXTURES: [&str; 2] = ["two_channel_normal.png", "vgroove_normal.png"];
 const ALPHAS: [f32; 4] = [0.05, 0.1, 0.2, 0.4];
 const LEVELS: std::ops::RangeInclusive<u32> = 2..=7;
-/// Peers, then ours isotropic and anisotropic, then the oracle.
-const COLUMNS: usize = Peer::ALL.len() + 3;
+/// Ours: isotropic and anisotropic as `fast` bakes them, anisotropic as `best` does, and that without encoding.
+const OURS: [(&str, Model, Effort, Target); 4] = [
+    ("ours, isotropic", Model::Isotropic, Effort::Fast, Target::Basis),
+    ("ours, fast", Model::Anisotropic, Effort::Fast, Target::Basis),
+    ("ours, best", Model::Anisotropic, Effort::Best, Target::Basis),
+    ("best, float", Model::Anisotropic, Effort::Best, Target::Float),
+];
+/// Peers, then ours, then the oracle.
+const COLUMNS: usize = Peer::ALL.len() + OURS.len() + 1;
+const FAST: usize = Peer::ALL.len() + 1;
+const BEST: usize = Peer::ALL.len() + 2;
 
 /// Levels and their mean errors.
 type Levels = Vec<(u32, [f64; COLUMNS])>;
@@ -32,9 +43,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let paths: Vec<_> = names.iter().map(|name| folder.join(name)).collect();
     print!("| map | alpha |");
     Peer::ALL.iter().for_each(|peer| print!(" {} |", peer.name()));
-    println!(" ours, isotropic | ours, anisotropic | oracle |");
+    OURS.iter().for_each(|ours| print!(" {} |", ours.0));
+    println!(" oracle |");
     println!("|---|---|{}", "---|".repeat(COLUMNS));
-    let (mut worst_against_peers, mut count, mut total) = ((f64::NEG_INFINITY, String::new()), 0.0, [0.0; COLUMNS]);
+    let mut worst = [FAST, BEST].map(|column| (column, f64::NEG_INFINITY, String::new()));
+    let (mut count, mut total) = (0.0, [0.0; COLUMNS]);
     for path in &paths {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let image = decode(&std::fs::read(path)?, &DecodeOptions::default())?;
@@ -43,9 +56,10 @@ fn main() -> Result<(), Box<dyn Error>> {
             let mut mean = [0.0; COLUMNS];
             for (level, errors) in &levels {
                 let best = errors[..Peer::ALL.len()].iter().copied().fold(f64::INFINITY, f64::min);
-                let excess = errors[COLUMNS - 2] - best;
-                if excess > worst_against_peers.0 {
-                    worst_against_peers = (excess, format!("{name}, alpha {alpha}, level {level}"));
+                for (column, excess, place) in &mut worst {
+                    if errors[*column] - best > *excess {
+                        (*excess, *place) = (errors[*column] - best, format!("{name}, alpha {alpha}, level {level}"));
+                    }
                 }
                 mean.iter_mut().zip(errors).for_each(|(m, e)| *m += e / levels.len() as f64);
             }
@@ -56,10 +70,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     print_row("all", "all", &total.map(|t| t / count));
     println!();
-    println!(
-        "Anisotropic against the best peer of each map, alpha and level: at worst {:+.3} ({}).",
-        worst_against_peers.0, worst_against_peers.1
-    );
+    for (column, excess, place) in worst {
+        let name = OURS[column - Peer::ALL.len()].0;
+        println!("{name}, against the best peer of each map, alpha and level: at worst {excess:+.3} ({place}).");
+    }
     Ok(())
 }
 
@@ -74,29 +88,30 @@ fn errors_by_level(image: &Image, alpha: f32, texels: usize) -> Result<Levels, B
     let map = || NormalMap::new(image.clone(), NormalLayout::Auto, false);
     let surface = Surface::of_map(&map()?, SquaredAlpha::isotropic(Alpha(alpha)));
     let relief = Relief::Normals(map()?);
-    let bake = |model| {
+    let files = OURS.map(|(_, model, effort, target)| {
         let own = OwnRoughness { image: None, factor: Roughness::from(Alpha(alpha)).0 };
-        bake_map(&relief, Some(&own), &Settings { model, provenance: false, ..Settings::default() })
-    };
-    let baked = [bake(Model::Isotropic)?, bake(Model::Anisotropic)?];
-    let files = baked.each_ref().map(files);
+        let settings = Settings { model, effort, target, provenance: false, ..Settings::default() };
+        bake_map(&relief, Some(&own), &settings).map(|baked| files_of(&baked))
+    });
+    let files = files.into_iter().collect::<Result<Vec<_>, _>>()?;
     LEVELS
         .filter(|level| image.width.max(image.height) >> level > 0)
         .map(|level| {
-            let [isotropic, anisotropic] = [decoded(&files[0], level)?, decoded(&files[1], level)?];
-            let size = (isotropic.normal.width, isotropic.normal.height);
+            let baked = files.iter().map(|files| decoded(files, level)).collect::<Result<Vec<_>, _>>()?;
+            let size_of = |decoded: &Decoded| (decoded.normal.width, decoded.normal.height);
+            let size = size_of(&baked[0]);
             let texels = sample_texels(size, texels);
             let means = mean_errors(&surface, Family::Ggx, size, &texels, |(x, y), footprint, reference| {
                 let moments = footprint.moments();
                 let peers = Peer::ALL.map(|peer| peer.lobe(Family::Ggx, &moments));
-                let ours = [&isotropic, &anisotropic].map(|d| d.lobe(Family::Ggx, x, y));
+                // Blocks want a grid of multiples of 4, where floats keep the map's own: no texel of theirs compares.
+                let ours = baked.iter().map(|d| d.lobe(Family::Ggx, x, y).filter(|_| size_of(d) == size));
+                let lobes: Vec<_> = peers.into_iter().map(Some).chain(ours).collect();
                 let mut errors = [f64::NAN; COLUMNS];
-                for (error, lobe) in
-                    errors.iter_mut().zip(peers.iter().map(Some).chain(ours.iter().map(Option::as_ref)))
-                {
-                    *error = lobe.map_or(1.0, |lobe| reference.error(lobe));
+                for (error, lobe) in errors.iter_mut().zip(&lobes) {
+                    *error = lobe.as_ref().map_or(f64::NAN, |lobe| reference.error(lobe));
                 }
-                let starts: Vec<_> = peers.into_iter().chain(ours.into_iter().flatten()).collect();
+                let starts: Vec<_> = lobes.into_iter().flatten().collect();
                 errors[COLUMNS - 1] = oracle(reference, &starts).1;
                 errors
             });
@@ -106,7 +121,7 @@ fn errors_by_level(image: &Image, alpha: f32, texels: usize) -> Result<Levels, B
 }
 
 /// The KTX2 files of a bake: a texture's content and its bytes.
-fn files(baked: &BareBake) -> Vec<(Content, Vec<u8>)> {
+fn files_of(baked: &BareBake) -> Vec<(Content, Vec<u8>)> {
     let effort = Settings::default().effort;
     baked.textures.iter().map(|t| (t.content, t.chain.to_ktx2(&[], effort))).collect()
 }

@@ -75,10 +75,7 @@ pub fn bake_map(relief: &Relief, own: Option<&OwnRoughness>, settings: &Settings
         let base = Pyramid::new(BaseRows::new(width, height, image.map(Rgba), own.factor, None, relief.wrap()));
         let resampled = ((width, height) != bumps.size()).then(|| Bumps::new(relief, (width, height)));
         let has_own_grid = resampled.is_some();
-        Ok::<_, BareError>((
-            Fold::new(base, resampled.as_ref().unwrap_or(&bumps), 1.0, settings.distribution),
-            has_own_grid,
-        ))
+        Ok::<_, BareError>((Fold::new(base, resampled.as_ref().unwrap_or(&bumps), 1.0, settings), has_own_grid))
     });
     let fold = fold.transpose()?;
     if is_portable {

@@ -10,7 +10,6 @@ use super::settings::{Model, Settings};
 use crate::choose::ModelLoss;
 use crate::lobe::{Anisotropy, OrientedLobe, Roughness, SquaredAlpha, isotropic_distance};
 use crate::pyramid::Pyramid;
-use crate::roughness::Distribution;
 use crate::symmetric::Symmetric2;
 use crate::texture::EncodeError;
 
@@ -35,14 +34,9 @@ pub struct Folded {
 
 impl<'a> Fold<'a> {
     /// Joins `base` with `bumps` on the same grid. `slope_scale` multiplies offsets (`normalTexture.scale`).
-    pub fn new<'b: 'a>(
-        base: Pyramid<BaseRows<'a>>,
-        bumps: &Bumps<'b>,
-        slope_scale: f32,
-        distribution: Distribution,
-    ) -> Self {
+    pub fn new<'b: 'a>(base: Pyramid<BaseRows<'a>>, bumps: &Bumps<'b>, slope_scale: f32, settings: &Settings) -> Self {
         let is_elliptical = base.source().is_elliptical();
-        let lobes = Lobes::new(&base, bumps, slope_scale, distribution);
+        let lobes = Lobes::new(&base, bumps, slope_scale, settings);
         Self { base, lobes, is_elliptical }
     }
 

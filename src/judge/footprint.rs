@@ -87,7 +87,7 @@ impl Surface {
 }
 
 /// The old texels of an axis of `old` that new texel `i` of `new` covers, and the share of it that each takes.
-fn overlaps(old: u32, new: u32, i: u32) -> Vec<(u32, f64)> {
+pub(crate) fn overlaps(old: u32, new: u32, i: u32) -> Vec<(u32, f64)> {
     let (old, new) = (u64::from(old), u64::from(new.max(1)));
     let i = u64::from(i).min(new - 1);
     // In units of 1/(old * new) of the axis all borders are integers.

@@ -10,14 +10,17 @@ mod lobe;
 mod oracle;
 mod peers;
 mod reference;
+mod refine;
 mod score;
 #[cfg(test)]
 mod tests;
 mod vector;
 
+pub(crate) use footprint::overlaps;
 pub use footprint::{Footprint, FootprintMoments, Part, Surface};
 pub use lobe::{Family, Lobe};
 pub use oracle::oracle;
 pub use peers::Peer;
 pub use reference::{Reference, SAMPLES};
+pub use refine::refine;
 pub use score::{Decoded, mean_errors, sample_texels};

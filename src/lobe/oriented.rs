@@ -2,7 +2,6 @@
 
 use super::SquaredAlpha;
 use crate::bump::{Offset, normal_from_offset};
-use crate::symmetric::Symmetric2;
 
 /// A lobe about a unit normal: what one texel of a level reflects.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -23,17 +22,6 @@ impl OrientedLobe {
     pub fn offset(&self) -> Offset {
         let [x, y, z] = self.normal;
         Offset { u: -x / z, v: -y / z }
-    }
-
-    /// The lobe that stands in best for this one where the normal is given: wider by what the normals differ.
-    ///
-    /// Of all widened GGX lobes A + 2 d d^T, d the slope from the one normal to the other, is within 1 % of the least
-    /// lobe error for distances up to three alphas (test `a_displaced_lobe_wants_its_displacement_squared`).
-    pub fn about(&self, normal: [f32; 3]) -> SquaredAlpha {
-        let [t, b, n] = frame(normal);
-        let z = dot(self.normal, n).max(LEAST_COSINE);
-        let d = [dot(self.normal, t) / z, dot(self.normal, b) / z];
-        SquaredAlpha(self.squared_alpha.0 + 2.0 * Symmetric2::outer(d))
     }
 }
 
@@ -56,38 +44,12 @@ pub(super) fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::judge::{Family, Footprint, Lobe, Part, Reference};
 
     #[test]
     fn offsets_survive() {
         for (u, v) in [(0.0, 0.0), (0.5, -2.0), (-15.0, 3.0)] {
             let back = OrientedLobe::new(Offset { u, v }, SquaredAlpha::default()).offset();
             assert!((back.u - u).abs() < 1e-4 * u.abs().max(1.0) && (back.v - v).abs() < 1e-4 * v.abs().max(1.0));
-        }
-    }
-
-    #[test]
-    fn a_lobe_about_its_own_normal_is_itself() {
-        let lobe = OrientedLobe::new(Offset { u: 0.4, v: -0.1 }, SquaredAlpha(Symmetric2::new(0.2, 0.05, 0.1)));
-        let about = lobe.about(lobe.normal).0;
-        assert!((about.uu - 0.2).abs() < 1e-6 && (about.uv - 0.05).abs() < 1e-6 && (about.vv - 0.1).abs() < 1e-6);
-    }
-
-    /// About another normal, no multiple of the squared displacement in steps of 0.1 is better by more than 1 %.
-    #[test]
-    fn a_displaced_lobe_wants_its_displacement_squared() {
-        let alpha = 0.05;
-        for alphas in [0.5, 1.0, 2.0, 3.0] {
-            let slope = alphas * alpha;
-            let own = [alpha * alpha, 0.0, alpha * alpha];
-            let part = Part { weight: 1.0, normal: [-slope, 0.0, 1.0], base: own };
-            let reference = Reference::new(Family::Ggx, &Footprint::new(vec![part]).unwrap(), 4096);
-            let error = |c: f64| {
-                let a = [own[0] + 2.0 * c * slope * slope, 0.0, own[2]];
-                reference.error(&Lobe::new(Family::Ggx, [0.0, 0.0, 1.0], a))
-            };
-            let best = (5..20).map(|c| error(0.1 * f64::from(c))).fold(f64::INFINITY, f64::min);
-            assert!(error(1.0) <= 1.01 * best, "{alphas} alphas: {} against {best}", error(1.0));
         }
     }
 }

@@ -51,8 +51,7 @@ impl Job<'_> {
             let size = base.sizes()[0];
             let fold = (layer.own.is_ok() && needs_lobes).then(|| {
                 let resampled = (size != bumps.size()).then(|| Bumps::new(relief, size));
-                let distribution = self.settings.distribution;
-                Fold::new(base, resampled.as_ref().unwrap_or(bumps), layer.slope_scale, distribution)
+                Fold::new(base, resampled.as_ref().unwrap_or(bumps), layer.slope_scale, self.settings)
             });
             if let Some(fold) = fold.as_ref().filter(|f| {
                 is_portable && normals.is_none() && layer.slope_scale != 0.0 && f.sizes()[0] == bumps.size()
