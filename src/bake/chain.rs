@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::settings::{Form, Settings};
 use crate::texture::ktx2::{Key, Ktx2Writer};
-use crate::texture::uastc::Effort;
+use crate::texture::uastc::{Effort, Metric};
 use crate::texture::{EncodeError, Format, Target, Texels, encode};
 
 /// A texture with all its levels encoded.
@@ -28,6 +28,8 @@ pub struct Chain {
 pub struct Encoding {
     /// How texels are stored.
     pub format: Format,
+    /// What the UASTC encoder keeps.
+    pub metric: Metric,
     /// Search effort of block encoders.
     pub effort: Effort,
     /// Finest level that is written; a coarser one where its size does not suit the format.
@@ -41,6 +43,7 @@ impl Encoding {
     pub fn of(settings: &Settings, channels: u32) -> Self {
         Self {
             format: settings.target.format(channels),
+            metric: Metric::Rgb,
             effort: settings.effort,
             finest: 0,
             fallback: settings.form == Form::Fallback,
@@ -49,7 +52,8 @@ impl Encoding {
 
     /// For normals: two channels where the engine's BC5 path rebuilds z, else three.
     pub fn of_normals(settings: &Settings) -> Self {
-        Self::of(settings, if settings.target == Target::Bc { 2 } else { 3 })
+        let channels = if settings.target == Target::Bc { 2 } else { 3 };
+        Self { metric: Metric::Direction, ..Self::of(settings, channels) }
     }
 
     /// Without levels finer than `finest`.
@@ -105,7 +109,7 @@ pub fn encode_chain(sizes: &[(u32, u32)], encoding: Encoding, row: &LevelRow<'_>
     let kept = &sizes[first..];
     let encode_level = |(level, &(width, height)): (usize, &(u32, u32))| {
         let row = |y: u32, out: &mut [[f32; 4]]| row(first + level, y, out);
-        encode(&Texels { width, height, row: &row }, encoding.format, encoding.effort)
+        encode(&Texels { width, height, row: &row }, encoding.format, encoding.metric, encoding.effort)
     };
     let levels = kept.par_iter().enumerate().map(encode_level).collect::<Result<_, _>>()?;
     let (width, height) = kept[0];

@@ -3,7 +3,7 @@
 use half::f16;
 use rayon::prelude::*;
 
-use super::uastc::{self, Channels, Effort};
+use super::uastc::{self, Effort, Metric};
 use super::{Format, Target};
 
 /// Why a level cannot be encoded.
@@ -86,13 +86,13 @@ fn unorm8(value: f32) -> u8 {
     (value.clamp(0.0, 1.0) * 255.0 + 0.5) as u8
 }
 
-/// The bytes of one level, not supercompressed.
+/// The bytes of one level, not supercompressed. UASTC is fitted by `metric`, which other encoders do not know.
 ///
 /// # Errors
 /// [`EncodeError`] for block formats whose encoder is missing or fails.
-pub fn encode(texels: &Texels<'_>, format: Format, effort: Effort) -> Result<Vec<u8>, EncodeError> {
+pub fn encode(texels: &Texels<'_>, format: Format, metric: Metric, effort: Effort) -> Result<Vec<u8>, EncodeError> {
     match format {
-        Format::UastcRgb => Ok(encode_uastc(texels, effort)),
+        Format::UastcRgb => Ok(encode_uastc(texels, metric, effort)),
         Format::R16Float => Ok(texels.to_half(1)),
         Format::Rg16Float => Ok(texels.to_half(2)),
         Format::Rgba16Float => Ok(texels.to_half(4)),
@@ -104,14 +104,14 @@ pub fn encode(texels: &Texels<'_>, format: Format, effort: Effort) -> Result<Vec
 }
 
 /// Quantises and encodes row of blocks by row of blocks, so that a level is never held as RGBA8.
-fn encode_uastc(texels: &Texels<'_>, effort: Effort) -> Vec<u8> {
+fn encode_uastc(texels: &Texels<'_>, metric: Metric, effort: Effort) -> Vec<u8> {
     let width = texels.width as usize;
     let mut blocks = vec![0; Format::UastcRgb.level_bytes(texels.width, texels.height)];
     blocks.par_chunks_mut(width.div_ceil(4) * uastc::BLOCK_BYTES).enumerate().for_each(|(block_row, out)| {
         let first = 4 * block_row as u32;
         let row = |y: u32, out: &mut [[f32; 4]]| (texels.row)(first + y, out);
         let band = Texels { width: texels.width, height: (texels.height - first).min(4), row: &row };
-        out.copy_from_slice(&uastc::encode_level(&band.to_rgba8(), band.width, band.height, Channels::Rgb, effort));
+        out.copy_from_slice(&uastc::encode_level(&band.to_rgba8(), band.width, band.height, metric, effort));
     });
     blocks
 }
@@ -139,11 +139,11 @@ mod tests {
     #[test]
     fn halves_keep_the_sign_and_fill_alpha() {
         let texels = Texels { width: 1, height: 1, row: &|_, out| out[0] = [-1.5, 2.0, 0.25, 9.0] };
-        let bytes = encode(&texels, Format::Rgba16Float, Effort::Fast).unwrap();
+        let bytes = encode(&texels, Format::Rgba16Float, Metric::Rgb, Effort::Fast).unwrap();
         let halves: Vec<f32> = bytes.chunks(2).map(|b| f16::from_le_bytes([b[0], b[1]]).to_f32()).collect();
         assert_eq!(halves, [-1.5, 2.0, 0.25, 1.0]);
-        assert_eq!(encode(&texels, Format::Rg16Float, Effort::Fast).unwrap(), bytes[..4]);
-        assert_eq!(encode(&texels, Format::R16Float, Effort::Fast).unwrap(), bytes[..2]);
+        assert_eq!(encode(&texels, Format::Rg16Float, Metric::Rgb, Effort::Fast).unwrap(), bytes[..4]);
+        assert_eq!(encode(&texels, Format::R16Float, Metric::Rgb, Effort::Fast).unwrap(), bytes[..2]);
     }
 
     #[test]
@@ -152,7 +152,7 @@ mod tests {
         for target in [Target::Basis, Target::Bc, Target::Float] {
             for channels in 1..=3 {
                 let format = target.format(channels);
-                match encode(&texels, format, Effort::Fast) {
+                match encode(&texels, format, Metric::Rgb, Effort::Fast) {
                     Ok(bytes) => assert_eq!(bytes.len(), format.level_bytes(5, 3), "{format:?}"),
                     Err(e) => assert!(!cfg!(feature = "bc") && e == EncodeError::WithoutBc, "{e}"),
                 }

@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 
 use roughcast::check::{Code, Findings, Usage, check_texture};
 use roughcast::texture::ktx2::{Key, Ktx2, Ktx2Writer, Provenance};
-use roughcast::texture::uastc::Effort;
+use roughcast::texture::uastc::{Effort, Metric};
 use roughcast::texture::{Format, Texels, encode};
 use serde_json::json;
 
@@ -59,7 +59,7 @@ fn write(format: Format, size: u32, levels: &[Vec<u8>], keys: &[Key]) -> Vec<u8>
 fn normals(texel: [f32; 4], format: Format) -> Vec<u8> {
     let level = |size| {
         let row = |_: u32, out: &mut [[f32; 4]]| out.fill(texel);
-        encode(&Texels { width: size, height: size, row: &row }, format, Effort::Fast).unwrap()
+        encode(&Texels { width: size, height: size, row: &row }, format, Metric::Rgb, Effort::Fast).unwrap()
     };
     let provenance =
         Provenance { version: "0.1.0".into(), content: "normal".into(), settings: json!({}), sources: vec![] };

@@ -2,7 +2,7 @@
 
 use super::{Key, Ktx2, Ktx2Writer};
 use crate::pyramid::level_sizes;
-use crate::texture::uastc::Effort;
+use crate::texture::uastc::{Effort, Metric};
 use crate::texture::{Format, Texels, encode};
 use ::ktx2::{ColorModel, Reader, SupercompressionScheme, TransferFunction};
 
@@ -17,8 +17,9 @@ fn texture(format: Format, width: u32, height: u32, keys: &[Key]) -> Option<Vec<
         }
     };
     let sizes = level_sizes(width, height);
-    let levels =
-        sizes.iter().map(|&(width, height)| encode(&Texels { width, height, row: &row }, format, Effort::Fast));
+    let levels = sizes
+        .iter()
+        .map(|&(width, height)| encode(&Texels { width, height, row: &row }, format, Metric::Rgb, Effort::Fast));
     let levels = levels.collect::<Result<Vec<_>, _>>().ok()?;
     Some(Ktx2Writer { format, width, height, levels: &levels, keys, effort: Effort::Fast }.to_bytes())
 }

@@ -3,7 +3,7 @@
 use super::line::{Line, fit};
 use super::moments::{ALL, Lane, Moments, moments, part, principal_axis, scatter_along};
 use super::pack::Block;
-use super::tables::{Mode, PATTERNS};
+use super::tables::{Mode, PATTERNS, THIRDS};
 
 /// Members of either subset of every pattern, as 0 and 1 per texel.
 pub(super) static SUBSETS: [[Lane; 2]; PATTERNS.len()] = subsets();
@@ -22,13 +22,27 @@ const fn subsets() -> [[Lane; 2]; PATTERNS.len()] {
     all
 }
 
+/// The same of the three-subset patterns.
+static THREE_SUBSETS: [[Lane; 3]; THIRDS.len()] = three_subsets();
+
+const fn three_subsets() -> [[Lane; 3]; THIRDS.len()] {
+    let mut all = [[[0.0; 16]; 3]; THIRDS.len()];
+    let mut at = 0;
+    while at < 16 * 3 * THIRDS.len() {
+        let (i, subset, pattern) = (at % 16, at / 16 % 3, at / 48);
+        all[pattern][subset][i] = (THIRDS[pattern][subset] >> i & 1) as f32;
+        at += 1;
+    }
+    all
+}
+
 /// The channels of an RGB block but one.
 pub(super) fn rest(alone: usize) -> [usize; 2] {
     [[1, 2], [0, 2], [0, 1]][alone]
 }
 
 fn empty(mode: &'static Mode) -> Block {
-    Block { mode, pattern: 0, selector: 0, endpoints: [[[0; 2]; 4]; 2], weights: [[0; 16]; 2], error: 0.0 }
+    Block { mode, pattern: 0, selector: 0, endpoints: [[[0; 2]; 4]; 3], weights: [[0; 16]; 2], error: 0.0 }
 }
 
 impl Block {
@@ -54,7 +68,7 @@ impl Block {
     }
 }
 
-/// A block of one line through all channels; `BITS` are the weight bits of `mode`, here and below.
+/// A block of one line through the first `N` channels; `BITS` are the weight bits of `mode`, here and below.
 pub(super) fn one_line<const N: usize, const BITS: u32>(
     texels: &[Lane; N],
     all: &Moments<N>,
@@ -80,7 +94,11 @@ pub(super) fn two_planes<const N: usize, const BITS: u32>(
     block.selector = selector;
     let alone = fit::<1, BITS>(&[texels[selector]], &ALL, &part(all, [selector]), &[1.0], mode.range, rounds);
     block.place(&alone, [selector], 0, 1, 0xffff);
-    if N == 3 {
+    if N == 2 {
+        let channels = [1 - selector];
+        let line = together::<N, 1, BITS>(texels, all, channels, mode, rounds);
+        block.place(&line, channels, 0, 0, 0xffff);
+    } else if N == 3 {
         let channels = rest(selector);
         let line = together::<N, 2, BITS>(texels, all, channels, mode, rounds);
         block.place(&line, channels, 0, 0, 0xffff);
@@ -106,17 +124,33 @@ fn together<const N: usize, const M: usize, const BITS: u32>(
     fit::<M, BITS>(&texels, &ALL, &m, &axis, mode.range, rounds)
 }
 
-/// The two subsets of a pattern, ready to be fitted.
-pub(super) struct Split<const N: usize> {
+/// The `S` subsets of a pattern, ready to be fitted.
+pub(super) struct Split<const N: usize, const S: usize> {
     pattern: usize,
-    moments: [Moments<N>; 2],
-    axes: [[f32; N]; 2],
+    masks: &'static [Lane; S],
+    moments: [Moments<N>; S],
+    axes: [[f32; N]; S],
 }
 
-impl<const N: usize> Split<N> {
-    pub fn new(texels: &[Lane; N], pattern: usize) -> Self {
-        let moments = [0, 1].map(|subset| moments(texels, &SUBSETS[pattern][subset]));
-        Self { pattern, moments, axes: [0, 1].map(|subset| principal_axis(&moments[subset].scatter)) }
+impl<const N: usize> Split<N, 2> {
+    /// Split by one of the two-subset patterns.
+    pub fn in_two(texels: &[Lane; N], pattern: usize) -> Self {
+        Self::new(texels, pattern, &SUBSETS[pattern])
+    }
+}
+
+impl<const N: usize> Split<N, 3> {
+    /// Split by each of the three-subset patterns.
+    pub fn in_three(texels: &[Lane; N]) -> [Self; THIRDS.len()] {
+        std::array::from_fn(|pattern| Self::new(texels, pattern, &THREE_SUBSETS[pattern]))
+    }
+}
+
+impl<const N: usize, const S: usize> Split<N, S> {
+    fn new(texels: &[Lane; N], pattern: usize, masks: &'static [Lane; S]) -> Self {
+        let moments = masks.each_ref().map(|mask| moments(texels, mask));
+        let axes = moments.each_ref().map(|m| principal_axis(&m.scatter));
+        Self { pattern, masks, moments, axes }
     }
 
     /// Scatter off the axes of the subsets, which stays as error, and scatter along them.
@@ -132,21 +166,19 @@ impl<const N: usize> Split<N> {
     }
 }
 
-/// A block of two subsets with a line each.
-pub(super) fn two_lines<const N: usize, const BITS: u32>(
+/// A block of a line for each subset.
+pub(super) fn split_lines<const N: usize, const S: usize, const BITS: u32>(
     texels: &[Lane; N],
-    split: &Split<N>,
+    split: &Split<N, S>,
     mode: &'static Mode,
     rounds: usize,
 ) -> Block {
     let mut block = empty(mode);
     block.pattern = split.pattern;
-    let ones = PATTERNS[split.pattern];
-    for (subset, members) in [!ones, ones].into_iter().enumerate() {
-        let mask = &SUBSETS[split.pattern][subset];
+    for (subset, mask) in split.masks.iter().enumerate() {
         let (m, axis) = (&split.moments[subset], &split.axes[subset]);
         let line = fit::<N, BITS>(texels, mask, m, axis, mode.range, rounds);
-        block.place(&line, std::array::from_fn(|c| c), subset, 0, members);
+        block.place(&line, std::array::from_fn(|c| c), subset, 0, block.members(subset));
     }
     block
 }

@@ -11,7 +11,7 @@ use super::tables::Range;
 
 /// 1.5 * 2^23: adding and subtracting it rounds a number of less than 2^22 to the nearest integer,
 /// and the low bits of the sum are that integer. (`round` takes a call on baseline x86-64.)
-const ROUND: f32 = 12_582_912.0;
+pub(super) const ROUND: f32 = 12_582_912.0;
 
 /// A fitted line over `N` channels.
 #[derive(Clone, Copy)]
@@ -37,7 +37,7 @@ fn max(a: f32, b: f32) -> f32 {
 
 /// The weight ramp of the format: index to 0..=64, for 2 to 5 bits.
 #[inline(always)]
-fn ramp<const BITS: u32>(index: i32) -> i32 {
+pub(super) fn ramp<const BITS: u32>(index: i32) -> i32 {
     match BITS {
         2 => 21 * index + (index >> 1),
         3 => 9 * index + (index >> 2),
@@ -49,7 +49,7 @@ fn ramp<const BITS: u32>(index: i32) -> i32 {
 /// A decoded level: `astc` interpolation of 8-bit endpoints at a weight of 0..=64, that is
 /// floor((257 (64 low + (high - low) weight) + 32) / 2^14), in exact `f32` steps.
 #[inline(always)]
-fn decode(low: f32, step: f32, weight: f32) -> f32 {
+pub(super) fn decode(low: f32, step: f32, weight: f32) -> f32 {
     let v = ((low * 64.0 + step * weight) * 257.0 + 32.0) * (1.0 / 16384.0);
     // v is a multiple of 2^-14: shifting by 1/2 - 2^-15 makes rounding a floor without ties.
     (v - (0.5 - 1.0 / 32768.0) + ROUND) - ROUND
@@ -101,7 +101,7 @@ fn regress<const N: usize>(texels: &[Lane; N], subset: &Lane, m: &Moments<N>, we
 
 /// Nearest level of `range` to a value, which may lie outside of 0..=255.
 #[inline(always)]
-fn quantise(range: &Range, value: f32) -> u8 {
+pub(super) fn quantise(range: &Range, value: f32) -> u8 {
     let v = min(max(value, 0.0), 255.0);
     range.level[((v + ROUND).to_bits() & 255) as usize]
 }

@@ -4,18 +4,18 @@
 //! packing". Fields follow each other from bit 0 of byte 0 upwards.
 
 use super::hints::Hints;
-use super::tables::{Mode, PATTERNS, Range, SOLID_CODE};
+use super::tables::{Mode, PATTERNS, Range, SOLID_CODE, THIRDS};
 
 /// A block of any mode but the solid one.
 #[derive(Clone)]
 pub(super) struct Block {
     pub mode: &'static Mode,
-    /// Index into [`PATTERNS`]; 0 where the mode has one subset.
+    /// Index into [`PATTERNS`] or, with three subsets, [`THIRDS`]; 0 where the mode has one subset.
     pub pattern: usize,
     /// The channel with weights of its own; 0 where the mode has one plane.
     pub selector: usize,
     /// Endpoint levels per subset and channel: low, high; each one of the mode's range.
-    pub endpoints: [[[u8; 2]; 4]; 2],
+    pub endpoints: [[[u8; 2]; 4]; 3],
     /// Weights per plane and texel.
     pub weights: [[u8; 16]; 2],
     /// Sum of squared differences to the source over the channels that count.
@@ -23,13 +23,23 @@ pub(super) struct Block {
 }
 
 impl Block {
-    /// The subset of every texel, bit i for texel i.
-    fn subset_bits(&self) -> u16 {
-        if self.mode.subsets == 2 { PATTERNS[self.pattern] } else { 0 }
+    /// The texels of a subset, bit i for texel i.
+    pub fn members(&self, subset: usize) -> u16 {
+        match (self.mode.subsets, subset) {
+            (1, _) => 0xffff,
+            (2, 0) => !PATTERNS[self.pattern],
+            (2, _) => PATTERNS[self.pattern],
+            _ => THIRDS[self.pattern][subset],
+        }
+    }
+
+    /// The texel of a subset whose weights lack their top bit.
+    fn anchor(&self, subset: usize) -> u32 {
+        self.members(subset).trailing_zeros()
     }
 
     /// The plane that channel `c` takes its weights from.
-    fn plane_of(&self, c: usize) -> usize {
+    pub fn plane_of(&self, c: usize) -> usize {
         usize::from(self.mode.planes == 2 && c == self.selector)
     }
 
@@ -37,13 +47,11 @@ impl Block {
     /// weights of that subset and plane are mirrored and their endpoints exchanged. The weight
     /// ramps are symmetric, so the colours stay the same.
     fn mirror_anchors(&mut self) {
-        let bits = self.subset_bits();
         let top = (1u8 << self.mode.weight_bits) - 1;
         for plane in 0..self.mode.planes {
             for subset in 0..self.mode.subsets {
-                let members = if subset == 1 { bits } else { !bits };
-                let anchor = members.trailing_zeros() as usize & 15;
-                if self.weights[plane][anchor] <= top / 2 {
+                let members = self.members(subset);
+                if self.weights[plane][self.anchor(subset) as usize & 15] <= top / 2 {
                     continue;
                 }
                 for (i, weight) in self.weights[plane].iter_mut().enumerate() {
@@ -65,8 +73,10 @@ impl Block {
         let mut out = Bits::default();
         out.push(mode.code.0.into(), mode.code.1.into());
         hints.write(mode, &mut out);
-        if mode.subsets == 2 {
-            out.push(self.pattern as u64, 5);
+        match mode.subsets {
+            1 => {}
+            2 => out.push(self.pattern as u64, 5),
+            _ => out.push(self.pattern as u64, 4),
         }
         if mode.planes == 2 {
             out.push(self.selector as u64, 2);
@@ -78,7 +88,7 @@ impl Block {
 
     fn write_endpoints(&self, out: &mut Bits) {
         let Range { bits, base, code, .. } = self.mode.range;
-        let mut codes = [0; 16];
+        let mut codes = [0; 18];
         let mut count = 0;
         for subset in &self.endpoints[..self.mode.subsets] {
             for &level in subset[..self.mode.channels].as_flattened() {
@@ -93,14 +103,14 @@ impl Block {
             3 => (5, &[0, 2, 4, 5, 7, 8]),
             5 => (3, &[0, 3, 5, 7]),
             // Neither: one group of nothing.
-            _ => (16, &[0; 17]),
+            _ => (18, &[0; 19]),
         };
         for group in codes.chunks(group) {
             let upper = group.iter().rev();
             let number = upper.fold(0, |sum, code| sum * u64::from(*base) + (code >> bits));
             out.push(number, lengths[group.len()]);
         }
-        // By halves, which fit a word: eight endpoints of eight bits at most.
+        // By halves, which fit a word: eight endpoints of eight bits at most, or nine of two.
         for codes in codes.chunks(count / 2) {
             let lower = codes.iter().rev();
             let word = lower.fold(0, |word, code| word << bits | (code & ((1 << bits) - 1)));
@@ -122,15 +132,18 @@ impl Block {
         let half = 8 * width;
         let mut all = u128::from(close_up(low, width)) | u128::from(close_up(high, width)) << half;
         // The top bit of an anchor goes, later ones first.
-        let members = self.subset_bits();
-        if self.mode.subsets == 2 {
-            let second = (members ^ (members & 1).wrapping_neg()).trailing_zeros();
-            all = without_bit(all, second * bits + bits - 1);
-        }
         if self.mode.planes == 2 {
             all = without_bit(all, 2 * bits - 1);
         }
-        all = without_bit(all, bits - 1);
+        let mut anchors = [0; 3];
+        let anchors = &mut anchors[..self.mode.subsets];
+        for (subset, anchor) in anchors.iter_mut().enumerate() {
+            *anchor = self.anchor(subset);
+        }
+        anchors.sort_unstable();
+        for anchor in anchors.iter().rev() {
+            all = without_bit(all, anchor * bits + bits - 1);
+        }
         out.bits |= all << out.len;
     }
 }

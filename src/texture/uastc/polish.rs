@@ -7,7 +7,7 @@ use super::candidate::{SUBSETS, rest};
 use super::line::{Line, settle};
 use super::moments::{ALL, Lane};
 use super::pack::Block;
-use super::tables::{PATTERNS, Range};
+use super::tables::Range;
 
 impl Block {
     /// Polishes the endpoints of an opaque block.
@@ -27,9 +27,8 @@ impl Block {
             self.polish_line::<1, BITS>(texels, [alone], (0, 1), (&ALL, 0xffff), passes);
             self.polish_line::<2, BITS>(texels, rest(alone), (0, 0), (&ALL, 0xffff), passes);
         } else if self.mode.subsets == 2 {
-            let ones = PATTERNS[self.pattern];
-            for (subset, bits) in [!ones, ones].into_iter().enumerate() {
-                let members = (&SUBSETS[self.pattern][subset], bits);
+            for (subset, mask) in SUBSETS[self.pattern].iter().enumerate() {
+                let members = (mask, self.members(subset));
                 self.polish_line::<3, BITS>(texels, [0, 1, 2], (subset, 0), members, passes);
             }
         } else {

@@ -4,7 +4,7 @@
 //! that pay; `fast_rgb` first estimates errors from the moments of the colours and fits only what
 //! can win: on 83,000 blocks of eighteen real maps the gates below cost 0.03 dB.
 
-use super::candidate::{Split, one_line, rest, two_lines, two_planes};
+use super::candidate::{Split, one_line, rest, split_lines, two_planes};
 use super::moments::{ALL, Lane, Moments, moments, principal_axis, scatter_along};
 use super::pack::Block;
 use super::partition::likely_patterns;
@@ -16,10 +16,10 @@ use super::tables::{
 const ROUNDS: usize = 2;
 
 /// The candidate with the least error so far; the earlier one wins ties.
-struct Winner(Block);
+pub(super) struct Winner(pub Block);
 
 impl Winner {
-    fn offer(&mut self, block: Block) {
+    pub fn offer(&mut self, block: Block) {
         if block.error < self.0.error {
             self.0 = block;
         }
@@ -46,14 +46,14 @@ pub(super) fn best_rgb(texels: &[Lane; 3]) -> Block {
         winner.offer(two_planes::<3, 2>(texels, &all, selector, &MODE_6, ROUNDS));
     }
     for pattern in likely_patterns::<3, 2>(texels, &all, &axis) {
-        let split = Split::new(texels, pattern);
+        let split = Split::in_two(texels, pattern);
         if split.scatter().0 > winner.0.error {
             continue;
         }
-        winner.offer(two_lines::<3, 2>(texels, &split, &MODE_4, ROUNDS));
+        winner.offer(split_lines::<3, 2, 2>(texels, &split, &MODE_4, ROUNDS));
         // Sixteen levels an endpoint are too coarse for less.
         if winner.0.error > 150.0 {
-            winner.offer(two_lines::<3, 3>(texels, &split, &MODE_2, ROUNDS));
+            winner.offer(split_lines::<3, 2, 3>(texels, &split, &MODE_2, ROUNDS));
         }
     }
     winner.0.polish(texels, 2);
@@ -101,10 +101,10 @@ pub(super) fn fast_rgb(texels: &[Lane; 3]) -> Block {
     };
     if winner.0.error > GOOD {
         let [pattern] = likely_patterns(texels, &all, &axis);
-        let split = Split::new(texels, pattern);
+        let split = Split::in_two(texels, pattern);
         let (off, along) = split.scatter();
         if off + along / 12.0 < 1.4 * winner.0.error {
-            winner.offer(two_lines::<3, 2>(texels, &split, &MODE_4, ROUNDS));
+            winner.offer(split_lines::<3, 2, 2>(texels, &split, &MODE_4, ROUNDS));
         }
     }
     winner.0
@@ -141,8 +141,8 @@ pub(super) fn rgba(texels: &[Lane; 4], thorough: bool) -> Block {
             winner.offer(two_planes::<4, 2>(texels, &all, selector, &MODE_11, rounds));
         }
         for pattern in likely_patterns::<4, 4>(texels, &all, &axis) {
-            let split = Split::new(texels, pattern);
-            winner.offer(two_lines::<4, 2>(texels, &split, &MODE_9, rounds));
+            let split = Split::in_two(texels, pattern);
+            winner.offer(split_lines::<4, 2, 2>(texels, &split, &MODE_9, rounds));
         }
     }
     winner.0

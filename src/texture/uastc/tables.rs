@@ -36,6 +36,8 @@ pub(super) static MODE_0: Mode = rgb((0x1, 4), 4, &RANGE_192);
 pub(super) static MODE_1: Mode = rgb((0x35, 6), 2, &RANGE_256);
 /// Mode 2: RGB, two subsets of 8 weights.
 pub(super) static MODE_2: Mode = Mode { subsets: 2, ..rgb((0x1d, 5), 3, &RANGE_16) };
+/// Mode 3: RGB, three subsets of 4 weights.
+pub(super) static MODE_3: Mode = Mode { subsets: 3, ..rgb((0x3, 5), 2, &RANGE_12) };
 /// Mode 4: RGB, two subsets of 4 weights.
 pub(super) static MODE_4: Mode = Mode { subsets: 2, ..rgb((0x13, 5), 2, &RANGE_40) };
 /// Mode 5: RGB, 8 weights, exact endpoints.
@@ -70,6 +72,7 @@ pub(super) struct Range {
     pub level: [u8; 256],
 }
 
+static RANGE_12: Range = Range::new(2, 3);
 static RANGE_16: Range = Range::new(4, 1);
 static RANGE_32: Range = Range::new(5, 1);
 static RANGE_40: Range = Range::new(3, 5);
@@ -124,6 +127,7 @@ const fn unquantize(code: u32, bits: u32, base: u32) -> u32 {
     let a = if low & 1 == 1 { 0x1ff } else { 0 };
     let upper = low >> 1;
     let (b, c) = match (base, bits) {
+        (3, 2) => (upper << 8 | upper << 4 | upper << 2 | upper << 1, 93),
         (3, 4) => (upper << 6 | upper, 22),
         (3, 6) => (upper << 4 | upper >> 4, 5),
         (5, 3) => (upper << 7 | upper << 1 | upper >> 1, 26),
@@ -140,4 +144,20 @@ pub(super) static PATTERNS: [u16; 30] = [
     0xcccc, 0x8888, 0x1111, 0xecc8, 0x377f, 0xfeec, 0x0137, 0x137f, 0xc800, 0x0013, 0xfe80, 0x17ff, 0x0017, 0x00ff,
     0xfff0, 0x0fff, 0xff71, 0x8eff, 0x08ce, 0x008c, 0x7310, 0xceff, 0x7331, 0x088c, 0xceef, 0x6666, 0xf00f, 0x5555,
     0x0f0f, 0x36c9,
+];
+
+/// The three-subset patterns that ASTC and BC7 share, in the order of the format's pattern index: bit i of member s tells
+/// whether texel i belongs to subset s.
+pub(super) static THIRDS: [[u16; 3]; 11] = [
+    [0x00ff, 0x3300, 0xcc00],
+    [0x0f00, 0x00ff, 0xf000],
+    [0x0ff0, 0x000f, 0xf000],
+    [0xff00, 0x000f, 0x00f0],
+    [0x8888, 0x3333, 0x4444],
+    [0x1111, 0x6666, 0x8888],
+    [0x1111, 0xcccc, 0x2222],
+    [0x00ee, 0xee00, 0x1111],
+    [0x2222, 0x4444, 0x9999],
+    [0x00f0, 0xf00f, 0x0f00],
+    [0x3333, 0x0cc0, 0xc00c],
 ];

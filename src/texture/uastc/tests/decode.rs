@@ -1,6 +1,6 @@
 //! Blocks decode to exactly what the encoder took them for.
 
-use super::super::candidate::{Split, one_line, two_lines, two_planes};
+use super::super::candidate::{Split, one_line, split_lines, two_planes};
 use super::super::encode_block;
 use super::super::hints::Hints;
 use super::super::moments::{ALL, Lane, moments, principal_axis};
@@ -9,14 +9,14 @@ use super::super::tables::*;
 use super::*;
 use basisu::uastc::bise::{astc_get_levels, unquant_astc_endpoint_val};
 use basisu::uastc::huff_modes::HUFF_MODES;
-use basisu::uastc::patterns::ASTC_BC7_PATTERNS2;
+use basisu::uastc::patterns::{ASTC_BC7_PATTERNS2, ASTC_BC7_PATTERNS3};
 
-fn lanes<const N: usize>(texels: &Texels) -> [Lane; N] {
+pub(super) fn lanes<const N: usize>(texels: &Texels) -> [Lane; N] {
     std::array::from_fn(|c| texels.map(|t| f32::from(t[c])))
 }
 
 /// One block of every mode with `N` channels.
-fn every_mode<const N: usize>(texels: &Texels) -> Vec<(u8, Block)> {
+pub(super) fn every_mode<const N: usize>(texels: &Texels) -> Vec<(u8, Block)> {
     let lanes = lanes::<N>(texels);
     let all = moments(&lanes, &ALL);
     let axis = principal_axis(&all.scatter);
@@ -32,8 +32,12 @@ fn every_mode<const N: usize>(texels: &Texels) -> Vec<(u8, Block)> {
                 blocks.push((6, block));
             }
             for pattern in 0..PATTERNS.len() {
-                blocks.push((2, two_lines::<N, 3>(&lanes, &Split::new(&lanes, pattern), &MODE_2, rounds)));
-                blocks.push((4, two_lines::<N, 2>(&lanes, &Split::new(&lanes, pattern), &MODE_4, rounds)));
+                let split = Split::in_two(&lanes, pattern);
+                blocks.push((2, split_lines::<N, 2, 3>(&lanes, &split, &MODE_2, rounds)));
+                blocks.push((4, split_lines::<N, 2, 2>(&lanes, &split, &MODE_4, rounds)));
+            }
+            for split in Split::in_three(&lanes) {
+                blocks.push((3, split_lines::<N, 3, 2>(&lanes, &split, &MODE_3, rounds)));
             }
         } else {
             blocks.push((10, one_line::<N, 4>(&lanes, &all, &axis, &MODE_10, rounds)));
@@ -44,7 +48,7 @@ fn every_mode<const N: usize>(texels: &Texels) -> Vec<(u8, Block)> {
                 blocks.push((11, block));
             }
             for pattern in 0..PATTERNS.len() {
-                blocks.push((9, two_lines::<N, 2>(&lanes, &Split::new(&lanes, pattern), &MODE_9, rounds)));
+                blocks.push((9, split_lines::<N, 2, 2>(&lanes, &Split::in_two(&lanes, pattern), &MODE_9, rounds)));
             }
         }
     }
@@ -52,13 +56,14 @@ fn every_mode<const N: usize>(texels: &Texels) -> Vec<(u8, Block)> {
 }
 
 /// The specification's decoder, in its slowest form.
-fn expected(block: &Block) -> Texels {
+pub(super) fn expected(block: &Block) -> Texels {
     let mode = block.mode;
     let range = endpoint_range(mode);
     let top = (1u32 << mode.weight_bits) - 1;
     std::array::from_fn(|i| {
         let subset = match mode.subsets {
             2 => usize::from(ASTC_BC7_PATTERNS2[block.pattern][i]),
+            3 => usize::from(ASTC_BC7_PATTERNS3[block.pattern][i]),
             _ => 0,
         };
         std::array::from_fn(|c| {
@@ -106,7 +111,7 @@ fn every_mode_decodes_as_predicted() {
 
 #[test]
 fn ranges_and_patterns_are_the_format_s() {
-    for mode in [&MODE_0, &MODE_2, &MODE_4, &MODE_5, &MODE_6, &MODE_10, &MODE_18] {
+    for mode in [&MODE_0, &MODE_2, &MODE_3, &MODE_4, &MODE_5, &MODE_6, &MODE_10, &MODE_18] {
         let index = endpoint_range(mode);
         let levels: Vec<u32> = (0..astc_get_levels(index)).map(|code| unquant_astc_endpoint_val(code, index)).collect();
         for target in 0..256u32 {
@@ -122,16 +127,21 @@ fn ranges_and_patterns_are_the_format_s() {
             assert_eq!((bits >> i & 1) as u8, subset);
         }
     }
+    for (masks, pattern) in THIRDS.iter().zip(ASTC_BC7_PATTERNS3) {
+        for (i, subset) in pattern.into_iter().enumerate() {
+            assert_eq!(masks.map(|mask| mask >> i & 1 == 1), [0, 1, 2].map(|s| s == subset));
+        }
+    }
 }
 
 #[test]
 fn rgb_is_opaque_and_ignores_alpha() {
     for texels in all_kinds() {
         for effort in EFFORTS {
-            let block = encode_block(&texels, Channels::Rgb, effort);
+            let block = encode_block(&texels, Metric::Rgb, effort);
             assert!(decoded(&block).iter().all(|t| t[3] == 255));
             let without = texels.map(|[r, g, b, _]| [r, g, b, 0]);
-            assert_eq!(block, encode_block(&without, Channels::Rgb, effort));
+            assert_eq!(block, encode_block(&without, Metric::Rgb, effort));
         }
     }
 }
@@ -142,10 +152,10 @@ fn solid_blocks_are_exact() {
     for _ in 0..2000 {
         let colour = std::array::from_fn(|_| random.byte());
         for effort in EFFORTS {
-            let block = encode_block(&[colour; 16], Channels::Rgba, effort);
+            let block = encode_block(&[colour; 16], Metric::Rgba, effort);
             assert_eq!(decoded(&block), [colour; 16]);
             let [r, g, b, _] = colour;
-            let block = encode_block(&[colour; 16], Channels::Rgb, effort);
+            let block = encode_block(&[colour; 16], Metric::Rgb, effort);
             assert_eq!(decoded(&block), [[r, g, b, 255]; 16]);
         }
     }

@@ -37,7 +37,7 @@ fn transcoded(block: &[u8; BLOCK_BYTES]) -> [Texels; 6] {
 /// PSNR over RGB of each of [`TARGETS`].
 fn ratios(sources: &[Texels], effort: Effort) -> [f64; 6] {
     let blocks: Vec<[Texels; 6]> =
-        sources.iter().map(|texels| transcoded(&encode_block(texels, Channels::Rgb, effort))).collect();
+        sources.iter().map(|texels| transcoded(&encode_block(texels, Metric::Rgb, effort))).collect();
     std::array::from_fn(|target| {
         let texels: Vec<Texels> = blocks.iter().map(|b| b[target]).collect();
         psnr(sources, &texels)
@@ -75,7 +75,7 @@ fn alpha_stays_near() {
             [i as u8 * 9, 100, 200 - i as u8, alpha]
         });
         for effort in EFFORTS {
-            let block = encode_block(&texels, Channels::Rgba, effort);
+            let block = encode_block(&texels, Metric::Rgba, effort);
             for (target, result) in TARGETS.iter().zip(transcoded(&block)) {
                 if ["ETC1", "BC1"].contains(target) {
                     continue;
@@ -94,7 +94,7 @@ fn solid_blocks_stay_near() {
     let mut random = Random(11);
     for _ in 0..500 {
         let colour = std::array::from_fn(|_| random.byte());
-        let block = encode_block(&[colour; 16], Channels::Rgba, Effort::Fast);
+        let block = encode_block(&[colour; 16], Metric::Rgba, Effort::Fast);
         for (target, result) in TARGETS.iter().zip(transcoded(&block)) {
             for c in 0..3 {
                 let off = result[7][c].abs_diff(colour[c]);
@@ -108,8 +108,8 @@ fn solid_blocks_stay_near() {
 #[test]
 fn every_block_transcodes() {
     for texels in all_kinds() {
-        for (channels, effort) in CHANNELS.into_iter().flat_map(|c| EFFORTS.map(|e| (c, e))) {
-            let block = encode_block(&texels, channels, effort);
+        for (metric, effort) in METRICS.into_iter().flat_map(|m| EFFORTS.map(|e| (m, e))) {
+            let block = encode_block(&texels, metric, effort);
             let results = transcoded(&block);
             // BC7 and ASTC hold the block almost as it is (BC7 has 5 to 8 bits an endpoint, and the ASTC
             // decoder rounds).

@@ -2,11 +2,12 @@
 //! transcoding, `texture2ddecoder` for what comes out of it.
 
 mod decode;
+mod direction;
 mod hints;
 mod level;
 mod quality;
 
-use super::{BLOCK_BYTES, Channels, Effort};
+use super::{BLOCK_BYTES, Effort, Metric};
 use basisu::uastc::unpack::unpack_uastc;
 
 pub(super) type Texels = [[u8; 4]; 16];
@@ -123,4 +124,4 @@ pub(super) fn all_kinds() -> Vec<Texels> {
 }
 
 pub(super) const EFFORTS: [Effort; 2] = [Effort::Fast, Effort::Best];
-pub(super) const CHANNELS: [Channels; 2] = [Channels::Rgb, Channels::Rgba];
+pub(super) const METRICS: [Metric; 3] = [Metric::Rgb, Metric::Rgba, Metric::Direction];

@@ -5,7 +5,7 @@ use super::*;
 
 fn ratio(sources: &[Texels], effort: Effort) -> f64 {
     let blocks: Vec<Texels> =
-        sources.iter().map(|texels| decoded(&encode_block(texels, Channels::Rgb, effort))).collect();
+        sources.iter().map(|texels| decoded(&encode_block(texels, Metric::Rgb, effort))).collect();
     psnr(sources, &blocks)
 }
 
@@ -23,9 +23,9 @@ fn normals_keep_their_ratio() {
 #[test]
 fn best_is_never_worse_than_fast() {
     for texels in all_kinds() {
-        for (channels, count) in [(Channels::Rgb, 3), (Channels::Rgba, 4)] {
+        for (metric, count) in [(Metric::Rgb, 3), (Metric::Rgba, 4)] {
             let [fast, best] =
-                EFFORTS.map(|effort| squared_error(&texels, &decoded(&encode_block(&texels, channels, effort)), count));
+                EFFORTS.map(|effort| squared_error(&texels, &decoded(&encode_block(&texels, metric, effort)), count));
             assert!(best <= fast, "{best} over {fast} for {texels:?}");
         }
     }
