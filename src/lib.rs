@@ -17,6 +17,7 @@ pub mod judge;
 pub mod lobe;
 pub mod map;
 pub mod pyramid;
+pub mod render;
 pub mod roughness;
 pub mod symmetric;
 pub mod texture;

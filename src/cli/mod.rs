@@ -7,6 +7,7 @@ mod inspect;
 mod map;
 mod options;
 mod progress;
+mod render;
 mod report;
 mod view;
 
@@ -33,6 +34,7 @@ enum Command {
     Map(map::Args),
     Check(check::Args),
     Inspect(inspect::Args),
+    Render(render::Args),
 }
 
 /// How a command ended.
@@ -89,5 +91,6 @@ pub fn run(cli: Cli, out: &mut dyn Write, err: &mut dyn Write) -> std::io::Resul
         Command::Map(args) => map::run(&args, out, err),
         Command::Check(args) => check::run(&args, out, err),
         Command::Inspect(args) => inspect::run(&args, out, err),
+        Command::Render(args) => render::run(&args, out, err),
     }
 }

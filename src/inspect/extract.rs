@@ -47,7 +47,7 @@ pub fn extract(bytes: &[u8]) -> Result<Vec<Picture>, ExtractError> {
     let picture = |level| {
         let image = file.decode_level(level)?;
         let (extension, encoded) = match image.samples {
-            Samples::F32(_) => ("exr", exr(image)),
+            Samples::F32(_) => ("exr", encode_exr(image)),
             Samples::U8(_) | Samples::U16(_) => ("png", png(image)),
         };
         let bytes = encoded.map_err(|reason| ExtractError::Encode { level, extension, reason })?;
@@ -94,7 +94,11 @@ where
     Ok(file)
 }
 
-fn exr(image: Image) -> Result<Vec<u8>, String> {
+/// An OpenEXR file of an image of floats.
+///
+/// # Errors
+/// What the encoder says, or that the image holds integers.
+pub fn encode_exr(image: Image) -> Result<Vec<u8>, String> {
     let size = (image.width as usize, image.height as usize);
     let names: &[&str] = match image.channels {
         1 => &["Y"],

@@ -6,6 +6,6 @@ mod render;
 mod texture;
 
 pub use document::{DocumentFacts, ImageFacts, MaterialFacts, PictureFacts, SlotFacts, inspect_document};
-pub use extract::{ExtractError, Picture, extract};
+pub use extract::{ExtractError, Picture, encode_exr, extract};
 pub use render::{document_text, texture_text};
 pub use texture::{DescriptorFacts, KeyFacts, LevelFacts, SampleFacts, TextureFacts, inspect_texture};

@@ -14,7 +14,7 @@ mod refine;
 mod score;
 #[cfg(test)]
 mod tests;
-mod vector;
+pub(crate) mod vector;
 
 pub(crate) use footprint::overlaps;
 pub use footprint::{Footprint, FootprintMoments, Part, Surface};

@@ -23,5 +23,10 @@ pub fn combine([x, y, z]: Vector, [t, b, n]: [Vector; 3]) -> Vector {
 pub fn frame(n: Vector) -> [Vector; 3] {
     let t = [1.0 - n[0] * n[0], -n[0] * n[1], -n[0] * n[2]];
     let t = if dot(t, t) > 1e-24 { normalised(t) } else { [0.0, 0.0, -1.0] };
-    [t, [n[1] * t[2] - n[2] * t[1], n[2] * t[0] - n[0] * t[2], n[0] * t[1] - n[1] * t[0]], n]
+    [t, cross(n, t), n]
+}
+
+/// Perpendicular to both, right-handed.
+pub fn cross(a: Vector, b: Vector) -> Vector {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }

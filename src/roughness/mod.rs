@@ -2,11 +2,13 @@
 
 mod correction;
 mod lattice;
+mod region;
 mod shape;
 mod table;
 
 pub use correction::{Corrected, Distribution};
 pub use lattice::{KURTOSES, Lattice, Place, RATIOS};
+pub use region::Region;
 pub use shape::{CROSS_SKEWNESS, Shape};
 
 use crate::symmetric::Symmetric2;

@@ -5,5 +5,6 @@ mod bytes;
 mod fixtures;
 mod notes;
 mod process;
+mod render;
 mod transcripts;
 mod validator;

@@ -48,7 +48,7 @@ fn help() {
 
 #[test]
 fn help_of_each_command() {
-    for command in ["bake", "map"] {
+    for command in ["bake", "map", "render"] {
         transcript(&format!("help_{command}"), &[&format!("roughcast {command} --help")]);
     }
 }
@@ -98,6 +98,10 @@ fn usage_errors() {
             "roughcast bake brushed -o out --nearest 2 --screen-height 0",
             "roughcast bake brushed -o out --nearest 2 --screen-height 1080 --fov 180",
             "roughcast map maps/line_normal.png -o out.ktx2 --wrap round",
+            "roughcast render brushed/brushed.gltf",
+            "roughcast render -o out --distance 1,0",
+            "roughcast render -o out --scene moon",
+            "roughcast render -o out --width 0",
             "roughcast frobnicate",
         ],
     );
@@ -119,6 +123,10 @@ fn errors() {
             "roughcast map heights/heights.png -o out.ktx2",
             "roughcast map maps/dunes_height.exr -o out.ktx2 --height --layer Z",
             "roughcast map brushed/brushed.bin -o out.ktx2",
+            "roughcast render missing.png -o out",
+            "roughcast render brushed/brushed.bin -o out",
+            "roughcast render heights/heights.png -o out",
+            "roughcast render brushed/brushed.gltf -o brushed/brushed.bin --scene highlight --width 8",
         ],
     );
 }

@@ -1,0 +1,45 @@
+//! Why nothing is drawn.
+
+use std::io;
+use std::path::PathBuf;
+
+use crate::bake::{BakeError, PublishError, SourceError};
+use crate::gltf::document::DocumentError;
+use crate::gltf::json::JsonError;
+use crate::gltf::material::MaterialError;
+use crate::gltf::texture::TextureError;
+use crate::map::DecodeError;
+use crate::texture::ktx2::ReadError;
+
+/// Why nothing is drawn.
+#[derive(Debug, thiserror::Error)]
+pub enum RenderError {
+    #[error("expected a readable file, found: {0}")]
+    Read(io::Error),
+    #[error(transparent)]
+    Document(#[from] DocumentError),
+    #[error(transparent)]
+    Json(#[from] JsonError),
+    #[error(transparent)]
+    Bake(#[from] BakeError),
+    #[error(transparent)]
+    Material(#[from] MaterialError),
+    #[error("material {material}: {error}")]
+    Reference { material: String, error: TextureError },
+    #[error("material {material}, texture {texture}: {error}")]
+    Source { material: String, texture: String, error: SourceError },
+    #[error("material {material}, texture {texture}: {error}")]
+    Decode { material: String, texture: String, error: DecodeError },
+    #[error("material {material}, texture {texture}: {error}")]
+    Ktx2 { material: String, texture: String, error: ReadError },
+    #[error("material {material}: {reason}")]
+    Extension { material: String, reason: String },
+    #[error("expected a material with a normal or height map, found none; name another file")]
+    NoBumps,
+    #[error(transparent)]
+    Publish(#[from] PublishError),
+    #[error("expected an output folder apart from the input, found that {} is the input; choose another with -o", path.display())]
+    OverInput { path: PathBuf },
+    #[error("expected to encode {}, found: {reason}; choose a smaller --width", path.display())]
+    Encode { path: PathBuf, reason: String },
+}

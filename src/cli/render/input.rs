@@ -1,0 +1,123 @@
+//! What is drawn: an asset, a bare map as the material of an asset of its own, or waves as a height map.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use serde_json::json;
+
+use super::columns::{Columns, columns};
+use super::{Args, RenderError};
+use crate::bake::{Settings, Source, read_file};
+use crate::gltf::document::Document;
+use crate::gltf::uri::encode_path;
+use crate::inspect::encode_exr;
+use crate::map::{Image, Samples};
+use crate::render::{Subject, waves};
+
+/// Texels of the waves along each side.
+const WAVES: u32 = 512;
+
+/// An input in memory.
+pub enum Input {
+    /// A glTF document, and the folder of its files.
+    Asset {
+        /// The document.
+        document: Box<Document>,
+        /// Its folder.
+        folder: PathBuf,
+        /// Its name.
+        stem: String,
+    },
+    /// An image file.
+    Map {
+        /// Its bytes.
+        bytes: Vec<u8>,
+        /// Its file name.
+        name: String,
+        /// What it holds.
+        kind: MapKind,
+    },
+}
+
+/// What an image holds.
+#[derive(Clone, Copy)]
+pub enum MapKind {
+    /// Normals.
+    Normals,
+    /// Heights, and their scale in widths of the map.
+    Heights(f32),
+    /// The waves, whose height suits the subject.
+    Waves,
+}
+
+impl Input {
+    /// Reads what `args` name.
+    pub fn read(args: &Args) -> Result<Self, RenderError> {
+        let Some(path) = &args.input else {
+            let samples = Samples::F32(waves(WAVES));
+            let image = Image { width: WAVES, height: WAVES, channels: 1, samples };
+            let failed = |reason| RenderError::Encode { path: "waves.exr".into(), reason };
+            let bytes = encode_exr(image).map_err(failed)?;
+            return Ok(Self::Map { bytes, name: "waves.exr".to_owned(), kind: MapKind::Waves });
+        };
+        let bytes = read_file(path).map_err(RenderError::Read)?;
+        let extension = path.extension().unwrap_or_default();
+        if ["gltf", "glb"].iter().any(|e| extension.eq_ignore_ascii_case(e)) {
+            let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+            return Ok(Self::Asset { document: Box::new(Document::parse(&bytes)?), folder, stem: stem(path) });
+        }
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let kind = if args.height { MapKind::Heights(args.height_scale) } else { MapKind::Normals };
+        Ok(Self::Map { bytes, name, kind })
+    }
+
+    /// Bakes every material with bumps. A bare map gets `roughness`, else what suits `subject`.
+    pub fn columns(
+        &self,
+        settings: &Settings,
+        subject: Subject,
+        roughness: Option<f32>,
+    ) -> Result<Vec<Columns>, RenderError> {
+        match self {
+            Self::Asset { document, folder, stem } => {
+                let read = |path: &Path| read_file(&folder.join(path));
+                columns(&Source { stem, document, read: &read }, settings)
+            }
+            Self::Map { bytes, name, kind } => {
+                let stem = stem(Path::new(name));
+                let texture = json!({ "index": 0 });
+                let mut material = json!({
+                    "name": stem,
+                    "pbrMetallicRoughness": { "roughnessFactor": roughness.unwrap_or(subject.roughness()) },
+                });
+                let height_scale = match kind {
+                    MapKind::Normals => None,
+                    MapKind::Heights(scale) => Some(*scale),
+                    MapKind::Waves => Some(subject.wave_height()),
+                };
+                match height_scale {
+                    None => material["normalTexture"] = texture,
+                    Some(scale) => {
+                        let texture = json!({ "index": 0, "scale": scale });
+                        material["extras"] = json!({ "roughcast": { "heightTexture": texture } });
+                    }
+                }
+                let asset = json!({
+                    "asset": { "version": "2.0" },
+                    "images": [{ "uri": encode_path(name) }],
+                    "textures": [{ "source": 0 }],
+                    "materials": [material],
+                });
+                let document = Document::parse(asset.to_string().as_bytes())?;
+                let read = |path: &Path| {
+                    if path == Path::new(name) { Ok(bytes.clone()) } else { Err(io::ErrorKind::NotFound.into()) }
+                };
+                columns(&Source { stem: "", document: &document, read: &read }, settings)
+            }
+        }
+    }
+}
+
+fn stem(path: &Path) -> String {
+    path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+}

@@ -1,0 +1,85 @@
+//! Pictures as files: a sheet, and each by itself.
+
+use std::fs;
+use std::path::PathBuf;
+
+use super::{Args, RenderError};
+use crate::bake::{encode_png, write_file};
+use crate::inspect::encode_exr;
+use crate::map::{Image, Samples};
+use crate::render::{Panel, Picture, Sheet, Tone};
+
+/// A picture and how it is shown.
+pub struct Shown {
+    /// In file names.
+    pub name: &'static str,
+    /// The picture.
+    pub picture: Picture,
+    /// Lines below it.
+    pub labels: Vec<String>,
+    /// How it is displayed.
+    pub tone: Tone,
+}
+
+impl Shown {
+    fn panel(&self, distance: Option<f64>) -> Panel<'_> {
+        let mut labels = self.labels.clone();
+        if let (Some(distance), Some(first)) = (distance, labels.first_mut()) {
+            *first += &format!(", distance {distance}");
+        }
+        Panel { picture: &self.picture, tone: self.tone, labels }
+    }
+}
+
+/// The output folder.
+pub struct Folder<'a> {
+    args: &'a Args,
+    input: Option<PathBuf>,
+}
+
+impl<'a> Folder<'a> {
+    /// The one that `args` name.
+    pub fn new(args: &'a Args) -> Self {
+        Self { args, input: args.input.as_ref().and_then(|path| fs::canonicalize(path).ok()) }
+    }
+
+    /// Writes a sheet of rows, each with its distance where there are several, and every picture. Returns the sheet's
+    /// path.
+    pub fn write(&self, stem: &str, rows: &[(Option<f64>, Vec<Shown>)]) -> Result<String, RenderError> {
+        for (distance, row) in rows {
+            let distance = distance.map_or(String::new(), |d| format!(".d{d}"));
+            for Shown { name, picture, tone, .. } in row {
+                let stem = format!("{stem}{distance}.{name}");
+                self.write_sheet(&stem, Sheet::of(picture, tone))?;
+                if self.args.exr {
+                    let path = self.args.output.join(format!("{stem}.exr"));
+                    let [width, height] = picture.size;
+                    let samples = Samples::F32(picture.pixels.iter().flatten().copied().collect());
+                    let encoded = encode_exr(Image { width, height, channels: 3, samples });
+                    self.write_file(path, encoded)?;
+                }
+            }
+        }
+        let sheet: Vec<Vec<Panel<'_>>> =
+            rows.iter().map(|(distance, row)| row.iter().map(|shown| shown.panel(*distance)).collect()).collect();
+        self.write_sheet(stem, Sheet::of_rows(&sheet))
+    }
+
+    fn write_sheet(&self, stem: &str, sheet: Option<Sheet>) -> Result<String, RenderError> {
+        let path = self.args.output.join(format!("{stem}.png"));
+        let encoded = match sheet {
+            Some(sheet) => encode_png(&sheet.rgba, sheet.width, sheet.height),
+            None => Err("more pixels than a file can hold".to_owned()),
+        };
+        self.write_file(path, encoded)
+    }
+
+    fn write_file(&self, path: PathBuf, encoded: Result<Vec<u8>, String>) -> Result<String, RenderError> {
+        if self.input.is_some() && fs::canonicalize(&path).ok() == self.input {
+            return Err(RenderError::OverInput { path });
+        }
+        let bytes = encoded.map_err(|reason| RenderError::Encode { path: path.clone(), reason })?;
+        write_file(&path, &bytes)?;
+        Ok(path.display().to_string())
+    }
+}

@@ -1,0 +1,208 @@
+//! Drawing: one filtered sample per pixel as hardware shades, or many unfiltered ones.
+
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use rayon::prelude::*;
+
+use super::environment::Radiance;
+use super::material::Material;
+use super::sampler::{Filter, Texture};
+use super::scene::Scene;
+use super::shade::Shader;
+use super::shape::Hit;
+use crate::judge::vector::Vector;
+
+/// A picture of linear radiance.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    /// Columns and rows.
+    pub size: [u32; 2],
+    /// Red, green and blue of each pixel, rows top to bottom.
+    pub pixels: Vec<[f32; 3]>,
+    /// Share of each pixel that the surface covers.
+    pub coverage: Vec<f32>,
+}
+
+/// Told the share of the work that is done, from any thread.
+pub type Advance<'a> = &'a (dyn Fn(f32) + Sync);
+
+/// Places in a pixel at which hardware looks for edges, along each side.
+const EDGE_SAMPLES: u32 = 4;
+
+/// Draws `material` as an engine does: shaded once per pixel with filtered textures, edges smoothed by coverage.
+pub fn filtered(scene: &Scene, material: &Material, shader: &Shader, filter: Filter, advance: Advance<'_>) -> Picture {
+    by_pixel(scene, advance, &|x, y| {
+        let places = (0..EDGE_SAMPLES * EDGE_SAMPLES).map(|i| {
+            let at = |k: u32| (f64::from(k) + 0.5) / f64::from(EDGE_SAMPLES);
+            (x + at(i % EDGE_SAMPLES), y + at(i / EDGE_SAMPLES))
+        });
+        let (mut covered, mut place, mut behind) = (0.0, [0.0; 2], [0.0; 3]);
+        for (x, y) in places {
+            let ray = scene.camera.ray(x, y);
+            if scene.shape.hit(scene.camera.eye, ray).is_some() {
+                covered += 1.0;
+                place = [place[0] + x, place[1] + y];
+            } else {
+                add(&mut behind, scene.background(ray), 1.0);
+            }
+        }
+        let count = f64::from(EDGE_SAMPLES * EDGE_SAMPLES);
+        let mut sum = behind.map(|c| c / count);
+        // Shaded in the middle of what is covered.
+        let [x, y] = place.map(|c| c / f64::max(covered, 1.0));
+        let ray = scene.camera.ray(x, y);
+        if let (true, Some(hit)) = (covered > 0.0, scene.shape.hit(scene.camera.eye, ray)) {
+            let footprint = hit.footprint(&scene.camera, x, y);
+            let read = |texture: &Texture| texture.sample(hit.uv, &footprint, filter);
+            let Shaded { light, .. } = shaded(scene, material, shader, &hit, ray, &read, None);
+            add(&mut sum, light, covered / count);
+        }
+        (sum, covered / count)
+    })
+}
+
+/// Draws `material` with `samples` unfiltered samples per pixel: nearest texels of level 0, lit as they are, and one ray
+/// into the surroundings from each. Also returns the same picture from the odd samples alone.
+///
+/// Samples count as the eye sees their facets, see [`View::visible_area`](super::View::visible_area).
+pub fn supersampled(
+    scene: &Scene,
+    material: &Material,
+    shader: &Shader,
+    samples: u32,
+    advance: Advance<'_>,
+) -> Supersampled {
+    let both = by_pixel_pair(scene, advance, &|x, y| {
+        let rotation = rotation(x as u32, y as u32);
+        // Light and area of the surface in each half, and what is seen beside it.
+        let (mut surface, mut areas) = ([[0.0; 3]; 2], [0.0; 2]);
+        let (mut behind, mut covered) = ([[0.0; 3]; 2], [0.0; 2]);
+        for i in 0..samples {
+            let [px, py, radial, turn] = even_point(i, rotation);
+            let half = (i % 2) as usize;
+            let ray = scene.camera.ray(x + px, y + py);
+            match scene.shape.hit(scene.camera.eye, ray) {
+                None => add(&mut behind[half], scene.background(ray), 1.0),
+                Some(hit) => {
+                    let read = |texture: &Texture| texture.nearest(hit.uv);
+                    let Shaded { light, area } =
+                        shaded(scene, material, shader, &hit, ray, &read, Some([radial, turn]));
+                    add(&mut surface[half], light, area);
+                    areas[half] += area;
+                    covered[half] += 1.0;
+                }
+            }
+        }
+        let mean = |surface: Radiance, area: f64, covered: f64, behind: Radiance, count: u32| {
+            let share = if area > 0.0 { covered / area } else { 0.0 };
+            [0, 1, 2].map(|c| (share * surface[c] + behind[c]) / f64::from(count.max(1)))
+        };
+        let both = |values: [Radiance; 2]| [0, 1, 2].map(|c| values[0][c] + values[1][c]);
+        let covered_by_both = covered[0] + covered[1];
+        let all = mean(both(surface), areas[0] + areas[1], covered_by_both, both(behind), samples);
+        let odd = mean(surface[1], areas[1], covered[1], behind[1], samples / 2);
+        (all, odd, covered_by_both / f64::from(samples))
+    });
+    let pixels = |half: usize| both.iter().map(|(values, _)| values[half]).collect();
+    let coverage: Vec<f32> = both.iter().map(|(_, coverage)| *coverage).collect();
+    let size = scene.camera.size;
+    Supersampled {
+        picture: Picture { size, pixels: pixels(0), coverage: coverage.clone() },
+        half: Picture { size, pixels: pixels(1), coverage },
+    }
+}
+
+/// The truth, and how sure it is.
+pub struct Supersampled {
+    /// From all samples.
+    pub picture: Picture,
+    /// From every other sample.
+    pub half: Picture,
+}
+
+/// What a point sends to the eye, and how much of its facet the eye sees.
+struct Shaded {
+    light: Radiance,
+    area: f64,
+}
+
+fn shaded(
+    scene: &Scene,
+    material: &Material,
+    shader: &Shader,
+    hit: &Hit,
+    ray: Vector,
+    read: &dyn Fn(&Texture) -> [f64; 4],
+    facet: Option<[f64; 2]>,
+) -> Shaded {
+    let point = material.point(read);
+    let view = shader.view(&point, hit.to_tangent(ray).map(|c| -c));
+    let to_world = |d: Vector| hit.to_world(d);
+    let mut sum = match facet {
+        None => view.of_environment(&scene.environment, &to_world),
+        Some(facet) => view.of_environment_at(facet, &scene.environment, &to_world),
+    };
+    if let Some(light) = &scene.light {
+        let (toward, irradiance) = light.at(hit.position);
+        let share = view.of_light(hit.to_tangent(toward));
+        add(&mut sum, [irradiance; 3], share);
+    }
+    Shaded { light: sum, area: view.visible_area() }
+}
+
+fn add(sum: &mut Radiance, value: Radiance, weight: f64) {
+    for (sum, value) in sum.iter_mut().zip(value) {
+        *sum += weight * value;
+    }
+}
+
+type Pixel<'a, T> = &'a (dyn Fn(f64, f64) -> T + Sync);
+
+/// Runs `pixel` for each pixel; the result does not depend on the threads.
+fn rows<T: Send>(scene: &Scene, advance: Advance<'_>, pixel: Pixel<'_, T>) -> Vec<T> {
+    let [width, height] = scene.camera.size;
+    let done = AtomicU32::new(0);
+    let row = |y: u32| {
+        let row: Vec<T> = (0..width).map(|x| pixel(f64::from(x), f64::from(y))).collect();
+        advance((done.fetch_add(1, Ordering::Relaxed) + 1) as f32 / height as f32);
+        row
+    };
+    (0..height).into_par_iter().flat_map_iter(row).collect()
+}
+
+fn by_pixel(scene: &Scene, advance: Advance<'_>, pixel: Pixel<'_, (Radiance, f64)>) -> Picture {
+    let (pixels, coverage) =
+        rows(scene, advance, pixel).into_iter().map(|(value, c)| (value.map(|v| v as f32), c as f32)).unzip();
+    Picture { size: scene.camera.size, pixels, coverage }
+}
+
+/// Two values of a pixel and its coverage.
+type Pair = ([[f32; 3]; 2], f32);
+
+fn by_pixel_pair(scene: &Scene, advance: Advance<'_>, pixel: Pixel<'_, (Radiance, Radiance, f64)>) -> Vec<Pair> {
+    let narrow = |value: Radiance| value.map(|v| v as f32);
+    rows(scene, advance, pixel).into_iter().map(|(a, b, c)| ([narrow(a), narrow(b)], c as f32)).collect()
+}
+
+/// Point `i` of a sequence that fills the four-dimensional unit cube evenly (M. Roberts, "The unreasonable effectiveness of
+/// quasirandom sequences", 2018: the root of x^5 = x + 1), shifted by `rotation`.
+fn even_point(i: u32, rotation: [f64; 4]) -> [f64; 4] {
+    const ROOT: f64 = 1.167_303_978_261_418_7;
+    let mut step = 1.0;
+    rotation.map(|start| {
+        step /= ROOT;
+        (start + f64::from(i + 1) * step).fract()
+    })
+}
+
+/// A shift for each pixel, so that the sequence's pattern does not show (R. Cranley, T. Patterson, 1976); its bits by the
+/// finaliser of MurmurHash3.
+fn rotation(x: u32, y: u32) -> [f64; 4] {
+    [1, 2, 3, 4].map(|salt: u32| {
+        let mut bits = x.wrapping_mul(0x9e37_79b9) ^ y.wrapping_mul(0x85eb_ca6b).rotate_left(13) ^ (salt << 27);
+        for multiplier in [0x85eb_ca6b, 0xc2b2_ae35] {
+            bits = (bits ^ (bits >> 15)).wrapping_mul(multiplier);
+        }
+        f64::from(bits ^ (bits >> 16)) / 4_294_967_296.0
+    })
+}
