@@ -62,8 +62,11 @@ fn print_row(map: &str, alpha: f32, level: &str, errors: &[f64; COLUMNS]) {
     println!();
 }
 
+/// A level and its mean errors.
+type Row = (u32, [f64; COLUMNS]);
+
 /// Mean errors of each level. Only normals differ between columns: the lobes are those of half floats.
-fn errors_by_level(image: &Image, alpha: f32, texels: usize) -> Result<Vec<(u32, [f64; COLUMNS])>, Box<dyn Error>> {
+fn errors_by_level(image: &Image, alpha: f32, texels: usize) -> Result<Vec<Row>, Box<dyn Error>> {
     let map = || NormalMap::new(image.clone(), NormalLayout::Auto, false);
     let surface = Surface::of_map(&map()?, SquaredAlpha::isotropic(Alpha(alpha)));
     let relief = Relief::Normals(map()?);

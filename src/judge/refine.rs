@@ -15,16 +15,15 @@ pub fn refine(reference: &Reference, start: &Lobe) -> Lobe {
     let mut best = (*start, reference.error(start));
     let mut steps = STEPS;
     for _ in 0..ROUNDS {
-        for direction in 0..4 {
-            let step = steps[direction];
+        for (direction, step) in steps.iter_mut().enumerate() {
             let moved = [1.0, -1.0].into_iter().find_map(|sign| {
-                let lobe = neighbour(reference.family(), &best.0, direction, sign * step);
+                let lobe = neighbour(reference.family(), &best.0, direction, sign * *step);
                 let error = reference.error(&lobe);
                 (error < best.1).then_some((lobe, error))
             });
             match moved {
                 Some(better) => best = better,
-                None => steps[direction] *= 0.5,
+                None => *step *= 0.5,
             }
         }
     }

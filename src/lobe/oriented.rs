@@ -8,7 +8,7 @@ use crate::bump::{Offset, normal_from_offset};
 pub struct OrientedLobe {
     /// Unit normal in (T, B, N), with z > 0.
     pub normal: [f32; 3],
-    /// Squared alphas in the [`frame`] of the normal.
+    /// Squared alphas along T made perpendicular to the normal, and B = N x T.
     pub squared_alpha: SquaredAlpha,
 }
 

@@ -39,12 +39,12 @@ impl Distribution {
         let shape = Shape::of(m);
         let mut centre = m.moments.mean;
         let mut corrected = [0.0; 2];
-        for k in 0..2 {
+        for (k, corrected) in corrected.iter_mut().enumerate() {
             let [x, y] = shape.axes[k];
             let variance = shape.variance[k];
             let squared_alpha = own.0.uu * x * x + 2.0 * own.0.uv * x * y + own.0.vv * y * y;
             let place = Place::new(shape.kurtosis[k], variance, squared_alpha);
-            corrected[k] = variance
+            *corrected = variance
                 * match self {
                     Self::Auto => place.interpolate(&table::FACTOR),
                     Self::Normal => place.along(&table::NORMAL),
