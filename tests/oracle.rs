@@ -5,7 +5,7 @@ use std::path::Path;
 use roughcast::bake::report::Content;
 use roughcast::bake::{Model, OwnRoughness, Relief, Settings, bake_map};
 use roughcast::bump::{Offset, Outliers};
-use roughcast::lobe::SquaredAlpha;
+use roughcast::lobe::{Family, SquaredAlpha};
 use roughcast::map::{DecodeOptions, Image, NormalLayout, NormalMap, Samples, decode};
 use roughcast::pyramid::{Moments, ShapedMoments};
 use roughcast::roughness::Distribution;
@@ -66,7 +66,7 @@ fn oracle(normals: &Image, roughness: Option<&Image>, factor: f64, level: u32, x
     let covariance = Symmetric2::new(k(0, 0) as f32, k(0, 1) as f32, k(1, 1) as f32);
     let own = SquaredAlpha(Symmetric2::diagonal(base as f32, base as f32));
     let moments = ShapedMoments::normal(Moments { mean: Offset::default(), covariance });
-    let folded = own.fold(Distribution::Normal.correct(&moments, own).covariance).0;
+    let folded = own.fold(Distribution::Normal.correct(&moments, own, Family::Ggx).covariance).0;
     let length = (mean[0] * mean[0] + mean[1] * mean[1] + 1.0).sqrt();
     Expected {
         normal: [-mean[0] / length, -mean[1] / length, 1.0 / length],

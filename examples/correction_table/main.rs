@@ -12,6 +12,8 @@ use roughcast::judge::{Family, Footprint, Lobe, Part, Reference};
 use roughcast::pyramid::{Merge, Moments, ShapedMoments};
 use roughcast::roughness::{KURTOSES, Lattice, Place, RATIOS, Shape};
 
+const FAMILIES: [(&str, &str, Family); 2] =
+    [("GGX", "Trowbridge-Reitz.", Family::Ggx), ("BECKMANN", "Normally distributed slopes.", Family::Beckmann)];
 const FOOTPRINTS: usize = 6000;
 const SAMPLES: usize = 1024;
 /// Steepest slope: small enough that a tilted lobe is a shifted one, as the tables assume.
@@ -21,6 +23,7 @@ const SMOOTHNESS: f64 = 2.0;
 
 /// A footprint with what the tables know of it.
 struct Case {
+    family: Family,
     reference: Reference,
     shape: Shape,
     places: [Place; 2],
@@ -28,7 +31,7 @@ struct Case {
 }
 
 impl Case {
-    fn draw(random: &mut synthetic::Random) -> Self {
+    fn draw(family: Family, random: &mut synthetic::Random) -> Self {
         let offsets = synthetic::footprint(random);
         let ratio = libm::exp2(random.range(-2.0, 5.0));
         let steepest = offsets.iter().map(|[u, v]| (u * u + v * v).sqrt()).fold(0.0, f64::max);
@@ -43,7 +46,8 @@ impl Case {
         let weights = vec![weight as f32; offsets.len()];
         let shape = Shape::of(&ShapedMoments::merge(&weights, &offsets.iter().map(flat).collect::<Vec<_>>()));
         let place = |k: usize| Place::new(shape.kurtosis[k], shape.variance[k], (alpha * alpha) as f32);
-        Self { reference: Reference::new(Family::Ggx, &footprint, SAMPLES), shape, places: [place(0), place(1)], alpha }
+        let reference = Reference::new(family, &footprint, SAMPLES);
+        Self { family, reference, shape, places: [place(0), place(1)], alpha }
     }
 
     fn error(&self, tables: &Tables) -> f64 {
@@ -56,7 +60,7 @@ impl Case {
             let shift = f64::from(self.shape.skewness[k] * self.places[k].interpolate(&tables[1])).clamp(-1.0, 1.0);
             centre = [centre[0] - shift * variance.sqrt() * x, centre[1] - shift * variance.sqrt() * y];
         }
-        self.reference.error(&Lobe::new(Family::Ggx, [-centre[0], -centre[1], 1.0], a))
+        self.reference.error(&Lobe::new(self.family, [-centre[0], -centre[1], 1.0], a))
     }
 }
 
@@ -64,8 +68,21 @@ impl Case {
 type Tables = [Lattice; 2];
 
 fn main() {
+    println!(
+        "//! Correction factors and shifts of the centre, by deviation over alpha (1/4 to 32, a row each) and kurtosis"
+    );
+    println!("//! (1 to 64). Fitted and printed by `cargo run --release --example correction_table`.");
+    println!("\nuse super::lattice::Table;");
+    for (name, doc, family) in FAMILIES {
+        let columns = synthetic::COLUMNS.map(|(field, quantile)| (field, column(family, quantile)));
+        print(name, doc, &fit(family), &columns);
+    }
+}
+
+/// Coordinate by coordinate, with steps that shrink.
+fn fit(family: Family) -> Tables {
     let mut random = synthetic::Random::new(1997);
-    let cases: Vec<Case> = (0..FOOTPRINTS).map(|_| Case::draw(&mut random)).collect();
+    let cases: Vec<Case> = (0..FOOTPRINTS).map(|_| Case::draw(family, &mut random)).collect();
     let mut users = vec![Vec::new(); RATIOS * KURTOSES];
     for (index, case) in cases.iter().enumerate() {
         for place in case.places {
@@ -79,7 +96,7 @@ fn main() {
     }
     let mut tables: Tables = [[[0.6; KURTOSES]; RATIOS], [[0.1; KURTOSES]; RATIOS]];
     let mean = |tables: &Tables| cases.par_iter().map(|c| c.error(tables)).collect::<Vec<_>>().iter().sum::<f64>();
-    eprintln!("mean lobe error at the start {:.4}", mean(&tables) / FOOTPRINTS as f64);
+    eprintln!("{family:?}: mean lobe error at the start {:.4}", mean(&tables) / FOOTPRINTS as f64);
     for step in [0.2, 0.1, 0.05, 0.05, 0.025, 0.025, 0.0125] {
         for table in 0..2 {
             for i in 0..RATIOS {
@@ -106,25 +123,26 @@ fn main() {
         }
         eprintln!("steps of {step}: {:.4}", mean(&tables) / FOOTPRINTS as f64);
     }
-    print(&tables, &synthetic::COLUMNS.map(|(_, quantile)| column(quantile)));
+    tables
 }
 
 /// The best c at each ratio for footprints whose axes are alike and have these quantiles.
-fn column(quantile: fn(f64) -> f64) -> [f32; RATIOS] {
-    const QUANTILES: usize = 24;
-    let quantiles: Vec<f64> = (0..QUANTILES).map(|i| quantile((i as f64 + 0.5) / QUANTILES as f64)).collect();
-    let variance = quantiles.iter().map(|q| q * q).sum::<f64>() / QUANTILES as f64;
+fn column(family: Family, quantile: fn(f64) -> f64) -> [f32; RATIOS] {
     std::array::from_fn(|i| {
         let ratio = libm::exp2(i as f64 - 2.0);
+        // As dense as the lobe is wide, or its peaks would stand apart.
+        let count = (4.0 * ratio).max(96.0);
+        let quantiles: Vec<f64> = (0..count as u32).map(|i| quantile((f64::from(i) + 0.5) / count)).collect();
+        let variance = quantiles.iter().map(|q| q * q).sum::<f64>() / count;
         let deviation = STEEPEST * ratio.min(1.0) / 4.0;
         let (scale, alpha) = (deviation / variance.sqrt(), deviation / ratio);
         let base = [alpha * alpha, 0.0, alpha * alpha];
         let parts = quantiles.iter().flat_map(|u| quantiles.iter().map(move |v| [u * scale, v * scale]));
         let parts = parts.map(|[u, v]| Part { weight: 1.0, normal: [-u, -v, 1.0], base }).collect();
-        let reference = Reference::new(Family::Ggx, &Footprint::new(parts).expect("there are parts"), 8 * SAMPLES);
+        let reference = Reference::new(family, &Footprint::new(parts).expect("there are parts"), 8 * SAMPLES);
         let error = |c: f64| {
             reference.error(&Lobe::isotropic(
-                Family::Ggx,
+                family,
                 [0.0, 0.0, 1.0],
                 (base[0] + 2.0 * c * deviation * deviation).sqrt(),
             ))
@@ -141,24 +159,17 @@ fn roughness_of(table: &Lattice, i: usize, j: usize) -> f64 {
     SMOOTHNESS * differences.map(|d| f64::from(d * d)).sum::<f64>()
 }
 
-fn print(tables: &Tables, columns: &[[f32; RATIOS]; 2]) {
-    println!(
-        "//! Correction factor and shift of the centre for GGX lobes, by deviation over alpha (1/4 to 32, a row each) and"
-    );
-    println!("//! kurtosis (1 to 64). Fitted and printed by `cargo run --release --example correction_table`.");
-    println!();
-    println!("use super::lattice::{{Lattice, RATIOS}};");
-    for (name, doc, table) in
-        [("FACTOR", "c.", &tables[0]), ("SHIFT", "Shift of the centre, in deviations for a skewness of 1.", &tables[1])]
-    {
-        println!("\n/// {doc}\npub const {name}: Lattice = [");
+fn print(name: &str, doc: &str, tables: &Tables, columns: &[(&str, [f32; RATIOS])]) {
+    println!("\n/// {doc}\npub const {name}: Table = Table {{");
+    for (field, table) in ["factor", "shift"].iter().zip(tables) {
+        println!("    {field}: [");
         for row in table {
-            println!("    [{}],", row.map(|v| format!("{v:.3}")).join(", "));
+            println!("        [{}],", row.map(|v| format!("{v:.3}")).join(", "));
         }
-        println!("];");
+        println!("    ],");
     }
-    for ((name, _), column) in synthetic::COLUMNS.iter().zip(columns) {
-        println!("\n/// c for a {} distribution, by ratio.", name.to_lowercase());
-        println!("pub const {name}: [f32; RATIOS] = [{}];", column.map(|v| format!("{v:.2}")).join(", "));
+    for (field, column) in columns {
+        println!("    {field}: [{}],", column.map(|v| format!("{v:.2}")).join(", "));
     }
+    println!("}};");
 }

@@ -157,7 +157,7 @@ pub fn footprint(r: &mut Random) -> Vec<[f64; 2]> {
 type Quantile = fn(f64) -> f64;
 
 /// Distributions with a column of their own, by their quantiles.
-pub const COLUMNS: [(&str, Quantile); 2] = [("NORMAL", normal_quantile), ("UNIFORM", |p| p - 0.5)];
+pub const COLUMNS: [(&str, Quantile); 2] = [("normal", normal_quantile), ("uniform", |p| p - 0.5)];
 
 /// By bisection of the distribution function.
 fn normal_quantile(p: f64) -> f64 {

@@ -7,9 +7,9 @@ use super::bumps::Bumps;
 use super::relief::Relief;
 use super::settings::Settings;
 use crate::bump::Offset;
-use crate::judge::{Family, Footprint, Lobe, Part, Reference, overlaps, refine};
-use crate::lobe::{OrientedLobe, SquaredAlpha};
-use crate::pyramid::{Area, Level, Moments, Pyramid, Rows, ShapedMoments, build};
+use crate::judge::{Footprint, Lobe, Part, Reference, overlaps, refine};
+use crate::lobe::{Family, OrientedLobe, SquaredAlpha};
+use crate::pyramid::{Area, Level, Moments, Pyramid, Rows, Shaped, ShapedMoments, build};
 use crate::roughness::Distribution;
 use crate::symmetric::Symmetric2;
 use crate::texture::uastc::Effort;
@@ -21,19 +21,24 @@ pub struct Lobes<'a> {
 }
 
 impl<'a> Lobes<'a> {
-    /// `base` on the grid of `bumps`, whose offsets are multiplied by `slope_scale`. Levels 1 and coarser are merged from
-    /// level to level by likelihood where the distribution is the bumps' own (and then fitted, for the best quality), else
-    /// folded by its correction factor.
+    /// `base` on the grid of `bumps`, whose offsets are multiplied by `slope_scale`. Levels 1 and coarser of GGX lobes are
+    /// merged from level to level by likelihood where the distribution is the bumps' own, else folded by its correction
+    /// factor. The best quality then fits them to the bumps' own distribution.
     pub fn new<'b: 'a>(base: &Pyramid<BaseRows<'a>>, bumps: &Bumps<'b>, slope_scale: f32, settings: &Settings) -> Self {
         let finest = Finest { base: base.source().clone(), bumps: bumps.rows, slope_scale };
-        let coarser = match settings.distribution {
-            Distribution::Auto => match settings.effort {
-                Effort::Fast => build(&finest),
-                Effort::Best => fitted(&finest, &build(&finest)),
-            },
-            distribution @ (Distribution::Normal | Distribution::Uniform) => {
-                let levels = bumps.sizes().into_iter().enumerate().skip(1);
-                levels.map(|(level, size)| finest.folded(level, size, base, bumps.moments(), distribution)).collect()
+        let folded = || finest.folded(base, bumps, settings);
+        let coarser = match (settings.distribution, settings.effort) {
+            (Distribution::Normal | Distribution::Uniform, _) => folded(),
+            (Distribution::Auto, effort) => {
+                let merged = match settings.family {
+                    Family::Ggx => build(&finest),
+                    // Merging normal distributions by likelihood is adding moments.
+                    Family::Beckmann => folded(),
+                };
+                match effort {
+                    Effort::Fast => merged,
+                    Effort::Best => fitted(&finest, &merged, settings.family),
+                }
             }
         };
         Self { finest, coarser }
@@ -85,16 +90,20 @@ const FIT_SAMPLES: usize = 128;
 
 /// `merged` fitted to the lobes [`FIT_DEPTH`] levels finer (level 0 for levels 2 and 3) by the lobe error itself. Level 1
 /// stays as merged: four texels are too few to fit to.
-fn fitted(finest: &Finest<'_>, merged: &[Level<OrientedLobe>]) -> Vec<Level<OrientedLobe>> {
+fn fitted(finest: &Finest<'_>, merged: &[Level<OrientedLobe>], family: Family) -> Vec<Level<OrientedLobe>> {
     let fit = |(index, level): (usize, &Level<OrientedLobe>)| match (index + 1, (index + 1).saturating_sub(FIT_DEPTH)) {
         (1, _) => level.clone(),
-        (_, 0) => fitted_to(finest, level),
-        (_, source) => fitted_to(&merged[source - 1], level),
+        (_, 0) => fitted_to(finest, level, family),
+        (_, source) => fitted_to(&merged[source - 1], level, family),
     };
     merged.iter().enumerate().map(fit).collect()
 }
 
-fn fitted_to<R: Rows<Texel = OrientedLobe>>(source: &R, merged: &Level<OrientedLobe>) -> Level<OrientedLobe> {
+fn fitted_to<R: Rows<Texel = OrientedLobe>>(
+    source: &R,
+    merged: &Level<OrientedLobe>,
+    family: Family,
+) -> Level<OrientedLobe> {
     let (width, height) = (merged.width, merged.height);
     let mut texels = merged.texels.clone();
     texels.par_chunks_mut(width as usize).enumerate().for_each(|(y, out)| {
@@ -107,12 +116,12 @@ fn fitted_to<R: Rows<Texel = OrientedLobe>>(source: &R, merged: &Level<OrientedL
             let across = overlaps(source.width(), width, x as u32);
             let parts = rows.chunks_exact(source.width() as usize).zip(&down).flat_map(|(row, (_, share_y))| {
                 across.iter().map(move |(source_x, share_x)| {
-                    let lobe = judged(&row[*source_x as usize]);
+                    let lobe = judged(family, &row[*source_x as usize]);
                     Part { weight: share_x * share_y, normal: lobe.normal(), base: lobe.squared_alpha() }
                 })
             });
             let Some(footprint) = Footprint::new(parts.collect()) else { continue };
-            let fit = refine(&Reference::new(Family::Ggx, &footprint, FIT_SAMPLES), &judged(texel));
+            let fit = refine(&Reference::new(family, &footprint, FIT_SAMPLES), &judged(family, texel));
             let [uu, uv, vv] = fit.squared_alpha().map(|a| a as f32);
             let squared_alpha = SquaredAlpha(Symmetric2::new(uu, uv, vv));
             *texel = OrientedLobe { normal: fit.normal().map(|c| c as f32), squared_alpha };
@@ -121,9 +130,9 @@ fn fitted_to<R: Rows<Texel = OrientedLobe>>(source: &R, merged: &Level<OrientedL
     Level { width, height, texels }
 }
 
-fn judged(lobe: &OrientedLobe) -> Lobe {
+fn judged(family: Family, lobe: &OrientedLobe) -> Lobe {
     let a = lobe.squared_alpha.0;
-    Lobe::new(Family::Ggx, lobe.normal.map(f64::from), [a.uu, a.uv, a.vv].map(f64::from))
+    Lobe::new(family, lobe.normal.map(f64::from), [a.uu, a.uv, a.vv].map(f64::from))
 }
 
 /// Level 0.
@@ -134,31 +143,48 @@ struct Finest<'a> {
 }
 
 impl Finest<'_> {
-    fn scaled(&self, m: &Moments) -> Moments {
-        let scale = [self.slope_scale; 2];
-        Moments {
-            mean: Offset { u: m.mean.u * self.slope_scale, v: m.mean.v * self.slope_scale },
-            covariance: m.covariance.scaled(scale),
+    fn folded(&self, base: &Pyramid<BaseRows<'_>>, bumps: &Bumps<'_>, settings: &Settings) -> Vec<Level<OrientedLobe>> {
+        let levels = bumps.sizes().into_iter().enumerate().skip(1);
+        match settings.distribution {
+            Distribution::Auto => {
+                let moments = Pyramid::new(Shaped(bumps.rows));
+                let row = |level, y, out: &mut [ShapedMoments]| moments.row(level, y, out);
+                levels.map(|(level, size)| self.folded_level(level, size, base, row, settings)).collect()
+            }
+            Distribution::Normal | Distribution::Uniform => {
+                let moments = bumps.moments();
+                let row = |level, y, out: &mut [ShapedMoments]| {
+                    let mut plain = vec![Moments::default(); out.len()];
+                    moments.row(level, y, &mut plain);
+                    out.iter_mut().zip(plain).for_each(|(shaped, m)| *shaped = ShapedMoments::normal(m));
+                };
+                levels.map(|(level, size)| self.folded_level(level, size, base, row, settings)).collect()
+            }
         }
     }
 
-    fn folded(
+    fn folded_level(
         &self,
         level: usize,
         (width, height): (u32, u32),
         base: &Pyramid<BaseRows<'_>>,
-        moments: &Pyramid<Area<&Relief>>,
-        distribution: Distribution,
+        bumps: impl Fn(usize, u32, &mut [ShapedMoments]) + Sync,
+        settings: &Settings,
     ) -> Level<OrientedLobe> {
+        let squared_scale = (self.slope_scale * self.slope_scale).max(f32::MIN_POSITIVE);
         let mut texels = vec![OrientedLobe::default(); width as usize * height as usize];
         texels.par_chunks_mut(width as usize).enumerate().for_each(|(y, out)| {
-            let (mut own, mut bumps) = (vec![BaseTexel::default(); out.len()], vec![Moments::default(); out.len()]);
+            let (mut own, mut row) = (vec![BaseTexel::default(); out.len()], vec![ShapedMoments::default(); out.len()]);
             base.row(level, y as u32, &mut own);
-            moments.row(level, y as u32, &mut bumps);
-            for ((lobe, texel), m) in out.iter_mut().zip(&own).zip(&bumps) {
-                let (m, own) = (self.scaled(m), own_lobe(texel));
-                let corrected = distribution.correct(&ShapedMoments::normal(m), own);
-                *lobe = OrientedLobe::new(corrected.centre, own.fold(corrected.covariance));
+            bumps(level, y as u32, &mut row);
+            for ((lobe, texel), m) in out.iter_mut().zip(&own).zip(&row) {
+                // The correction depends on the ratio of both: widths are scaled instead of four orders of moments.
+                let own = own_lobe(texel);
+                let unscaled = SquaredAlpha((1.0 / squared_scale) * own.0);
+                let corrected = settings.distribution.correct(m, unscaled, settings.family);
+                let Offset { u, v } = corrected.centre;
+                let centre = Offset { u: u * self.slope_scale, v: v * self.slope_scale };
+                *lobe = OrientedLobe::new(centre, own.fold(squared_scale * corrected.covariance));
             }
         });
         Level { width, height, texels }
@@ -181,8 +207,9 @@ impl Rows for Finest<'_> {
         self.base.row(y, &mut own);
         self.bumps.row(y, &mut bumps);
         for ((lobe, texel), m) in out.iter_mut().zip(&own).zip(&bumps) {
-            let m = self.scaled(m);
-            *lobe = OrientedLobe::new(m.mean, own_lobe(texel).fold(m.covariance));
+            let mean = Offset { u: m.mean.u * self.slope_scale, v: m.mean.v * self.slope_scale };
+            let covariance = m.covariance.scaled([self.slope_scale; 2]);
+            *lobe = OrientedLobe::new(mean, own_lobe(texel).fold(covariance));
         }
     }
 }

@@ -4,9 +4,10 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::chain::{Chain, Encoding, encode_chain};
+use super::settings::Settings;
 use crate::lobe::SquaredAlpha;
 use crate::pyramid::{Moments, Pyramid, Rows, ShapedMoments};
-use crate::roughness::{Distribution, Factor, lambda_1};
+use crate::roughness::{Factor, lambda_1};
 use crate::texture::EncodeError;
 
 /// What texels of 0 and 1 stand for, channel by channel: value = min + texel (max - min).
@@ -138,7 +139,7 @@ where
 
 /// The one c of a map under a lobe of `own` squared alphas: what its texels' covariances want, each as far as it is large
 /// and each level alike. 1 for a map without bumps.
-pub fn mean_correction<R>(moments: &Pyramid<R>, distribution: Distribution, own: SquaredAlpha) -> f32
+pub fn mean_correction<R>(moments: &Pyramid<R>, settings: &Settings, own: SquaredAlpha) -> f32
 where
     R: Rows<Texel = ShapedMoments>,
 {
@@ -147,7 +148,7 @@ where
         let in_row = |texels: &mut Vec<ShapedMoments>, y: u32| {
             moments.row(level, y, texels);
             texels.iter().fold([0.0; 2], |sum, m| {
-                let corrected = distribution.correct(m, own).covariance.trace();
+                let corrected = settings.distribution.correct(m, own, settings.family).covariance.trace();
                 [sum[0] + f64::from(corrected), sum[1] + f64::from(m.moments.covariance.trace())]
             })
         };

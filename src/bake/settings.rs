@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 
 use super::view::View;
 use crate::bump::Frame;
+use crate::lobe::Family;
 use crate::roughness::Distribution;
 use crate::texture::Target;
 use crate::texture::uastc::Effort;
@@ -73,6 +74,8 @@ pub struct Settings {
     pub max_error: f32,
     /// Shape that footprints are taken to have.
     pub distribution: Distribution,
+    /// What the engine shades with.
+    pub family: Family,
     /// Payload family.
     pub target: Target,
     /// Search effort of block encoders.
@@ -100,6 +103,7 @@ impl Default for Settings {
             model: Model::default(),
             max_error: 0.05,
             distribution: Distribution::default(),
+            family: Family::default(),
             target: Target::default(),
             effort: Effort::Fast,
             form: Form::default(),
@@ -126,6 +130,7 @@ impl Settings {
             "model": model,
             "maxError": f64::from(self.max_error),
             "distribution": self.distribution,
+            "lobe": self.family,
             "target": self.target,
             "quality": match self.effort {
                 Effort::Fast => "fast",

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use super::Outcome;
 use super::inputs::{self, Input, InputError};
-use super::options::{DocumentOptions, TextureOptions};
+use super::options::{DocumentOptions, LobeName, TextureOptions};
 use super::progress::Progress;
 use super::report::{Asset, Report, Status};
 use super::view::ViewOptions;
@@ -38,6 +38,9 @@ pub struct Args {
     /// Print errors only.
     #[arg(short, long, conflicts_with = "json")]
     quiet: bool,
+    /// What the engine shades with.
+    #[arg(long, value_enum, default_value_t = LobeName::Ggx)]
+    lobe: LobeName,
     #[command(flatten)]
     texture: TextureOptions,
     #[command(flatten)]
@@ -92,7 +95,8 @@ impl AssetError {
 /// # Errors
 /// When `out` or `err` cannot be written to.
 pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<Outcome> {
-    let settings = Settings { view: args.view.view(), ..args.texture.settings(Some(&args.document)) };
+    let settings =
+        Settings { view: args.view.view(), family: args.lobe.into(), ..args.texture.settings(Some(&args.document)) };
     if let Err(reason) = check_settings(&settings) {
         writeln!(err, "error: {reason}")?;
         return Ok(Outcome::Usage);

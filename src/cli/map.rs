@@ -7,7 +7,7 @@ use clap::ValueEnum;
 use serde_json::json;
 
 use super::Outcome;
-use super::options::{TextureOptions, finite, unit_interval};
+use super::options::{LobeName, TextureOptions, finite, unit_interval};
 use crate::bake::report::Content;
 use crate::bake::{
     BareBake, BareError, BareTexture, OwnRoughness, PublishError, Relief, Settings, bake_map, notes, read_file,
@@ -62,6 +62,9 @@ pub struct Args {
     /// Print errors only.
     #[arg(short, long, conflicts_with = "json")]
     quiet: bool,
+    /// What the engine shades with.
+    #[arg(long, value_enum, default_value_t = LobeName::Ggx)]
+    lobe: LobeName,
     #[command(flatten)]
     texture: TextureOptions,
 }
@@ -98,7 +101,7 @@ enum MapCommandError {
 /// # Errors
 /// When `out` or `err` cannot be written to.
 pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<Outcome> {
-    let settings = args.texture.settings(None);
+    let settings = Settings { family: args.lobe.into(), ..args.texture.settings(None) };
     if let Err(reason) = settings.target.check_available() {
         writeln!(err, "error: {reason}")?;
         return Ok(Outcome::Usage);

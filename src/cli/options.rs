@@ -4,6 +4,7 @@ use clap::{Args, ValueEnum};
 
 use crate::bake::{Form, Model, Profile, Settings};
 use crate::bump::Frame;
+use crate::lobe::Family;
 use crate::roughness::Distribution;
 use crate::texture::Target;
 use crate::texture::uastc::Effort;
@@ -21,7 +22,7 @@ pub struct TextureOptions {
     /// Largest mean lobe error (0 to 1) that leaving something out of the model may cause at any level.
     #[arg(long, default_value_t = 0.05, value_parser = unit_interval, value_name = "E")]
     max_error: f32,
-    /// Search effort of the block encoder.
+    /// How well lobes are fitted and how long block encoders search.
     #[arg(long, value_enum, default_value_t = QualityName::Fast)]
     quality: QualityName,
     /// Shape that the slopes under a texel are taken to have; auto goes by the slopes themselves.
@@ -73,6 +74,7 @@ impl TextureOptions {
             model: self.model.map_or(preset.model, Into::into),
             max_error: self.max_error,
             distribution: self.distribution.into(),
+            family: defaults.family,
             target: self.target.map_or(preset.target, Into::into),
             effort: self.quality.into(),
             form: document.and_then(|d| d.gltf).map_or(preset.form, Into::into),
@@ -142,7 +144,7 @@ names! {
     QualityName => Effort {
         /// The pace of the decoder
         Fast,
-        /// All block modes that pay
+        /// Lobes fitted to what lies three levels below; all block modes that pay
         Best,
     }
 }
@@ -156,6 +158,16 @@ names! {
         Normal,
         /// Uniform in a rectangle
         Uniform,
+    }
+}
+
+names! {
+    /// `--lobe`.
+    LobeName => Family {
+        /// GGX, as glTF prescribes
+        Ggx,
+        /// Normally distributed slopes
+        Beckmann,
     }
 }
 

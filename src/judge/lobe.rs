@@ -6,17 +6,9 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::vector::{Vector, combine, dot, frame, normalised};
+pub use crate::lobe::Family;
 
-/// A family of lobes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Family {
-    /// Trowbridge-Reitz: what glTF prescribes.
-    #[default]
-    Ggx,
-    /// Normally distributed slopes.
-    Beckmann,
-}
+use super::vector::{Vector, combine, dot, frame, normalised};
 
 /// A lobe about a normal, ready to be evaluated.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -7,11 +7,13 @@
 mod anisotropy;
 pub mod blinn_phong;
 mod distance;
+mod family;
 mod merge;
 mod oriented;
 
 pub use anisotropy::Anisotropy;
 pub use distance::{isotropic_distance, shape_distance};
+pub use family::Family;
 pub use oriented::OrientedLobe;
 
 use crate::symmetric::Symmetric2;

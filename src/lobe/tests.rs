@@ -135,9 +135,22 @@ fn the_correction_factor_is_the_best() {
         let spread = Symmetric2::diagonal((sigma * sigma) as f32, (sigma * sigma) as f32);
         let moments = ShapedMoments::normal(Moments { mean: Offset::default(), covariance: spread });
         let own = SquaredAlpha::isotropic(Alpha(alpha as f32));
-        let ours = f64::from(distribution.correct(&moments, own).covariance.uu) / (sigma * sigma);
+        let ours = f64::from(distribution.correct(&moments, own, Family::Ggx).covariance.uu) / (sigma * sigma);
         let best = (10..30).map(|i| 0.05 * f64::from(i)).min_by(|a, b| error(*a).total_cmp(&error(*b))).unwrap();
         assert!((best - ours).abs() < 0.051, "{distribution:?}: {best}");
+    }
+}
+
+/// Two normal distributions make a third whose covariance is their sum, at any ratio of their widths.
+#[test]
+fn beckmann_lobes_of_normal_bumps_want_no_correction() {
+    for ratio in [0.25, 0.5, 1.0, 2.0, 5.0, 20.0] {
+        let own = SquaredAlpha::isotropic(Alpha(0.1));
+        let covariance = Symmetric2::diagonal(0.01 * ratio * ratio, 0.01 * ratio * ratio);
+        let moments = ShapedMoments::normal(Moments { mean: Offset::default(), covariance });
+        let corrected = Distribution::Normal.correct(&moments, own, Family::Beckmann).covariance;
+        let c = corrected.uu / covariance.uu;
+        assert!((c - 1.0).abs() < 0.03, "{ratio}: {c}");
     }
 }
 

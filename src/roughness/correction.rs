@@ -1,13 +1,13 @@
 //! The correction factor c: the roughness that a lobe should have is c K, not K, and where its centre should be.
 //!
 //! c follows the shape of the distribution along each axis of K and how wide the bumps spread beside the lobe. The
-//! tables are fitted to synthetic distributions by `examples/correction_table`, which prints `table.rs`.
+//! tables of each family are fitted to synthetic distributions by `examples/correction_table`, which prints `table.rs`.
 
 use super::lattice::Place;
 use super::shape::Shape;
 use super::table;
 use crate::bump::Offset;
-use crate::lobe::SquaredAlpha;
+use crate::lobe::{Family, SquaredAlpha};
 use crate::pyramid::ShapedMoments;
 use crate::symmetric::Symmetric2;
 
@@ -35,7 +35,11 @@ pub struct Corrected {
 
 impl Distribution {
     /// Centre and c K for bumps of moments `m` under a lobe of `own` squared alphas.
-    pub fn correct(self, m: &ShapedMoments, own: SquaredAlpha) -> Corrected {
+    pub fn correct(self, m: &ShapedMoments, own: SquaredAlpha, family: Family) -> Corrected {
+        let table = match family {
+            Family::Ggx => &table::GGX,
+            Family::Beckmann => &table::BECKMANN,
+        };
         let shape = Shape::of(m);
         let mut centre = m.moments.mean;
         let mut corrected = [0.0; 2];
@@ -46,13 +50,13 @@ impl Distribution {
             let place = Place::new(shape.kurtosis[k], variance, squared_alpha);
             *corrected = variance
                 * match self {
-                    Self::Auto => place.interpolate(&table::FACTOR),
-                    Self::Normal => place.along(&table::NORMAL),
-                    Self::Uniform => place.along(&table::UNIFORM),
+                    Self::Auto => place.interpolate(&table.factor),
+                    Self::Normal => place.along(&table.normal),
+                    Self::Uniform => place.along(&table.uniform),
                 };
             if self == Self::Auto {
                 // Nothing was fitted beyond a deviation.
-                let shift = (shape.skewness[k] * place.interpolate(&table::SHIFT)).clamp(-1.0, 1.0) * variance.sqrt();
+                let shift = (shape.skewness[k] * place.interpolate(&table.shift)).clamp(-1.0, 1.0) * variance.sqrt();
                 centre.u -= shift * x;
                 centre.v -= shift * y;
             }

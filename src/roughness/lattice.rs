@@ -9,6 +9,19 @@ pub const RATIOS: usize = 8;
 /// A value at each node: ratio by ratio, kurtosis by kurtosis.
 pub type Lattice = [[f32; KURTOSES]; RATIOS];
 
+/// What is known of a family of lobes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Table {
+    /// c.
+    pub factor: Lattice,
+    /// Shift of the centre, in deviations for a skewness of 1.
+    pub shift: Lattice,
+    /// c for a normal distribution, by ratio.
+    pub normal: [f32; RATIOS],
+    /// c for a uniform distribution, by ratio.
+    pub uniform: [f32; RATIOS],
+}
+
 /// A point between four nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {

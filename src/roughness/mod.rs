@@ -7,7 +7,7 @@ mod shape;
 mod table;
 
 pub use correction::{Corrected, Distribution};
-pub use lattice::{KURTOSES, Lattice, Place, RATIOS};
+pub use lattice::{KURTOSES, Lattice, Place, RATIOS, Table};
 pub use region::Region;
 pub use shape::{CROSS_SKEWNESS, Shape};
 

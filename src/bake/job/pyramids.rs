@@ -109,7 +109,7 @@ impl Job<'_> {
         // Offsets scaled by s widen a lobe as much as they do by themselves one that is narrower by s.
         let squared = (slope_scale * slope_scale).max(f32::MIN_POSITIVE);
         let own = SquaredAlpha((1.0 / squared) * own.0);
-        mean_correction(&Pyramid::new(Shaped(bumps.rows)), self.settings.distribution, own)
+        mean_correction(&Pyramid::new(Shaped(bumps.rows)), self.settings, own)
     }
 
     /// How to read the bumps in the frame asked for, or why this layer cannot have it.

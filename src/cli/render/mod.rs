@@ -14,6 +14,8 @@ use serde::Serialize;
 use super::Outcome;
 use super::options::{TextureOptions, finite, unit_interval};
 use super::progress::Progress;
+use crate::bake::Settings;
+use crate::lobe::Family;
 use crate::render::{
     Difference, EnvironmentFilter, Filter, Reflection, Shader, Subject, Tone, filtered, highlight, relative_l1,
     supersampled,
@@ -46,7 +48,7 @@ pub struct Args {
     /// Distances from the eye to the surface, in repeats of the map; a row for each. [default: what suits the scene]
     #[arg(long, value_parser = distance, value_delimiter = ',', value_name = "D")]
     distance: Vec<f64>,
-    /// The lobe that shades.
+    /// The lobe that shades, which the columns are baked for.
     #[arg(long, value_enum, default_value_t = LobeName::Ggx)]
     lobe: LobeName,
     /// How texture filtering averages texels.
@@ -123,6 +125,16 @@ enum EnvironmentName {
     Lambda1,
     /// D spreads taps along the ellipse of reflected rays
     Ellipse,
+}
+
+impl LobeName {
+    /// What to bake for: the paper takes its lobes for normal distributions.
+    fn family(self) -> Family {
+        match self {
+            Self::Ggx => Family::Ggx,
+            Self::Beckmann | Self::BlinnPhong | Self::BlinnPhongPrinted => Family::Beckmann,
+        }
+    }
 }
 
 impl Args {
@@ -253,7 +265,8 @@ fn draw_all(args: &Args) -> Result<Vec<SheetReport>, RenderError> {
                 continue;
             }
         };
-        let materials = input.columns(&args.texture.settings(None), subject, args.roughness)?;
+        let settings = Settings { family: args.lobe.family(), ..args.texture.settings(None) };
+        let materials = input.columns(&settings, subject, args.roughness)?;
         for (done, columns) in materials.iter().enumerate() {
             let advance = |share: f32| {
                 progress.set(index, (done as f32 + share) / materials.len() as f32, &columns.name);
