@@ -231,7 +231,7 @@ impl View<'_> {
 
     /// A facet of a GGX lobe drawn from those that the eye sees (E. Heitz, "Sampling the GGX distribution of visible
     /// normals", 2018), for any factor S of A = S S^T in the place of diag(alpha_x, alpha_y). Half-vectors drawn from D
-    /// instead leave ten times the noise near grazing views.
+    /// would weigh F G (v.h) / ((n.v) (n.h)), which has no bound near grazing views.
     fn visible_facet(&self, [radial, turn]: [f64; 2]) -> Vector {
         let [uu, uv, vv] = self.lobe.squared_alpha();
         let l = uu.sqrt();
