@@ -20,6 +20,6 @@ pub use document::{CheckedDocument, check_document};
 pub use extension::{FrameName, RoughnessModel, RoughnessPyramid, TextureInfo};
 pub use findings::{Code, Finding, Findings, Severity};
 pub use origin::Origin;
-pub use render::{Report, json, text};
+pub use render::{Report, json, junit, sarif, text};
 pub use texels::MAX_LENGTH_DEVIATION;
 pub use texture::{Usage, check_texture};

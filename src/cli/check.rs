@@ -37,6 +37,10 @@ enum Format {
     Text,
     /// schemas/check.schema.json
     Json,
+    /// SARIF 2.1.0, for code hosts
+    Sarif,
+    /// JUnit XML, for CI servers
+    Junit,
 }
 
 /// A file to check.
@@ -86,10 +90,13 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
             }
         }
     }
-    match args.format {
-        Format::Text => out.write_all(check::text(&report).as_bytes())?,
-        Format::Json => out.write_all(check::json(&report).map_err(io::Error::other)?.as_bytes())?,
-    }
+    let text = match args.format {
+        Format::Text => check::text(&report),
+        Format::Json => check::json(&report)?,
+        Format::Sarif => check::sarif(&report)?,
+        Format::Junit => check::junit(&report)?,
+    };
+    out.write_all(text.as_bytes())?;
     Ok(if report.is_failure() { outcome.and(Outcome::Findings) } else { outcome })
 }
 

@@ -3,6 +3,7 @@
 mod clean;
 mod documents;
 mod fixture;
+mod formats;
 mod inspect;
 mod schemas;
 mod table;

@@ -1,4 +1,10 @@
-//! A report as text or JSON. Another form is another function beside these.
+//! A report in the forms that people and programs read.
+
+mod junit;
+mod sarif;
+
+pub use junit::junit;
+pub use sarif::sarif;
 
 use serde::Serialize;
 
