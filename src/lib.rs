@@ -11,6 +11,7 @@ pub mod bump;
 pub mod check;
 pub mod choose;
 pub mod cli;
+pub mod compare;
 pub mod gltf;
 pub mod inspect;
 pub mod judge;

@@ -2,6 +2,7 @@
 
 mod bake;
 mod check;
+mod compare;
 mod inputs;
 mod inspect;
 mod map;
@@ -34,6 +35,7 @@ enum Command {
     Map(map::Args),
     Check(check::Args),
     Inspect(inspect::Args),
+    Compare(compare::Args),
     Render(render::Args),
 }
 
@@ -91,6 +93,7 @@ pub fn run(cli: Cli, out: &mut dyn Write, err: &mut dyn Write) -> std::io::Resul
         Command::Map(args) => map::run(&args, out, err),
         Command::Check(args) => check::run(&args, out, err),
         Command::Inspect(args) => inspect::run(&args, out, err),
+        Command::Compare(args) => compare::run(&args, out, err),
         Command::Render(args) => render::run(&args, out, err),
     }
 }

@@ -62,6 +62,20 @@ impl Texture {
         texel(level, place[0].floor(), place[1].floor()).map(f64::from)
     }
 
+    /// Columns and rows of `level`, from which on all levels have those of the last.
+    pub fn size(&self, level: usize) -> (u32, u32) {
+        let level = &self.levels[level.min(self.levels.len() - 1)];
+        (level.width, level.height)
+    }
+
+    /// The texel at `uv` of the finest level that is no larger than `size`.
+    pub fn nearest_of_size(&self, (width, height): (u32, u32), uv: [f64; 2]) -> [f64; 4] {
+        let fits = |l: &&Level<Texel>| l.width <= width && l.height <= height;
+        let level = self.levels.iter().find(fits).unwrap_or(&self.levels[self.levels.len() - 1]);
+        let place = [uv[0] * f64::from(level.width), uv[1] * f64::from(level.height)];
+        texel(level, place[0].floor(), place[1].floor()).map(f64::from)
+    }
+
     /// The mean over `footprint` about `uv`.
     pub fn sample(&self, uv: [f64; 2], footprint: &Footprint, filter: Filter) -> [f64; 4] {
         let Taps { count, step, level } = self.taps(footprint, filter);

@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod bytes;
+mod compare;
 mod fixtures;
 mod notes;
 mod process;

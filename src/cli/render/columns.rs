@@ -75,7 +75,7 @@ pub fn columns(source: &Source<'_>, settings: &Settings) -> Result<Vec<Columns>,
 }
 
 /// `helmet` and `Glass / Plastic` become `helmet.Glass___Plastic`; a number is added to names that are taken.
-fn file_name(stem: &str, material: &str, taken: &mut BTreeSet<String>) -> String {
+pub fn file_name(stem: &str, material: &str, taken: &mut BTreeSet<String>) -> String {
     let safe = |c: char| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' };
     let name: String = material.chars().take(80).map(safe).collect();
     let name = if stem.is_empty() { name } else { format!("{stem}.{name}") };
@@ -86,8 +86,13 @@ fn file_name(stem: &str, material: &str, taken: &mut BTreeSet<String>) -> String
 
 /// Bakes and reads back: names and materials, in the order of the document.
 fn read(source: &Source<'_>, settings: &Settings) -> Result<Vec<(String, Material)>, RenderError> {
-    let Baked { document, files, .. } = bake(source, settings, &|_| {})?;
-    let document = Document::parse(&document)?;
+    read_back(source, &bake(source, settings, &|_| {})?, settings.max_texels)
+}
+
+/// Names and materials with bumps of what `source` became, in the order of the document.
+pub fn read_back(source: &Source<'_>, baked: &Baked, max_texels: u64) -> Result<Vec<(String, Material)>, RenderError> {
+    let Baked { document, files, .. } = baked;
+    let document = Document::parse(document)?;
     let read = |path: &Path| match files.iter().find(|file| file.path == path) {
         Some(file) => Ok(file.bytes.clone()),
         None => (source.read)(path),
@@ -98,7 +103,7 @@ fn read(source: &Source<'_>, settings: &Settings) -> Result<Vec<(String, Materia
     for material in materials(&root) {
         let material = material?;
         if let Some(layer) = material.layers.iter().find(|layer| layer.kind == LayerKind::Base) {
-            let reader = Reader { source, root: &root, material: &material.name, max_texels: settings.max_texels };
+            let reader = Reader { source, root: &root, material: &material.name, max_texels };
             let pyramid = root.pointer(&format!("/materials/{}/extensions/{EXTENSION}", material.index));
             found.push((material.name.clone(), reader.material(layer, pyramid)?));
         }

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use serde_json::json;
 
+use super::RenderError;
 use super::columns::{Columns, columns};
-use super::{Args, RenderError};
 use crate::bake::{Settings, Source, read_file};
 use crate::gltf::document::Document;
 use crate::gltf::uri::encode_path;
@@ -51,9 +51,9 @@ pub enum MapKind {
 }
 
 impl Input {
-    /// Reads what `args` name.
-    pub fn read(args: &Args) -> Result<Self, RenderError> {
-        let Some(path) = &args.input else {
+    /// Reads the file at `path`, whose heights, if it holds any, have a scale; the waves without a path.
+    pub fn read(path: Option<&Path>, height_scale: Option<f32>) -> Result<Self, RenderError> {
+        let Some(path) = path else {
             let samples = Samples::F32(waves(WAVES));
             let image = Image { width: WAVES, height: WAVES, channels: 1, samples };
             let failed = |reason| RenderError::Encode { path: "waves.exr".into(), reason };
@@ -67,7 +67,7 @@ impl Input {
             return Ok(Self::Asset { document: Box::new(Document::parse(&bytes)?), folder, stem: stem(path) });
         }
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let kind = if args.height { MapKind::Heights(args.height_scale) } else { MapKind::Normals };
+        let kind = height_scale.map_or(MapKind::Normals, MapKind::Heights);
         Ok(Self::Map { bytes, name, kind })
     }
 
@@ -78,10 +78,21 @@ impl Input {
         subject: Subject,
         roughness: Option<f32>,
     ) -> Result<Vec<Columns>, RenderError> {
+        self.with_source(subject, roughness, |source| columns(source, settings))
+    }
+
+    /// Hands the document to `then`. A bare map becomes the material of one, with `roughness`, else what suits
+    /// `subject`.
+    pub fn with_source<T>(
+        &self,
+        subject: Subject,
+        roughness: Option<f32>,
+        then: impl FnOnce(&Source<'_>) -> Result<T, RenderError>,
+    ) -> Result<T, RenderError> {
         match self {
             Self::Asset { document, folder, stem } => {
                 let read = |path: &Path| read_file(&folder.join(path));
-                columns(&Source { stem, document, read: &read }, settings)
+                then(&Source { stem, document, read: &read })
             }
             Self::Map { bytes, name, kind } => {
                 let stem = stem(Path::new(name));
@@ -112,7 +123,7 @@ impl Input {
                 let read = |path: &Path| {
                     if path == Path::new(name) { Ok(bytes.clone()) } else { Err(io::ErrorKind::NotFound.into()) }
                 };
-                columns(&Source { stem: "", document: &document, read: &read }, settings)
+                then(&Source { stem: "", document: &document, read: &read })
             }
         }
     }

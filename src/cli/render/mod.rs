@@ -1,8 +1,8 @@
 //! `roughcast render`.
 
-mod columns;
+pub(super) mod columns;
 mod error;
-mod input;
+pub(super) mod input;
 mod output;
 
 use std::io::{self, Write};
@@ -21,7 +21,7 @@ use crate::render::{
     supersampled,
 };
 use columns::{Column, Columns};
-use error::RenderError;
+pub(super) use error::RenderError;
 use input::Input;
 use output::{Folder, Shown};
 
@@ -237,7 +237,7 @@ fn summary(sheet: &SheetReport) -> String {
 }
 
 fn draw_all(args: &Args) -> Result<Vec<SheetReport>, RenderError> {
-    let input = Input::read(args)?;
+    let input = Input::read(args.input.as_deref(), args.height.then_some(args.height_scale))?;
     let folder = Folder::new(args);
     let scenes = args.scenes();
     let progress = Progress::new(scenes.len(), args.quiet);

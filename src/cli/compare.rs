@@ -1,0 +1,196 @@
+//! `roughcast compare`.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use serde_json::{Value, json};
+
+use super::Outcome;
+use super::options::{QualityName, finite, unit_interval};
+use super::progress::Progress;
+use super::render::RenderError;
+use super::render::columns::{file_name, read_back};
+use super::render::input::Input;
+use crate::bake::{BakeError, Baked, Form, Model, Settings, Source, bake, write_file};
+use crate::compare::{Comparison, OURS, Ours, chart, compare, csv, page};
+use crate::gltf::document::Document;
+use crate::gltf::material::{LayerKind, materials};
+use crate::render::{Material, Subject};
+use crate::texture::Target;
+use crate::texture::uastc::Effort;
+
+/// Chart lobe error against cost: every model, every peer and the best single lobe, on your own material.
+///
+/// Writes compare.html (all of it), compare-<material>.svg, compare.csv and compare.json. Everything but the bake times
+/// is the same in every run.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:\n  roughcast compare helmet.glb -o charts\n  \
+    roughcast compare wool_normal.png -o charts --roughness 0.3 --max-error 0.02")]
+pub struct Args {
+    /// .gltf or .glb, of which each material is charted, or a bare normal or height map.
+    input: PathBuf,
+    /// Output folder.
+    #[arg(short, long, value_name = "DIR")]
+    output: PathBuf,
+    /// Texels of each mip level that are judged: more take longer and tell more.
+    #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u16).range(1..=4096), value_name = "N")]
+    texels: u16,
+    /// INPUT is an image of heights, not of normals.
+    #[arg(long)]
+    height: bool,
+    /// Relief between heights 0 and 1, in widths of the map.
+    #[arg(long, value_parser = finite, default_value_t = 0.05, value_name = "S", allow_hyphen_values = true)]
+    height_scale: f32,
+    /// Roughness of a bare map, 0 to 1.
+    #[arg(long, value_parser = unit_interval, default_value_t = 0.3, value_name = "R")]
+    roughness: f32,
+    /// The error bound by which --model auto chooses the model that is marked.
+    #[arg(long, default_value_t = 0.05, value_parser = unit_interval, value_name = "E")]
+    max_error: f32,
+    /// The quality of the bake that is marked.
+    #[arg(long, value_enum, default_value_t = QualityName::Fast)]
+    quality: QualityName,
+    /// Largest number of texels of an input image.
+    #[arg(long, default_value_t = 1 << 28, value_name = "N")]
+    max_texels: u64,
+    /// Print the numbers as JSON.
+    #[arg(long)]
+    json: bool,
+    /// Print errors only.
+    #[arg(short, long, conflicts_with = "json")]
+    quiet: bool,
+}
+
+/// Charts what `args` name.
+///
+/// # Errors
+/// When `out` or `err` cannot be written to.
+pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<Outcome> {
+    match compare_all(args) {
+        Err(error) => {
+            writeln!(err, "error: {}: {error}", args.input.display())?;
+            Ok(Outcome::Failed)
+        }
+        Ok((comparisons, files)) => {
+            if args.json {
+                writeln!(out, "{}", text(&report(&comparisons)))?;
+            } else if !args.quiet {
+                files.iter().try_for_each(|path| writeln!(out, "{}", path.display()))?;
+                comparisons.iter().try_for_each(|comparison| out.write_all(summary(comparison).as_bytes()))?;
+            }
+            Ok(Outcome::Done)
+        }
+    }
+}
+
+fn summary(comparison: &Comparison) -> String {
+    let mut text = format!("{}\n", comparison.material.escape_debug());
+    for entry in &comparison.entries {
+        let chosen = if entry.chosen { "  chosen" } else { "" };
+        text += &format!("  {:<18} {:.3}{chosen}\n", entry.name, entry.error);
+    }
+    text
+}
+
+fn report(comparisons: &[Comparison]) -> Value {
+    json!({ "version": env!("CARGO_PKG_VERSION"), "materials": comparisons })
+}
+
+fn text(value: &Value) -> String {
+    format!("{value:#}")
+}
+
+fn compare_all(args: &Args) -> Result<(Vec<Comparison>, Vec<PathBuf>), RenderError> {
+    let input = Input::read(Some(&args.input), args.height.then_some(args.height_scale))?;
+    let comparisons = input.with_source(Subject::Plane, Some(args.roughness), |source| of_document(args, source))?;
+    let mut files = vec![
+        ("compare.html".to_owned(), page(&comparisons, env!("CARGO_PKG_VERSION"))),
+        ("compare.csv".to_owned(), csv(&comparisons)),
+        ("compare.json".to_owned(), text(&report(&comparisons)) + "\n"),
+    ];
+    let mut taken = BTreeSet::new();
+    for comparison in &comparisons {
+        let name = file_name("", &comparison.material, &mut taken);
+        files.push((format!("compare-{name}.svg"), chart(comparison)));
+    }
+    let same = |path: &Path| fs::canonicalize(path).ok().is_some_and(|p| fs::canonicalize(&args.input).ok() == Some(p));
+    let files: Vec<(PathBuf, String)> = files.into_iter().map(|(name, text)| (args.output.join(name), text)).collect();
+    if let Some((path, _)) = files.iter().find(|(path, _)| same(path)) {
+        return Err(RenderError::OverInput { path: path.clone() });
+    }
+    for (path, text) in &files {
+        write_file(path, text.as_bytes())?;
+    }
+    Ok((comparisons, files.into_iter().map(|(path, _)| path).collect()))
+}
+
+fn of_document(args: &Args, source: &Source<'_>) -> Result<Vec<Comparison>, RenderError> {
+    let root: Value = source.document.json().value("")?.unwrap_or_default();
+    let materials = materials(&root).into_iter().collect::<Result<Vec<_>, _>>()?;
+    let has_base = |layers: &[crate::gltf::material::Layer]| layers.iter().any(|l| l.kind == LayerKind::Base);
+    let bumpy: Vec<usize> = materials.iter().filter(|m| has_base(&m.layers)).map(|m| m.index).collect();
+    if bumpy.is_empty() {
+        return Err(RenderError::NoBumps);
+    }
+    let progress = Progress::new(bumpy.len(), args.quiet);
+    let mut comparisons = Vec::new();
+    for (done, &index) in bumpy.iter().enumerate() {
+        // Bytes and times are those of one material: the others are left without bumps.
+        let mut document = Document::parse(&source.document.to_bytes().map_err(BakeError::from)?)?;
+        for other in materials.iter().map(|m| m.index).filter(|other| *other != index) {
+            document.json_mut().set(&format!("/materials/{other}"), &json!({}))?;
+        }
+        let advance = |share: f32, what: &str| progress.set(done, share, what);
+        comparisons.extend(of_material(args, &Source { document: &document, ..*source }, &advance)?);
+    }
+    progress.finish();
+    Ok(comparisons)
+}
+
+/// Bakes and scores the one material of `source` that has bumps.
+fn of_material(
+    args: &Args,
+    source: &Source<'_>,
+    advance: &dyn Fn(f32, &str),
+) -> Result<Option<Comparison>, RenderError> {
+    let settings = Settings {
+        form: Form::Strict,
+        target: Target::Basis,
+        max_error: args.max_error,
+        max_texels: args.max_texels,
+        provenance: false,
+        ..Settings::default()
+    };
+    let material = |baked: &Baked| -> Result<(String, Material), RenderError> {
+        read_back(source, baked, args.max_texels)?.into_iter().next().ok_or(RenderError::NoBumps)
+    };
+    let plain = bake(source, &Settings { model: Model::None, target: Target::Float, ..settings }, &|_| {})?;
+    let (name, truth) = material(&plain)?;
+    let quality = Effort::from(args.quality);
+    let auto = bake(source, &Settings { model: Model::Auto, effort: quality, ..settings }, &|_| {})?;
+    let layer = auto.report.layers.iter().find(|l| l.layer == LayerKind::Base && l.model.is_some());
+    let chosen = layer.and_then(|l| l.model);
+    let mut ours = Vec::with_capacity(OURS);
+    for (model, model_name) in
+        [(Model::None, "none"), (Model::Isotropic, "isotropic"), (Model::Anisotropic, "anisotropic")]
+    {
+        for (effort, effort_name) in [(Effort::Fast, "fast"), (Effort::Best, "best")] {
+            let start = Instant::now();
+            let baked = bake(source, &Settings { model, effort, ..settings }, &|_| {})?;
+            let seconds = start.elapsed().as_secs_f64();
+            ours.push(Ours {
+                name: format!("ours, {model_name}, {effort_name}"),
+                material: material(&baked)?.1,
+                file_bytes: baked.report.textures.iter().map(|t| t.bytes as u64).sum(),
+                seconds,
+                chosen: chosen == Some(model) && effort == quality,
+            });
+            advance(ours.len() as f32 / (2 * OURS) as f32, &name);
+        }
+    }
+    let scored = |share: f32| advance(0.5 + 0.5 * share, &name);
+    Ok(ours.try_into().ok().and_then(|ours| compare(&name, &truth, ours, usize::from(args.texels), &scored)))
+}
