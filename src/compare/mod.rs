@@ -1,7 +1,8 @@
 //! Error against cost: every model of ours and every peer on one material, scored by [`crate::judge`].
 //!
-//! The truth is level 0 of the material with unencoded normals; ours are the baked textures, decoded; peers have exact
-//! moments and are not encoded. This room takes materials as the renderer reads them, never files.
+//! The truth is level 0 of the material with unencoded normals; ours are the baked textures, decoded; peers read the
+//! encoded normals of plain mips and have exact moments for the rest. This room takes materials as the renderer reads
+//! them, never files.
 
 mod chart;
 mod cost;
@@ -86,7 +87,7 @@ pub struct Comparison {
     pub entries: Vec<Entry>,
 }
 
-/// Scores `ours` and the peers by `texels` texels of each level of up to 7. `truth` is the material with unencoded
+/// Scores `ours`, of which the first has plain mips, and the peers by `texels` texels of each level of up to 7. `truth` is the material with unencoded
 /// normals. `advance` is told the share of the work that is done. `None` for a material without a normal map.
 pub fn compare(
     name: &str,
@@ -104,7 +105,9 @@ pub fn compare(
         let chosen = sample_texels(size, texels);
         by_level.push(mean_errors(&surface, Family::Ggx, size, &chosen, |texel, footprint, reference| {
             let moments = footprint.moments();
+            let normal = lobe(&ours[0].material, size, texel).normal();
             let peers = Peer::ALL.map(|peer| peer.lobe(Family::Ggx, &moments));
+            let peers = peers.map(|peer| Lobe::new(Family::Ggx, normal, peer.squared_alpha()));
             let lobes: Vec<Lobe> = ours.iter().map(|o| lobe(&o.material, size, texel)).chain(peers).collect();
             let mut errors = [0.0; ENTRIES];
             for (error, lobe) in errors.iter_mut().zip(&lobes) {

@@ -28,8 +28,8 @@ pub fn page(comparisons: &[Comparison], version: &str) -> String {
     }
     html += "</style></head><body><h1>Lobe error against cost</h1>\
         <p>Lobe error: the share of reflected half-vectors in the wrong place, 0 to 1. Circles are bakes of Roughcast, \
-        decoded as engines decode them; squares are other tools' formulas on exact moments; the dashed line is the best \
-        single lobe. The ring is what <code>--model auto</code> takes. Bake times vary from run to run.</p>\
+        decoded as engines decode them; squares are other tools' formulas on exact moments, with our encoded normals; the dashed \
+        line is the best single lobe. The ring is what <code>--model auto</code> takes. Bake times vary from run to run.</p>\
         <fieldset><legend>Cost</legend>";
     for (i, axis) in Axis::ALL.iter().enumerate() {
         let checked = if i == 0 { " checked=\"\"" } else { "" };
