@@ -21,11 +21,12 @@ const MAPS: [&str; 5] =
 const FIXTURES: [&str; 2] = ["two_channel_normal.png", "vgroove_normal.png"];
 const ALPHAS: [f32; 4] = [0.05, 0.1, 0.2, 0.4];
 const LEVELS: std::ops::RangeInclusive<u32> = 2..=7;
-/// Ours: isotropic and anisotropic as `fast` bakes them, anisotropic as `best` does, and that without encoding.
-const OURS: [(&str, Model, Effort, Target); 4] = [
+/// Ours: isotropic and anisotropic as `fast` bakes them, anisotropic as `best` does, and both without block encoding.
+const OURS: [(&str, Model, Effort, Target); 5] = [
     ("ours, isotropic", Model::Isotropic, Effort::Fast, Target::Basis),
     ("ours, fast", Model::Anisotropic, Effort::Fast, Target::Basis),
     ("ours, best", Model::Anisotropic, Effort::Best, Target::Basis),
+    ("fast, float", Model::Anisotropic, Effort::Fast, Target::Float),
     ("best, float", Model::Anisotropic, Effort::Best, Target::Float),
 ];
 const PEERS: usize = Peer::ALL.len();
@@ -55,10 +56,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("|---|---|{}", "---|".repeat(COLUMNS));
     let mut worst =
         [(FAST, false), (BEST, false), (FAST, true), (BEST, true)].map(|case| (case, f64::NEG_INFINITY, String::new()));
-    let (mut count, mut total) = (0.0, [0.0; COLUMNS]);
+    let mut of_maps = Vec::new();
     for path in &paths {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let image = decode(&std::fs::read(path)?, &DecodeOptions::default())?;
+        let mut of_map = [0.0; COLUMNS];
         for alpha in ALPHAS {
             let levels = errors_by_level(&image, alpha, texels)?;
             let mut mean = [0.0; COLUMNS];
@@ -73,11 +75,14 @@ fn main() -> Result<(), Box<dyn Error>> {
                 mean.iter_mut().zip(errors).for_each(|(m, e)| *m += e / levels.len() as f64);
             }
             print_row(&name, &alpha.to_string(), &mean);
-            total.iter_mut().zip(mean).for_each(|(t, m)| *t += m);
-            count += 1.0;
+            of_map.iter_mut().zip(mean).for_each(|(sum, m)| *sum += m / ALPHAS.len() as f64);
         }
+        of_maps.push((name, of_map));
     }
-    print_row("all", "all", &total.map(|t| t / count));
+    let all = from_fn(|i| of_maps.iter().map(|(_, errors)| errors[i]).sum::<f64>() / of_maps.len() as f64);
+    print_row("all", "all", &all);
+    of_maps.push(("all".to_owned(), all));
+    print_ratios(&of_maps);
     println!();
     for ((column, encoded), excess, place) in worst {
         let (name, peers) = (OURS[column - PEERS].0, if encoded { "encoded" } else { "exact" });
@@ -93,6 +98,22 @@ fn print_row(map: &str, alpha: &str, errors: &[f64; COLUMNS]) {
     // Blocks want a grid of multiples of 4, where floats keep the map's own: no texel of theirs compares.
     errors.iter().for_each(|error| if error.is_nan() { print!(" - |") } else { print!(" {error:.3} |") });
     println!();
+}
+
+/// What the bars are about: ours over the oracle, and over the best isotropic peer.
+fn print_ratios(of_maps: &[(String, [f64; COLUMNS])]) {
+    print!("\n| map | best isotropic peer / oracle |");
+    OURS.iter().for_each(|ours| print!(" {} / oracle |", ours.0));
+    println!(" ours, fast / that peer | ours, best / that peer | oracle / that peer |");
+    println!("|---|---|{}---|---|---|", "---|".repeat(OURS.len()));
+    for (name, errors) in of_maps {
+        let peers = errors.iter().zip(Peer::ALL).filter(|(_, peer)| peer.is_isotropic());
+        let (peer, oracle) = (peers.map(|(e, _)| *e).fold(f64::INFINITY, f64::min), errors[COLUMNS - 1]);
+        print!("| {name} | {:.2} |", peer / oracle);
+        let ratios = errors[PEERS..COLUMNS - 1].iter().map(|e| e / oracle);
+        ratios.for_each(|r| if r.is_nan() { print!(" - |") } else { print!(" {r:.2} |") });
+        println!(" {:.3} | {:.3} | {:.3} |", errors[FAST] / peer, errors[BEST] / peer, oracle / peer);
+    }
 }
 
 /// Mean errors of each level that the map has.
