@@ -249,6 +249,7 @@ impl<'a> Assembly<'a> {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             content: texture.content.name().to_owned(),
             settings: self.settings.to_json(texture.model),
+            lobe_errors: texture.lobe_errors.clone(),
             sources,
         })
     }

@@ -4,13 +4,13 @@ use super::base::BaseRows;
 use super::bumps::Bumps;
 use super::chain::{Chain, Encoding, GridError, grid};
 use super::fold::Fold;
-use super::normals::bake_normals;
+use super::normals::Normals;
 use super::notes;
 use super::pyramids::{Quantity, Range, Ranged, bake_quantity, filter_loss};
 use super::relief::Relief;
-use super::report::Content;
+use super::report::{Choice, Content};
 use super::settings::{Model, Settings};
-use crate::choose::ModelLoss;
+use super::trial::Trial;
 use crate::map::{Image, Rgba};
 use crate::pyramid::{Pyramid, Rows};
 use crate::texture::EncodeError;
@@ -50,8 +50,8 @@ pub struct BareBake {
     pub textures: Vec<BareTexture>,
     /// What is modelled of the lost bumps.
     pub model: Model,
-    /// What smaller models would lose, where that decided.
-    pub loss: Option<ModelLoss>,
+    /// The candidates that were judged, where the surface's own lobe is known.
+    pub choice: Option<Choice>,
     /// What is not as exact as it could be, and why.
     pub notes: Vec<String>,
 }
@@ -64,9 +64,9 @@ pub fn bake_map(relief: &Relief, own: Option<&OwnRoughness>, settings: &Settings
     let mut notes = notes::of_relief(relief, bumps.size());
     let plain = |content, chain| BareTexture { content, chain, range: None };
     // Without a lobe of its own nothing tells how much of the ellipse will be seen: keep all of it.
-    let (mut model, mut loss) = match settings.model {
-        Model::Auto => (Model::Anisotropic, None),
-        model => (model, None),
+    let (mut model, mut first, mut choice) = match settings.model {
+        Model::Auto => (Model::Anisotropic, 0, None),
+        model => (model, 0, None),
     };
     let is_portable = settings.profile.is_portable();
     let fold = own.map(|own| {
@@ -78,15 +78,32 @@ pub fn bake_map(relief: &Relief, own: Option<&OwnRoughness>, settings: &Settings
         Ok::<_, BareError>((Fold::new(base, resampled.as_ref().unwrap_or(&bumps), 1.0, settings), has_own_grid))
     });
     let fold = fold.transpose()?;
-    if is_portable {
-        let lobes = fold.as_ref().filter(|(_, has_own_grid)| !has_own_grid).map(|(fold, _)| fold.lobes());
-        textures.push(plain(Content::Normal, bake_normals(&bumps, lobes, Encoding::of_normals(settings))?));
+    let lobes = fold.as_ref().filter(|(_, has_own_grid)| !has_own_grid).map(|(fold, _)| fold.lobes());
+    let normals = is_portable.then(|| Normals::new(&bumps, lobes));
+    if let Some(normals) = &normals {
+        textures.push(plain(Content::Normal, normals.bake(Encoding::of_normals(settings))?));
     }
     if let Some((fold, _)) = &fold {
-        (model, loss) = fold.model(settings, Model::Anisotropic);
+        let pyramid = || (bumps.moments(), bumps.correction(1.0, settings, fold.own_lobe()));
+        let trial = Trial {
+            fold,
+            settings,
+            normals: normals.as_ref(),
+            pyramid: settings.profile.has_pyramid().then(pyramid),
+            wrap: relief.wrap(),
+            widest: Model::Anisotropic,
+            finest: 0,
+            first: 0,
+        };
+        let judged = trial.run()?;
+        if let Some(taken) = judged.taken() {
+            (model, first) = (taken.model, taken.first);
+        }
+        notes.extend(judged.warning(settings));
+        choice = Some(judged);
         if is_portable && model != Model::None {
-            let folded = fold.bake(model, Encoding::of(settings, 3))?;
-            notes.extend(notes::of_fold(fold, model, relief.noise(), settings));
+            let folded = fold.bake(model, Encoding::of(settings, 3).starting_at(first))?;
+            notes.extend(notes::of_fold(fold, model, relief.noise()));
             textures.push(plain(Content::Roughness, folded.roughness));
             textures.extend(folded.anisotropy.map(|chain| plain(Content::Anisotropy, chain)));
         }
@@ -98,7 +115,8 @@ pub fn bake_map(relief: &Relief, own: Option<&OwnRoughness>, settings: &Settings
             Model::None | Model::Auto => None,
         };
         for (content, quantity) in [(Content::Offset, Quantity::Offset)].into_iter().chain(roughness) {
-            let encoding = Encoding::of(settings, quantity.channels() as u32);
+            let first = if quantity == Quantity::Offset { 0 } else { first };
+            let encoding = Encoding::of(settings, quantity.channels() as u32).starting_at(first);
             let Ranged { chain, range } = bake_quantity(bumps.moments(), quantity, encoding)?;
             if quantity == Quantity::Factor {
                 notes.extend(notes::of_factor(filter_loss(bumps.moments())));
@@ -107,5 +125,5 @@ pub fn bake_map(relief: &Relief, own: Option<&OwnRoughness>, settings: &Settings
         }
     }
     let is_modelled = textures.len() > 1;
-    Ok(BareBake { model: if is_modelled { model } else { Model::None }, textures, loss, notes })
+    Ok(BareBake { model: if is_modelled { model } else { Model::None }, textures, choice, notes })
 }

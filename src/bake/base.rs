@@ -1,5 +1,7 @@
 //! The material's own roughness: what its textures and factors say before any bump is lost.
 
+use rayon::prelude::*;
+
 use crate::bump::Wrap;
 use crate::lobe::{Anisotropy, Roughness};
 use crate::map::Rgba;
@@ -54,6 +56,19 @@ impl BaseRows<'_> {
     /// Whether the material is anisotropic by itself.
     pub fn is_elliptical(&self) -> bool {
         self.strength > 0.0
+    }
+
+    /// Whether red and blue of the roughness texture are the same everywhere.
+    pub fn is_plain(&self) -> bool {
+        let Some(rows) = &self.roughness else { return true };
+        let row = |y: u32| {
+            let mut row = vec![[0.0; 4]; self.width as usize];
+            rows.row(y, &mut row);
+            row
+        };
+        let sides = |texel: &[f32; 4]| [texel[0], texel[2]];
+        let first = row(0).first().map(sides);
+        (0..self.height).into_par_iter().all(|y| row(y).iter().all(|texel| Some(sides(texel)) == first))
     }
 }
 

@@ -2,8 +2,11 @@
 
 use std::cell::OnceCell;
 
+use super::pyramids::mean_correction;
 use super::relief::Relief;
-use crate::pyramid::{Area, Pyramid, Rows, level_sizes};
+use super::settings::Settings;
+use crate::lobe::SquaredAlpha;
+use crate::pyramid::{Area, Pyramid, Rows, Shaped, level_sizes};
 
 /// Level 0 of a relief on a grid, and its moments when they are asked for.
 pub struct Bumps<'a> {
@@ -31,5 +34,13 @@ impl<'a> Bumps<'a> {
     /// Means and covariances of all levels, made by the first call.
     pub fn moments(&self) -> &Pyramid<Area<&'a Relief>> {
         self.moments.get_or_init(|| Pyramid::new(self.rows))
+    }
+
+    /// c for a shader that has one for the whole map and multiplies offsets by `slope_scale`: what the levels' covariances
+    /// want on average under a lobe of `own` squared alphas.
+    pub fn correction(&self, slope_scale: f32, settings: &Settings, own: SquaredAlpha) -> f32 {
+        // Offsets scaled by s widen a lobe as much as they do by themselves one that is narrower by s.
+        let squared = (slope_scale * slope_scale).max(f32::MIN_POSITIVE);
+        mean_correction(&Pyramid::new(Shaped(self.rows)), settings, SquaredAlpha((1.0 / squared) * own.0))
     }
 }

@@ -7,7 +7,6 @@ use super::bumps::Bumps;
 use super::chain::{Chain, Encoding, encode_chain};
 use super::lobes::{Lobes, own_lobe};
 use super::settings::{Model, Settings};
-use crate::choose::ModelLoss;
 use crate::lobe::{Anisotropy, OrientedLobe, Roughness, SquaredAlpha, isotropic_distance};
 use crate::pyramid::Pyramid;
 use crate::symmetric::Symmetric2;
@@ -45,20 +44,19 @@ impl<'a> Fold<'a> {
         &self.lobes
     }
 
+    /// The material's own lobe, averaged over its map.
+    pub fn own_lobe(&self) -> SquaredAlpha {
+        own_lobe(&self.base.whole())
+    }
+
     /// Sizes of all levels, level 0 first.
     pub fn sizes(&self) -> Vec<(u32, u32)> {
         self.base.sizes()
     }
 
-    /// What each smaller model would lose, at the worst of the levels that hold lost bumps (1 and coarser).
-    pub fn loss(&self) -> ModelLoss {
-        let sizes = self.sizes();
-        let levels = sizes.iter().enumerate().skip(1).map(|(level, &(width, height))| {
-            ModelLoss::of_level(width, height, |y, out| {
-                self.row(level, y, out.len(), |x, bare, full, _| out[x] = (bare, full));
-            })
-        });
-        levels.fold(ModelLoss::default(), ModelLoss::worst)
+    /// Whether the material is anisotropic by itself.
+    pub fn is_elliptical(&self) -> bool {
+        self.is_elliptical
     }
 
     /// Texels over all levels whose lobe under `model` is wider than an engine can show.
@@ -131,56 +129,57 @@ impl<'a> Fold<'a> {
         self.lobes.whole().squared_alpha.0.eigen().axis
     }
 
-    /// The model that `settings` ask for, at most `widest`; under [`Model::Auto`] the smallest within the error bound,
-    /// with the losses that decided. A lobe that is elliptical already stays so.
-    pub fn model(&self, settings: &Settings, widest: Model) -> (Model, Option<ModelLoss>) {
-        match settings.model {
-            Model::Auto => {
-                let loss = self.loss();
-                let model = if loss.none <= settings.max_error {
-                    Model::None
-                } else if loss.isotropic <= settings.max_error && !self.is_elliptical {
-                    Model::Isotropic
-                } else {
-                    widest
-                };
-                (model, Some(loss))
-            }
-            Model::Anisotropic => (widest, None),
-            model => (model, None),
-        }
-    }
-
     /// The textures under `model`, which is [`Model::Isotropic`] or [`Model::Anisotropic`]; anything else counts as
     /// isotropic.
     pub fn bake(&self, model: Model, encoding: Encoding) -> Result<Folded, EncodeError> {
         let sizes = self.sizes();
-        let anisotropic = model == Model::Anisotropic;
-        let reference = self.reference();
-        let parameters = |a: SquaredAlpha| {
-            if anisotropic {
-                Anisotropy::of(a, reference)
-            } else {
-                let roughness = Roughness::from(a.closest_isotropic()).0.min(1.0);
-                Anisotropy { roughness: Roughness(roughness), strength: 0.0, direction: [1.0, 0.0] }
-            }
-        };
-        let roughness = encode_chain(&sizes, encoding, &|level, y, out| {
-            self.row(level, y, out.len(), |x, _, full, [red, blue]| {
-                out[x] = [red, parameters(full).roughness.0, blue, 1.0];
-            });
-        })?;
-        let anisotropy = anisotropic
-            .then(|| {
-                encode_chain(&sizes, encoding, &|level, y, out| {
-                    self.row(level, y, out.len(), |x, _, full, _| {
-                        let Anisotropy { strength, direction: [u, v], .. } = parameters(full);
-                        out[x] = [0.5 * u + 0.5, 0.5 * v + 0.5, strength, 1.0];
-                    });
-                })
-            })
+        let roughness = encode_chain(&sizes, encoding, &self.roughness_rows(model))?;
+        let anisotropy = (model == Model::Anisotropic)
+            .then(|| encode_chain(&sizes, encoding, &self.anisotropy_rows()))
             .transpose()?;
         Ok(Folded { roughness, anisotropy })
+    }
+
+    /// Rows of the roughness texture under `model`.
+    pub fn roughness_rows(&self, model: Model) -> impl Fn(usize, u32, &mut [[f32; 4]]) + Sync {
+        let axis = self.reference();
+        move |level, y, out| {
+            self.row(level, y, out.len(), |x, _, full, [red, blue]| {
+                let roughness = if model == Model::Anisotropic {
+                    Anisotropy::of(full, axis).roughness
+                } else {
+                    Roughness(Roughness::from(full.closest_isotropic()).0.min(1.0))
+                };
+                out[x] = [red, roughness.0, blue, 1.0];
+            });
+        }
+    }
+
+    /// Rows of the anisotropy texture.
+    pub fn anisotropy_rows(&self) -> impl Fn(usize, u32, &mut [[f32; 4]]) + Sync {
+        let axis = self.reference();
+        move |level, y, out| {
+            self.row(level, y, out.len(), |x, _, full, _| {
+                let Anisotropy { strength, direction: [u, v], .. } = Anisotropy::of(full, axis);
+                out[x] = [0.5 * u + 0.5, 0.5 * v + 0.5, strength, 1.0];
+            });
+        }
+    }
+
+    /// Rows of squared alphas, uu, uv, vv: of the material's own lobe, or, with the bumps `folded` in, of any size.
+    pub fn lobe_rows(&self, folded: bool) -> impl Fn(usize, u32, &mut [[f32; 4]]) + Sync {
+        move |level, y, out| {
+            self.row(level, y, out.len(), |x, bare, full, _| {
+                let a = if folded { full } else { bare }.0;
+                out[x] = [a.uu, a.uv, a.vv, 0.0];
+            });
+        }
+    }
+
+    /// Whether red and blue of the material's own roughness texture are the same everywhere, so that a smaller texture
+    /// loses nothing of them.
+    pub fn is_plain(&self) -> bool {
+        self.base.source().is_plain()
     }
 
     /// Calls `visit(x, bare lobe, folded lobe, [red, blue])` for each texel of a row.

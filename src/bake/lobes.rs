@@ -60,12 +60,6 @@ impl<'a> Lobes<'a> {
     /// Writes the offsets that a normal map should hold to `out`: where the lobes of row `y` of `level` point, before
     /// scaling.
     pub fn offsets(&self, level: usize, y: u32, out: &mut [Offset]) {
-        if level == 0 {
-            let mut bumps = vec![Moments::default(); out.len()];
-            self.finest.bumps.row(y, &mut bumps);
-            out.iter_mut().zip(bumps).for_each(|(offset, m)| *offset = m.mean);
-            return;
-        }
         let scale = 1.0 / self.finest.slope_scale;
         let mut lobes = vec![OrientedLobe::default(); out.len()];
         self.row(level, y, &mut lobes);

@@ -20,8 +20,10 @@ mod publish;
 mod pyramids;
 mod relief;
 pub mod report;
+mod sampled;
 mod settings;
 mod source;
+mod trial;
 mod view;
 
 pub use asset::{BakeError, Baked, NewFile, bake};

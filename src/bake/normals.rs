@@ -3,33 +3,66 @@
 use super::bumps::Bumps;
 use super::chain::{Chain, Encoding, encode_chain};
 use super::lobes::Lobes;
+use super::relief::Relief;
 use crate::bump::{Offset, normal_from_offset};
-use crate::pyramid::Moments;
+use crate::pyramid::{Area, Level, Moments, Rows};
 use crate::texture::EncodeError;
 
-/// The normal texture of `bumps`: x, y, z in [0, 1] with 1/2 for 0. Unit length at every level, since engines that
-/// rebuild z and engines that read it must agree. Texels point where `lobes` on the same grid do, or without them where
-/// their mean slope does.
-pub fn bake_normals(bumps: &Bumps<'_>, lobes: Option<&Lobes<'_>>, encoding: Encoding) -> Result<Chain, EncodeError> {
-    let encode = |offsets: &(dyn Fn(usize, u32, &mut [Offset]) + Sync)| {
-        encode_chain(&bumps.sizes(), encoding, &|level, y, out| {
-            let mut texels = vec![Offset::default(); out.len()];
-            offsets(level, y, &mut texels);
-            for (value, offset) in out.iter_mut().zip(texels) {
-                let [x, y, z] = normal_from_offset(offset);
-                *value = [0.5 * x + 0.5, 0.5 * y + 0.5, 0.5 * z + 0.5, 1.0];
+/// Where the texels of a normal texture point, level by level.
+pub struct Normals<'a> {
+    finest: Area<&'a Relief>,
+    coarser: Vec<Level<Offset>>,
+}
+
+impl<'a> Normals<'a> {
+    /// Texels of `bumps` point where `lobes` on the same grid do, or without them where their mean slope does.
+    pub fn new(bumps: &Bumps<'a>, lobes: Option<&Lobes<'_>>) -> Self {
+        let level = |(level, &(width, height)): (usize, &(u32, u32))| {
+            let mut texels = vec![Offset::default(); width as usize * height as usize];
+            let mut means = vec![Moments::default(); if lobes.is_none() { width as usize } else { 0 }];
+            for (y, row) in (0..).zip(texels.chunks_exact_mut(width as usize)) {
+                match lobes {
+                    Some(lobes) => lobes.offsets(level, y, row),
+                    None => {
+                        bumps.moments().row(level, y, &mut means);
+                        row.iter_mut().zip(&means).for_each(|(offset, m)| *offset = m.mean);
+                    }
+                }
             }
-        })
-    };
-    match lobes {
-        Some(lobes) => encode(&|level, y, out| lobes.offsets(level, y, out)),
-        None => {
-            let moments = bumps.moments();
-            encode(&|level, y, out| {
+            Level { width, height, texels }
+        };
+        let coarser = bumps.sizes().iter().enumerate().skip(1).map(level).collect();
+        Self { finest: bumps.rows, coarser }
+    }
+
+    /// Sizes of all levels, level 0 first.
+    pub fn sizes(&self) -> Vec<(u32, u32)> {
+        let finest = (self.finest.width(), self.finest.height());
+        [finest].into_iter().chain(self.coarser.iter().map(|l| (l.width, l.height))).collect()
+    }
+
+    /// The normal texture: x, y, z in [0, 1] with 1/2 for 0. Unit length at every level, since engines that rebuild z and
+    /// engines that read it must agree.
+    pub fn row(&self, level: usize, y: u32, out: &mut [[f32; 4]]) {
+        let write = |(value, offset): (&mut [f32; 4], Offset)| {
+            let [x, y, z] = normal_from_offset(offset);
+            *value = [0.5 * x + 0.5, 0.5 * y + 0.5, 0.5 * z + 0.5, 1.0];
+        };
+        match level.checked_sub(1) {
+            None => {
                 let mut texels = vec![Moments::default(); out.len()];
-                moments.row(level, y, &mut texels);
-                out.iter_mut().zip(texels).for_each(|(offset, m)| *offset = m.mean);
-            })
+                self.finest.row(y, &mut texels);
+                out.iter_mut().zip(texels.iter().map(|m| m.mean)).for_each(write);
+            }
+            Some(coarser) => {
+                let Level { width, texels, .. } = &self.coarser[coarser];
+                out.iter_mut().zip(texels[y as usize * *width as usize..].iter().copied()).for_each(write);
+            }
         }
+    }
+
+    /// The texture, encoded.
+    pub fn bake(&self, encoding: Encoding) -> Result<Chain, EncodeError> {
+        encode_chain(&self.sizes(), encoding, &|level, y, out| self.row(level, y, out))
     }
 }

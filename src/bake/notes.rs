@@ -2,7 +2,7 @@
 
 use super::fold::Fold;
 use super::relief::Relief;
-use super::settings::{Model, Settings};
+use super::settings::Model;
 use crate::bump::{MAX_SLOPE, Outliers};
 use crate::map::Format;
 use crate::pyramid::Rows;
@@ -19,6 +19,9 @@ pub const JPEG: &str = "the bump map is a JPEG: bumps that its compression made 
 
 /// Share of texels with opposed neighbours from which on it is told: a map with one seam across 1024 texels has 0.3 %.
 const OPPOSED: f32 = 0.001;
+
+/// Lobe error that rounding makes from which on it is told.
+const ROUNDED: f32 = 0.05;
 
 /// Share of the variance from which on its loss in the filter is told: 5 % of alpha.
 const FILTERED: f32 = 0.1;
@@ -58,7 +61,7 @@ pub fn of_factor(loss: f32) -> Option<String> {
 }
 
 /// Of bumps folded into a lobe; `noise` is the covariance of slopes that rounding alone makes.
-pub fn of_fold(fold: &Fold<'_>, model: Model, noise: Symmetric2, settings: &Settings) -> Vec<String> {
+pub fn of_fold(fold: &Fold<'_>, model: Model, noise: Symmetric2) -> Vec<String> {
     let mut notes = Vec::new();
     let too_wide = fold.texels_above_one(model);
     if too_wide > 0 {
@@ -67,7 +70,7 @@ pub fn of_fold(fold: &Fold<'_>, model: Model, noise: Symmetric2, settings: &Sett
         ));
     }
     let noise = fold.noise_loss(noise);
-    if noise > settings.max_error {
+    if noise > ROUNDED {
         notes.push(format!(
             "the depth of the bump map is too small for so smooth a surface: rounding alone moves its lobes by {noise:.3}; \
              a map of more bits is better"

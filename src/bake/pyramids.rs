@@ -42,6 +42,15 @@ impl Range {
         self
     }
 
+    /// What the first channels of a texel stand for.
+    pub fn values<const N: usize>(&self, texel: [f32; 4]) -> [f32; N] {
+        let value = |c: usize| match (self.min.get(c), self.max.get(c)) {
+            (Some(min), Some(max)) => min + texel[c] * (max - min),
+            _ => 0.0,
+        };
+        std::array::from_fn(value)
+    }
+
     fn normalise(&self, value: f32, channel: usize) -> f32 {
         (value - self.min[channel]) / (self.max[channel] - self.min[channel])
     }
@@ -97,44 +106,57 @@ impl Quantity {
     }
 }
 
-/// The texture of one quantity over `moments`. Integer formats use the smallest range that holds every level that is written.
+/// The texture of one quantity over `moments`.
 pub fn bake_quantity<R>(moments: &Pyramid<R>, quantity: Quantity, encoding: Encoding) -> Result<Ranged, EncodeError>
 where
     R: Rows<Texel = Moments>,
 {
-    let values = |level: usize, y: u32, texels: &mut [Moments]| {
-        moments.row(level, y, texels);
-        texels.iter().map(move |m| quantity.of(*m)).collect::<Vec<_>>()
-    };
+    let range = range_of(moments, quantity, encoding);
+    let chain = encode_chain(&moments.sizes(), encoding, &quantity_rows(moments, quantity, &range))?;
+    Ok(Ranged { chain, range })
+}
+
+/// The range of a quantity. Integer formats use the smallest that holds every level that is written.
+pub fn range_of<R>(moments: &Pyramid<R>, quantity: Quantity, encoding: Encoding) -> Range
+where
+    R: Rows<Texel = Moments>,
+{
     let (channels, sizes) = (quantity.channels(), moments.sizes());
     // A PNG fallback holds [0, 1] only, so with one floats have a range too.
-    let range = if encoding.format.is_normalised() || encoding.fallback {
-        let bounds = sizes.iter().enumerate().skip(encoding.first(&sizes)).fold(
-            [0.0_f32; 3],
-            |bounds, (level, &(width, height))| {
-                let of_level = (0..height)
-                    .into_par_iter()
-                    .map_init(
-                        || vec![Moments::default(); width as usize],
-                        |texels, y| values(level, y, texels).into_iter().fold([0.0; 3], larger),
-                    )
-                    .reduce(|| [0.0; 3], larger);
-                larger(bounds, of_level)
-            },
-        );
-        Range::new(&bounds[..channels], quantity.signed())
-    } else {
-        Range::identity(channels)
-    };
-    let chain = encode_chain(&sizes, encoding, &|level, y, out| {
+    if !encoding.format.is_normalised() && !encoding.fallback {
+        return Range::identity(channels);
+    }
+    let levels = sizes.iter().enumerate().skip(encoding.first(&sizes));
+    let bounds = levels.fold([0.0_f32; 3], |bounds, (level, &(width, height))| {
+        let of_row = |texels: &mut Vec<Moments>, y| {
+            moments.row(level, y, texels);
+            texels.iter().map(|m| quantity.of(*m)).fold([0.0; 3], larger)
+        };
+        let rows = (0..height).into_par_iter().map_init(|| vec![Moments::default(); width as usize], of_row);
+        larger(bounds, rows.reduce(|| [0.0; 3], larger))
+    });
+    Range::new(&bounds[..channels], quantity.signed())
+}
+
+/// Rows of the texture of a quantity.
+pub fn quantity_rows<R>(
+    moments: &Pyramid<R>,
+    quantity: Quantity,
+    range: &Range,
+) -> impl Fn(usize, u32, &mut [[f32; 4]]) + Sync
+where
+    R: Rows<Texel = Moments>,
+{
+    move |level, y, out| {
         let mut texels = vec![Moments::default(); out.len()];
-        for (texel, value) in out.iter_mut().zip(values(level, y, &mut texels)) {
-            for (c, out) in texel.iter_mut().enumerate().take(channels) {
+        moments.row(level, y, &mut texels);
+        for (texel, m) in out.iter_mut().zip(texels) {
+            let value = quantity.of(m);
+            for (c, out) in texel.iter_mut().enumerate().take(quantity.channels()) {
                 *out = range.normalise(value[c], c);
             }
         }
-    })?;
-    Ok(Ranged { chain, range })
+    }
 }
 
 /// The one c of a map under a lobe of `own` squared alphas: what its texels' covariances want, each as far as it is large

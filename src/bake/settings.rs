@@ -35,8 +35,8 @@ impl Profile {
     }
 }
 
-/// What is modelled of the lost bumps.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+/// What is modelled of the lost bumps; the later, the more.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Model {
     /// The smallest of the others that stays within the error bound.
@@ -48,6 +48,18 @@ pub enum Model {
     Isotropic,
     /// An ellipse per texel.
     Anisotropic,
+}
+
+impl Model {
+    /// As on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::None => "none",
+            Self::Isotropic => "isotropic",
+            Self::Anisotropic => "anisotropic",
+        }
+    }
 }
 
 /// How textures are referenced.
@@ -70,7 +82,7 @@ pub struct Settings {
     pub profile: Profile,
     /// What is modelled.
     pub model: Model,
-    /// Largest mean lobe error that leaving something out of the model may cause at any level, in [0, 1].
+    /// Largest mean lobe error at any level, in [0, 1], that the choice of a model puts up with.
     pub max_error: f32,
     /// Shape that footprints are taken to have.
     pub distribution: Distribution,
@@ -101,7 +113,7 @@ impl Default for Settings {
         Self {
             profile: Profile::default(),
             model: Model::default(),
-            max_error: 0.05,
+            max_error: 0.1,
             distribution: Distribution::default(),
             family: Family::default(),
             target: Target::default(),

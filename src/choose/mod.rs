@@ -1,47 +1,55 @@
-//! The smallest model within the error bound.
+//! The cheapest of several candidates that stays within the error bound, and why a bound cannot be met.
 
-use rayon::prelude::*;
+mod reason;
 
-use crate::lobe::{SquaredAlpha, isotropic_distance, shape_distance};
+pub use reason::{Evidence, Reason};
 
-/// Mean lobe error per level that leaving something out of the model causes: the distance between lobes, not counting
-/// what the fullest model itself misses.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
-pub struct ModelLoss {
-    /// Of keeping the roughness as it was.
-    pub none: f32,
-    /// Of one number per texel.
-    pub isotropic: f32,
+/// Differences between mean errors that a quick judgement cannot tell apart.
+pub const NOISE: f32 = 0.01;
+
+/// Which candidate to take. `errors` holds, in the order of rising cost, the error of each at every level that can be
+/// sampled; all have as many. `None` when there is no candidate.
+///
+/// The most accurate candidate is the one that exceeds `max_error` least, summed over levels. Taken is the cheapest that
+/// stays within `max_error` where the most accurate one does and is as accurate as it elsewhere, up to [`NOISE`]. So where
+/// a bound can be met it is met by the least that does; where it cannot, nothing is saved that could be seen.
+pub fn choose(errors: &[Vec<f32>], max_error: f32) -> Option<usize> {
+    let excess = |errors: &Vec<f32>| errors.iter().map(|e| f64::from((e - max_error).max(0.0))).sum::<f64>();
+    let best = errors.iter().min_by(|a, b| excess(a).total_cmp(&excess(b)))?;
+    let bound = |best: &f32| if *best <= max_error { max_error } else { best + NOISE };
+    errors.iter().position(|errors| errors.iter().zip(best).all(|(e, best)| *e <= bound(best)))
 }
 
-impl ModelLoss {
-    /// The mean over the texels of one level; `lobe` returns a texel's lobe without and with the lost bumps. Summed
-    /// row by row in order, so that it does not depend on threads.
-    pub fn of_level(width: u32, height: u32, row: impl Fn(u32, &mut [(SquaredAlpha, SquaredAlpha)]) + Sync) -> Self {
-        let rows: Vec<[f64; 2]> = (0..height)
-            .into_par_iter()
-            .map_init(
-                || vec![Default::default(); width as usize],
-                |lobes, y| {
-                    row(y, lobes);
-                    lobes.iter().fold([0.0; 2], |sum, (bare, full)| {
-                        let shape = f64::from(shape_distance(full.axis_ratio()));
-                        let (before, after) = (bare.closest_isotropic(), full.closest_isotropic());
-                        let size = f64::from(isotropic_distance(before, after));
-                        // A lobe that was elliptical already keeps its ellipse when nothing is modelled.
-                        let kept = f64::from(shape_distance(bare.axis_ratio()));
-                        [sum[0] + size.max((shape - kept).abs()), sum[1] + shape]
-                    })
-                },
-            )
-            .collect();
-        let count = f64::from(width) * f64::from(height);
-        let total = rows.iter().fold([0.0; 2], |a, b| [a[0] + b[0], a[1] + b[1]]);
-        Self { none: (total[0] / count) as f32, isotropic: (total[1] / count) as f32 }
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_cheapest_within_the_bound() {
+        let errors = [vec![0.0, 0.3], vec![0.02, 0.09], vec![0.0, 0.01]];
+        assert_eq!(choose(&errors, 0.1), Some(1));
+        assert_eq!(choose(&errors, 0.3), Some(0));
+        assert_eq!(choose(&errors, 0.05), Some(2));
+        assert_eq!(choose(&[], 0.1), None);
+        assert_eq!(choose(&[vec![], vec![]], 0.1), Some(0), "nothing can be sampled");
     }
 
-    /// The larger loss of each kind.
-    pub fn worst(self, other: Self) -> Self {
-        Self { none: self.none.max(other.none), isotropic: self.isotropic.max(other.isotropic) }
+    #[test]
+    fn a_bound_that_none_meets_is_no_licence() {
+        // No one meets 0.1 at level 2; at levels 0 and 1 the second is beyond it where the third is not.
+        let errors = [vec![0.0, 0.5, 0.6], vec![0.12, 0.09, 0.3], vec![0.0, 0.09, 0.3]];
+        assert_eq!(choose(&errors, 0.1), Some(2));
+        // Within the bound it need not be as good as the best.
+        let errors = [vec![0.09, 0.08, 0.305], vec![0.0, 0.01, 0.3]];
+        assert_eq!(choose(&errors, 0.1), Some(0));
+        let errors = [vec![0.09, 0.08, 0.32], vec![0.0, 0.01, 0.3]];
+        assert_eq!(choose(&errors, 0.1), Some(1));
+    }
+
+    /// The bound itself has no margin: what meets it exactly is taken, what exceeds it a little is not.
+    #[test]
+    fn noise_does_not_widen_the_bound() {
+        assert_eq!(choose(&[vec![0.105], vec![0.05]], 0.1), Some(1));
+        assert_eq!(choose(&[vec![0.1], vec![0.05]], 0.1), Some(0));
     }
 }

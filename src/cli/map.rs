@@ -8,7 +8,7 @@ use serde_json::json;
 
 use super::Outcome;
 use super::options::{LobeName, TextureOptions, finite, unit_interval};
-use crate::bake::report::Content;
+use crate::bake::report::{Choice, Content};
 use crate::bake::{
     BareBake, BareError, BareTexture, OwnRoughness, PublishError, Relief, Settings, bake_map, notes, read_file,
     write_file,
@@ -142,7 +142,7 @@ impl Written {
         });
         json!({
             "model": self.baked.model,
-            "loss": self.baked.loss,
+            "choice": self.baked.choice,
             "notes": self.baked.notes,
             "textures": textures.collect::<Vec<_>>(),
         })
@@ -161,6 +161,9 @@ impl Written {
                 chain.levels.len(),
                 *bytes as f64 / 1e3
             );
+        }
+        if let Some(choice) = &self.baked.choice {
+            text += &format!("model {}{}\n", self.baked.model.name(), choice.summary());
         }
         for note in &self.baked.notes {
             text += &format!("note: {note}\n");
@@ -271,6 +274,10 @@ fn texture_file(
             version: env!("CARGO_PKG_VERSION").to_owned(),
             content: texture.content.name().to_owned(),
             settings: recorded,
+            lobe_errors: match texture.content {
+                Content::Normal | Content::Offset => Vec::new(),
+                _ => baked.choice.as_ref().and_then(Choice::taken).map(|c| c.errors.clone()).unwrap_or_default(),
+            },
             sources: sources.to_vec(),
         }
         .keys()

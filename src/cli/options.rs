@@ -16,11 +16,12 @@ pub struct TextureOptions {
     /// What to write: data for any engine, for engines with a plugin, or both.
     #[arg(long, value_enum, default_value_t = ProfileName::Portable)]
     profile: ProfileName,
-    /// What to model of the lost bumps; auto takes the smallest that stays within --max-error. [default: auto]
+    /// What to model of the lost bumps; auto takes the cheapest that stays within --max-error. [default: auto]
     #[arg(long, value_enum)]
     model: Option<ModelName>,
-    /// Largest mean lobe error (0 to 1) that leaving something out of the model may cause at any level.
-    #[arg(long, default_value_t = 0.05, value_parser = unit_interval, value_name = "E")]
+    /// Largest mean lobe error (0 to 1) that --model auto puts up with at any level: the share of reflected light that
+    /// goes where it should not.
+    #[arg(long, default_value_t = 0.1, value_parser = unit_interval, value_name = "E")]
     max_error: f32,
     /// How well lobes are fitted and how long block encoders search.
     #[arg(long, value_enum, default_value_t = QualityName::Fast)]
@@ -128,7 +129,7 @@ names! {
 names! {
     /// `--model`.
     ModelName => Model {
-        /// The smallest that stays within --max-error
+        /// The cheapest that stays within --max-error, in the smallest size
         Auto,
         /// Normals get their mips, roughness stays
         None,

@@ -3,7 +3,7 @@
 use serde::Serialize;
 use serde_json::Value;
 
-use crate::bake::report::AssetReport;
+use crate::bake::report::{AssetReport, Choice};
 
 /// What a run did.
 #[derive(Debug, Serialize)]
@@ -80,10 +80,8 @@ impl Asset {
             ),
         };
         for layer in &self.report.layers {
-            let model = layer.model.map_or_else(|| "left".to_owned(), |m| format!("{m:?}").to_lowercase());
-            let loss = layer.loss.map_or_else(String::new, |l| {
-                format!(" (loss without: {:.3}, as a circle: {:.3})", l.none, l.isotropic)
-            });
+            let model = layer.model.map_or_else(|| "left".to_owned(), |m| m.name().to_owned());
+            let judged = layer.choice.as_ref().map(Choice::summary).unwrap_or_default();
             let which = match layer.layer {
                 crate::gltf::material::LayerKind::Base => "",
                 crate::gltf::material::LayerKind::Clearcoat => ", clearcoat",
@@ -91,7 +89,7 @@ impl Asset {
             let finest = layer.finest.map_or_else(String::new, |f| {
                 format!(", sampled from level {} on, typically {}", f.level, f.typical_level)
             });
-            text += &format!("  {}{which}: {model}{loss}{finest}\n", layer.material);
+            text += &format!("  {}{which}: {model}{judged}{finest}\n", layer.material);
             for note in &layer.notes {
                 text += &format!("    note: {note}\n");
             }

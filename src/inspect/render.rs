@@ -31,6 +31,10 @@ pub fn texture_text(name: &str, facts: &TextureFacts) -> String {
         for (key, value) in provenance.settings.as_object().into_iter().flatten() {
             text += &format!("    {key}: {}\n", plain(value));
         }
+        if !provenance.lobe_errors.is_empty() {
+            let errors: Vec<String> = provenance.lobe_errors.iter().map(|e| format!("{e:.2}")).collect();
+            text += &format!("    lobe error by level: {}\n", errors.join(" "));
+        }
         for source in &provenance.sources {
             text += &format!("    source {} (BLAKE3 {})\n", source.uri, source.blake3);
         }

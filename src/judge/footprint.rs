@@ -143,14 +143,14 @@ impl Footprint {
     }
 }
 
-fn add_products(sums: &mut [f64; 3], weight: f64, [u, v]: [f64; 2]) {
+pub(super) fn add_products(sums: &mut [f64; 3], weight: f64, [u, v]: [f64; 2]) {
     for (sum, product) in sums.iter_mut().zip([u * u, u * v, v * v]) {
         *sum += weight * product;
     }
 }
 
 /// (f_u, f_v) = (-x/z, -y/z).
-fn slope([x, y, z]: Vector) -> [f64; 2] {
+pub(super) fn slope([x, y, z]: Vector) -> [f64; 2] {
     let z = z.max(1e-3);
     [-x / z, -y / z]
 }

@@ -5,22 +5,30 @@
 //! other tools make of the same normals ([`Peer`]), and the best that any single lobe can do ([`oracle`]). This room
 //! takes maps and decoded images, never files.
 
+mod clump;
 mod footprint;
 mod lobe;
 mod oracle;
+mod peaks;
 mod peers;
 mod reference;
 mod refine;
 mod score;
+mod survey;
+#[cfg(test)]
+mod survey_tests;
 #[cfg(test)]
 mod tests;
 pub(crate) mod vector;
 
+pub use clump::clumped;
 pub(crate) use footprint::overlaps;
 pub use footprint::{Footprint, FootprintMoments, Part, Surface};
 pub use lobe::{Family, Lobe};
 pub use oracle::oracle;
+pub use peaks::is_two_peaked;
 pub use peers::Peer;
 pub use reference::{Reference, SAMPLES};
 pub use refine::refine;
-pub use score::{Decoded, mean_errors, sample_texels};
+pub use score::{Decoded, mean_errors, sample_texels, shown_lobe, shown_normal, with_z};
+pub use survey::{GroundRow, Precision, Site, survey};

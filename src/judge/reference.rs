@@ -19,6 +19,11 @@ impl Reference {
     /// Samples `footprint`, whose texels have lobes of `family`. The points are a fixed sequence: equal input gives
     /// equal points.
     pub fn new(family: Family, footprint: &Footprint, samples: usize) -> Self {
+        Self::continued(family, footprint, samples, 0)
+    }
+
+    /// The same from point `first` of the sequence on: footprints that are averaged over should not share points.
+    pub(super) fn continued(family: Family, footprint: &Footprint, samples: usize, first: usize) -> Self {
         let mut lobes: Vec<(f64, Lobe)> =
             footprint.parts().iter().map(|p| (p.weight, Lobe::new(family, p.normal, p.base))).collect();
         // Neighbours in the list are neighbours in direction, so that samples spread evenly over directions as well.
@@ -32,7 +37,7 @@ impl Reference {
                 below += lobes[lobe_index].0;
                 lobe_index += 1;
             }
-            points.push(lobes[lobe_index].1.sample(even_point(i)));
+            points.push(lobes[lobe_index].1.sample(even_point(first + i)));
         }
         let mut densities = vec![0.0; points.len()];
         // Lobe by lobe for a few points at a time: 16384 lobes do not fit a cache.

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::footprint::{Footprint, Surface};
 use super::lobe::{Family, Lobe};
 use super::reference::{Reference, SAMPLES, even_point};
-use super::vector::normalised;
+use super::vector::{Vector, normalised};
 use crate::lobe::{Anisotropy, Roughness};
 use crate::map::Image;
 
@@ -24,28 +24,50 @@ pub struct Decoded {
 impl Decoded {
     /// The lobe of texel (`x`, `y`) as a glTF engine shades it. `None` outside any of the images.
     pub fn lobe(&self, family: Family, x: u32, y: u32) -> Option<Lobe> {
-        let component = |c| Some(2.0 * f64::from(self.normal.sample(x, y, c)?) - 1.0);
-        let (nx, ny) = (component(0)?, component(1)?);
-        let nz = match self.normal.channels {
-            2 => (1.0 - nx * nx - ny * ny).max(0.0).sqrt(),
-            _ => component(2)?,
+        let texel = |image: &Image| Some([image.sample(x, y, 0)?, image.sample(x, y, 1)?, image.sample(x, y, 2)?]);
+        let normal = match self.normal.channels {
+            2 => with_z([self.normal.sample(x, y, 0)?, self.normal.sample(x, y, 1)?]),
+            _ => texel(&self.normal)?,
         };
         let roughness = match &self.roughness {
             Some(image) => image.sample(x, y, 1)?,
             None => 1.0,
         };
-        let roughness = Roughness((roughness * self.roughness_factor).clamp(0.0, 1.0));
-        let lobe = match &self.anisotropy {
-            None => Anisotropy { roughness, strength: 0.0, direction: [1.0, 0.0] },
-            Some(image) => {
-                let [u, v, strength] = [image.sample(x, y, 0)?, image.sample(x, y, 1)?, image.sample(x, y, 2)?];
-                let [u, v, _] = normalised([2.0 * f64::from(u) - 1.0, 2.0 * f64::from(v) - 1.0, 0.0]);
-                Anisotropy { roughness, strength, direction: [u as f32, v as f32] }
-            }
+        let anisotropy = match &self.anisotropy {
+            Some(image) => Some(texel(image)?),
+            None => None,
         };
-        let a = lobe.squared_alpha().0;
-        Some(Lobe::new(family, normalised([nx, ny, nz]), [a.uu, a.uv, a.vv].map(f64::from)))
+        let a = shown_lobe(roughness * self.roughness_factor, anisotropy);
+        Some(Lobe::new(family, shown_normal(normal, 1.0), a))
     }
+}
+
+/// The normal that a glTF engine shades with: a texel in [0, 1], whose x and y it multiplies by `scale`.
+pub fn shown_normal(texel: [f32; 3], scale: f32) -> Vector {
+    let [x, y, z] = texel.map(|c| 2.0 * f64::from(c) - 1.0);
+    normalised([x * f64::from(scale), y * f64::from(scale), z])
+}
+
+/// The squared alphas uu, uv, vv that a glTF engine shades with: roughness and a texel of `KHR_materials_anisotropy` in
+/// [0, 1].
+pub fn shown_lobe(roughness: f32, anisotropy: Option<[f32; 3]>) -> [f64; 3] {
+    let roughness = Roughness(roughness.clamp(0.0, 1.0));
+    let lobe = match anisotropy {
+        None => Anisotropy { roughness, strength: 0.0, direction: [1.0, 0.0] },
+        Some([u, v, strength]) => {
+            let [u, v, _] = normalised([2.0 * f64::from(u) - 1.0, 2.0 * f64::from(v) - 1.0, 0.0]);
+            Anisotropy { roughness, strength, direction: [u as f32, v as f32] }
+        }
+    };
+    let a = lobe.squared_alpha().0;
+    [a.uu, a.uv, a.vv].map(f64::from)
+}
+
+/// The texel with the z that engines rebuild from x and y.
+pub fn with_z([x, y]: [f32; 2]) -> [f32; 3] {
+    let [nx, ny] = [x, y].map(|c| 2.0 * f64::from(c) - 1.0);
+    let nz = (1.0 - nx * nx - ny * ny).max(0.0).sqrt();
+    [x, y, (0.5 * nz + 0.5) as f32]
 }
 
 /// `count` texels spread evenly over a level of `size`, always the same; all texels where there are no more.

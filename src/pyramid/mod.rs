@@ -10,6 +10,7 @@ mod shaped;
 
 pub use merge::{Merge, Moments};
 pub use reduce::{Level, build, level_size, level_sizes};
+pub(crate) use resample::neighbours;
 pub use resample::{Area, Linear};
 pub use shaped::{Shaped, ShapedMoments};
 

@@ -117,7 +117,7 @@ impl<R: Rows> Rows for Linear<R> {
 }
 
 /// The two old texels around the centre of new texel `i` and their weights.
-fn neighbours(old: u32, new: u32, i: u32, wrap: Wrap) -> [(u32, f32); 2] {
+pub(crate) fn neighbours(old: u32, new: u32, i: u32, wrap: Wrap) -> [(u32, f32); 2] {
     // Centre (i + 1/2) * old/new - 1/2 in old texels; doubled to stay in integers: numerator / (2 new).
     let doubled = (2 * i64::from(i) + 1) * i64::from(old) - i64::from(new);
     let unit = 2 * i64::from(new);

@@ -61,8 +61,13 @@ fn normals(texel: [f32; 4], format: Format) -> Vec<u8> {
         let row = |_: u32, out: &mut [[f32; 4]]| out.fill(texel);
         encode(&Texels { width: size, height: size, row: &row }, format, Metric::Rgb, Effort::Fast).unwrap()
     };
-    let provenance =
-        Provenance { version: "0.1.0".into(), content: "normal".into(), settings: json!({}), sources: vec![] };
+    let provenance = Provenance {
+        version: "0.1.0".into(),
+        content: "normal".into(),
+        settings: json!({}),
+        lobe_errors: vec![],
+        sources: vec![],
+    };
     write(format, 4, &[level(4), level(2), level(1)], &provenance.keys())
 }
 

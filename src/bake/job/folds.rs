@@ -6,12 +6,13 @@ use crate::bake::bumps::Bumps;
 use crate::bake::chain::{Encoding, grid};
 use crate::bake::fold::Fold;
 use crate::bake::lobes::own_lobe;
-use crate::bake::normals::bake_normals;
+use crate::bake::normals::Normals;
 use crate::bake::notes;
 use crate::bake::plan::{LayerPlan, OwnTextures};
 use crate::bake::relief::Relief;
-use crate::bake::report::Content;
+use crate::bake::report::{Choice, Content};
 use crate::bake::settings::Model;
+use crate::bake::trial::Trial;
 use crate::gltf::material::LayerKind;
 use crate::gltf::texture::TextureSource;
 use crate::map::{Image, Rgba};
@@ -28,8 +29,6 @@ impl Job<'_> {
     ) -> Result<(), JobError> {
         let layers = &self.plan.layers;
         let is_portable = self.settings.profile.is_portable();
-        let first = self.first_level(layers, bumps.size());
-        let encoding = Encoding::of_normals(self.settings).starting_at(first);
         let mut normals = None;
         for (first, layer) in layers.iter().enumerate() {
             let is_done = layers[..first].iter().any(|earlier| earlier.folds_like(layer));
@@ -46,55 +45,70 @@ impl Job<'_> {
             };
             let base = self.base(relief, layer, &images)?;
             let base = Pyramid::new(base);
-            let own_lobe = own_lobe(&base.whole());
-            let needs_lobes = is_portable || self.settings.model == Model::Auto;
             let size = base.sizes()[0];
-            let fold = (layer.own.is_ok() && needs_lobes).then(|| {
+            let is_base = layer.layer.kind == LayerKind::Base;
+            let correction = (self.settings.profile.has_pyramid() && is_base)
+                .then(|| bumps.correction(layer.slope_scale, self.settings, own_lobe(&base.whole())));
+            // The extension describes the base lobe only.
+            let fold = (layer.own.is_ok() && (is_portable || is_base)).then(|| {
                 let resampled = (size != bumps.size()).then(|| Bumps::new(relief, size));
                 Fold::new(base, resampled.as_ref().unwrap_or(bumps), layer.slope_scale, self.settings)
             });
             if let Some(fold) = fold.as_ref().filter(|f| {
                 is_portable && normals.is_none() && layer.slope_scale != 0.0 && f.sizes()[0] == bumps.size()
             }) {
-                normals = Some(bake_normals(bumps, Some(fold.lobes()), encoding)?);
+                normals = Some(Normals::new(bumps, Some(fold.lobes())));
             }
             let widest = match layer.layer.kind {
                 LayerKind::Base => Model::Anisotropic,
                 // glTF's clearcoat has no anisotropy.
                 LayerKind::Clearcoat => Model::Isotropic,
             };
-            let (model, loss) = match (&fold, self.settings.model) {
-                (Some(fold), _) => fold.model(self.settings, widest),
+            let used_by = || users.iter().map(|user| &layers[*user]);
+            let first = self.first_level(used_by(), size);
+            let means = (is_portable && normals.is_none()).then(|| Normals::new(bumps, None));
+            let trial = fold.as_ref().map(|fold| Trial {
+                fold,
+                settings: self.settings,
+                normals: normals.as_ref().or(means.as_ref()),
+                pyramid: correction.map(|c| (bumps.moments(), c)),
+                wrap: self.plan.source.wrap,
+                widest,
+                finest: self.finest_level(used_by(), size),
+                first,
+            });
+            let choice = trial.map(|trial| trial.run()).transpose()?;
+            let (model, first) = match (choice.as_ref().and_then(Choice::taken), self.settings.model) {
+                (Some(taken), _) => (taken.model, taken.first),
                 // Without its own lobe nothing tells how much of the ellipse will be seen: keep all of it.
-                (None, Model::Auto | Model::Anisotropic) => (widest, None),
-                (None, model) => (model, None),
+                (None, Model::Auto) => (widest, first),
+                (None, model) => (model.min(widest), first),
             };
             let fold = fold.filter(|_| is_portable && model != Model::None);
-            let first = self.first_level(users.iter().map(|user| &layers[*user]), size);
             let folding = Encoding::of(self.settings, 3).starting_at(first);
             let folded = fold.as_ref().map(|f| f.bake(model, folding)).transpose()?;
-            let fold_notes =
-                fold.map_or_else(Vec::new, |fold| notes::of_fold(&fold, model, relief.noise(), self.settings));
+            let fold_notes = fold.map_or_else(Vec::new, |fold| notes::of_fold(&fold, model, relief.noise()));
             for user in &users {
-                let LayerOutcome { report, model: chosen, own_lobe: own, unit_factor, anisotropy, circle, .. } =
-                    &mut output.layers[*user];
-                *chosen = model;
-                *own = own_lobe;
+                let LayerOutcome {
+                    report,
+                    model: chosen,
+                    first: start,
+                    correction: c,
+                    unit_factor,
+                    anisotropy,
+                    circle,
+                    ..
+                } = &mut output.layers[*user];
+                (*chosen, *start, *c) = (model, first, correction.unwrap_or(1.0));
                 report.model = Some(model);
-                report.loss = loss;
+                report.choice.clone_from(&choice);
                 if let (Err(reason), true) = (&layer.own, is_portable) {
                     if !self.settings.profile.has_pyramid() {
                         report.model = Some(Model::None);
                     }
                     report.notes.push(reason.clone());
                 }
-                if let Some(loss) = loss.filter(|l| model == Model::Isotropic && l.isotropic > self.settings.max_error)
-                {
-                    report.notes.push(format!(
-                        "glTF's clearcoat has no anisotropy: a circle in the ellipse's place loses {:.3}",
-                        loss.isotropic
-                    ));
-                }
+                report.notes.extend(choice.as_ref().and_then(|c| c.warning(self.settings)));
                 report.notes.extend(fold_notes.iter().cloned());
                 if let Some(folded) = &folded {
                     if model == Model::Isotropic && layers[*user].layer.anisotropy.is_some() {
@@ -124,6 +138,7 @@ impl Job<'_> {
                 slots,
                 sampler,
                 model,
+                lobe_errors: choice.as_ref().and_then(Choice::taken).map(|c| c.errors.clone()).unwrap_or_default(),
             };
             let sampler = |own: &Option<TextureSource>| own.as_ref().unwrap_or(&self.plan.source).sampler;
             output.textures.push(texture(
@@ -142,10 +157,9 @@ impl Job<'_> {
             }
         }
         if is_portable {
-            let chain = match normals {
-                Some(chain) => chain,
-                None => bake_normals(bumps, None, encoding)?,
-            };
+            let normals = normals.unwrap_or_else(|| Normals::new(bumps, None));
+            let first = self.first_level(layers, bumps.size());
+            let chain = normals.bake(Encoding::of_normals(self.settings).starting_at(first))?;
             let texture = JobTexture {
                 content: Content::Normal,
                 chain,
@@ -155,6 +169,7 @@ impl Job<'_> {
                 slots: layers.iter().map(LayerPlan::normal_slot).collect(),
                 sampler: self.plan.source.sampler,
                 model: Model::None,
+                lobe_errors: Vec::new(),
             };
             output.textures.insert(0, texture);
         }

@@ -22,7 +22,6 @@ use crate::gltf::density::NoDensity;
 use crate::gltf::material::Mapping;
 use crate::gltf::rewrite::Slot;
 use crate::gltf::texture::{ImageLocation, TextureSource};
-use crate::lobe::SquaredAlpha;
 use crate::map::{DecodeError, DecodeOptions, HeightMap, Image, NormalLayout, NormalMap, decode, decode_colours};
 use crate::pyramid::Rows;
 use crate::texture::ktx2::{Ktx2, PROVENANCE_KEY};
@@ -45,16 +44,20 @@ pub struct JobTexture {
     pub sampler: Option<usize>,
     /// What it models.
     pub model: Model,
+    /// Mean lobe errors of its material, where it holds roughness and was judged.
+    pub lobe_errors: Vec<f32>,
 }
 
 /// What became of a layer.
 pub struct LayerOutcome {
     /// For the report.
     pub report: LayerReport,
-    /// The material's own lobe, averaged over its map.
-    pub own_lobe: SquaredAlpha,
+    /// c of its roughness, in the pyramid profile.
+    pub correction: f32,
     /// What is modelled of the lost bumps, also where the report says that nothing could be folded.
     pub model: Model,
+    /// The level with which its roughness data begins.
+    pub first: usize,
     /// JSON pointer of the roughness factor, where the texture now holds it.
     pub unit_factor: Option<String>,
     /// JSON pointer of `KHR_materials_anisotropy`, where it was written.
@@ -126,12 +129,13 @@ pub fn run(
                 material: layer.name.clone(),
                 layer: layer.layer.kind,
                 model: None,
-                loss: None,
+                choice: None,
                 finest,
                 notes,
             },
-            own_lobe: SquaredAlpha::default(),
+            correction: 1.0,
             model: Model::None,
+            first: 0,
             unit_factor: None,
             anisotropy: None,
             circle: None,

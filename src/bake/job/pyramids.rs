@@ -5,15 +5,14 @@ use crate::bake::bumps::Bumps;
 use crate::bake::chain::Encoding;
 use crate::bake::notes;
 use crate::bake::plan::LayerPlan;
-use crate::bake::pyramids::{Quantity, Ranged, bake_quantity, filter_loss, mean_correction};
+use crate::bake::pyramids::{Quantity, Ranged, bake_quantity, filter_loss};
 use crate::bake::relief::{Framed, Reading, Relief};
-use crate::bake::report::Content;
+use crate::bake::report::{Choice, Content};
 use crate::bake::settings::Model;
 use crate::bump::Frame;
 use crate::bump::FrameTransform;
 use crate::gltf::material::LayerKind;
-use crate::lobe::SquaredAlpha;
-use crate::pyramid::{Area, Pyramid, Rows, Shaped};
+use crate::pyramid::{Area, Pyramid, Rows};
 
 /// Root mean square deviation of triangles up to which they count as turned alike: 6 degrees.
 const MAX_TURN_DEVIATION: f32 = 0.1;
@@ -24,7 +23,7 @@ type Made = (usize, Option<String>);
 impl Job<'_> {
     /// Offsets and D or lambda_1 for the base layers.
     pub(super) fn pyramids(&self, relief: &Relief, bumps: &Bumps<'_>, output: &mut JobOutput) -> Result<(), JobError> {
-        let mut made: Vec<(Reading, Quantity, Made)> = Vec::new();
+        let mut made: Vec<(Reading, Quantity, usize, Made)> = Vec::new();
         for (index, layer) in self.plan.layers.iter().enumerate() {
             let outcome = &mut output.layers[index];
             if layer.layer.kind == LayerKind::Clearcoat {
@@ -37,20 +36,28 @@ impl Job<'_> {
                 outcome.report.notes.push(reason);
                 (Frame::Unit, Reading::Uniform(FrameTransform::IDENTITY))
             });
-            let outcome_lobe = outcome.own_lobe;
             let roughness = match outcome.model {
                 Model::Anisotropic => Some(Quantity::Factor),
                 Model::Isotropic => Some(Quantity::Lambda1),
                 Model::None | Model::Auto => None,
             };
+            let (own_first, correction) = (outcome.first, outcome.correction);
+            let lobe_errors = outcome.report.choice.as_ref().and_then(Choice::taken).map(|c| c.errors.clone());
             let mut find_or_make = |quantity: Quantity| {
-                if let Some((.., made)) = made.iter().find(|(r, q, _)| *q == quantity && *r == reading) {
+                let first = match quantity {
+                    Quantity::Offset => self.first_level(&self.plan.layers, bumps.size()),
+                    Quantity::Factor | Quantity::Lambda1 => own_first,
+                };
+                if let Some((.., made)) = made.iter().find(|(r, q, f, _)| (r, *q, *f) == (&reading, quantity, first)) {
                     return Ok(made.clone());
                 }
-                let (texture, note) = self.pyramid(relief, bumps, &reading, quantity)?;
+                let (mut texture, note) = self.pyramid(relief, bumps, &reading, quantity, first)?;
+                if quantity != Quantity::Offset {
+                    texture.lobe_errors = lobe_errors.clone().unwrap_or_default();
+                }
                 output.textures.push(texture);
                 let new = (output.textures.len() - 1, note);
-                made.push((reading.clone(), quantity, new.clone()));
+                made.push((reading.clone(), quantity, first, new.clone()));
                 Ok::<_, JobError>(new)
             };
             let (offset, _) = find_or_make(Quantity::Offset)?;
@@ -63,7 +70,7 @@ impl Job<'_> {
                 slope_scale: layer.slope_scale,
                 mapping: layer.layer.bumps.texture().mapping.clone(),
                 frame,
-                correction: self.correction(bumps, layer.slope_scale, outcome_lobe),
+                correction,
             });
         }
         Ok(())
@@ -75,8 +82,8 @@ impl Job<'_> {
         bumps: &Bumps<'_>,
         reading: &Reading,
         quantity: Quantity,
+        first: usize,
     ) -> Result<(JobTexture, Option<String>), JobError> {
-        let first = self.first_level(&self.plan.layers, bumps.size());
         let encoding = Encoding::of(self.settings, quantity.channels() as u32).starting_at(first);
         let is_factor = quantity == Quantity::Factor;
         let (Ranged { chain, range }, loss) = if *reading == Reading::Uniform(FrameTransform::IDENTITY) {
@@ -100,16 +107,9 @@ impl Job<'_> {
             slots: Vec::new(),
             sampler: self.plan.source.sampler,
             model,
+            lobe_errors: Vec::new(),
         };
         Ok((texture, loss.and_then(notes::of_factor)))
-    }
-
-    /// c for a shader that has one for the whole map: what the levels' covariances want on average.
-    fn correction(&self, bumps: &Bumps<'_>, slope_scale: f32, own: SquaredAlpha) -> f32 {
-        // Offsets scaled by s widen a lobe as much as they do by themselves one that is narrower by s.
-        let squared = (slope_scale * slope_scale).max(f32::MIN_POSITIVE);
-        let own = SquaredAlpha((1.0 / squared) * own.0);
-        mean_correction(&Pyramid::new(Shaped(bumps.rows)), self.settings, own)
     }
 
     /// How to read the bumps in the frame asked for, or why this layer cannot have it.

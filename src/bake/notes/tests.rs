@@ -13,8 +13,9 @@ fn notes(relief: &Relief, roughness: f32, settings: Settings) -> Vec<String> {
     bake_map(relief, Some(&own), &settings).unwrap().notes
 }
 
+/// Without a bound to miss.
 fn anisotropic() -> Settings {
-    Settings { model: Model::Anisotropic, target: Target::Float, ..Settings::default() }
+    Settings { model: Model::Anisotropic, target: Target::Float, max_error: 1.0, ..Settings::default() }
 }
 
 fn normals(width: u32, height: u32, samples: Samples) -> Relief {

@@ -17,6 +17,10 @@ pub struct Provenance {
     pub content: String,
     /// Everything that decides on the bytes but the sources.
     pub settings: Value,
+    /// Mean lobe error of the material by level of its bump map, from the finest that can be sampled; empty where it was
+    /// not judged.
+    #[serde(default, rename = "lobeErrors", skip_serializing_if = "Vec::is_empty")]
+    pub lobe_errors: Vec<f32>,
     /// The images that it was made from.
     pub sources: Vec<SourceDigest>,
 }

@@ -8,7 +8,7 @@ use ktx2::{Header, ParseError, Reader, SupercompressionScheme, dfd};
 
 use super::formats::{Coding, block_of};
 use super::{ReadError, basis, blocks, inflate, texels};
-use crate::map::Image;
+use crate::map::{Image, Samples};
 
 /// A parsed KTX2 file. Parsing allocates nothing that a hostile header could make large.
 pub struct Ktx2<'a> {
@@ -177,15 +177,7 @@ impl<'a> Ktx2<'a> {
                 let place = (level, self.level_count());
                 basis::etc1s(stored, codebooks, place, (width, height), channels)
             }
-            Coding::Uastc(channels) => {
-                let payload = self.level_bytes(level)?;
-                basis::uastc(&payload, (width, height), channels)
-            }
-            Coding::Blocks(kind) => {
-                let payload = self.level_bytes(level)?;
-                Some(blocks::decode(&payload, (width, height), *kind))
-            }
-            Coding::Texels(texel) => Some(texels::decode(self.level_bytes(level)?, texel)),
+            coding => decode(self.level_bytes(level)?, coding, (width, height)),
         };
         let samples =
             samples.ok_or_else(|| ReadError::Compression { level, what: "the transcoder refuses it".to_owned() })?;
@@ -239,6 +231,30 @@ impl<'a> Ktx2<'a> {
             .checked_mul(images)
             .and_then(|blocks| blocks.checked_mul(block.bytes))
             .ok_or_else(|| malformed("a level of more than 2^64 bytes"))
+    }
+}
+
+/// Decodes a level as [`crate::texture::encode`] returns it, of `size` texels. `None` when the bytes are not as many as
+/// that takes.
+pub fn decode_payload(payload: &[u8], format: crate::texture::Format, size: (u32, u32)) -> Option<Image> {
+    let coding = match format.vulkan() {
+        Some(vulkan) => Coding::of(Some(vulkan), None)?,
+        None => Coding::Uastc(&[0, 1, 2]),
+    };
+    if payload.len() != format.level_bytes(size.0, size.1) {
+        return None;
+    }
+    let samples = decode(Cow::Borrowed(payload), &coding, size)?;
+    Some(Image { width: size.0, height: size.1, channels: coding.channels(), samples })
+}
+
+/// Decodes a payload of the right length. ETC1S, which has codebooks, gives `None`.
+fn decode(payload: Cow<'_, [u8]>, coding: &Coding, size: (u32, u32)) -> Option<Samples> {
+    match coding {
+        Coding::Uastc(channels) => basis::uastc(&payload, size, channels),
+        Coding::Blocks(kind) => Some(blocks::decode(&payload, size, *kind)),
+        Coding::Texels(texel) => Some(texels::decode(payload, texel)),
+        Coding::Etc1s(_) => None,
     }
 }
 

@@ -1,0 +1,96 @@
+//! How far the quick judgement of `bake` is from the full one: for each map and level, the mean lobe errors of plain mips,
+//! corrected vMF and D over 64 texels, with the truth surveyed and in full; and the same with the survey's texels against
+//! four times as many others.
+//!
+//! `cargo run --release --example survey`. Reads `../shared/data/maps`, else `fixtures/maps`.
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+
+use roughcast::bump::NormalOffsets;
+use roughcast::judge::{Family, Peer, Precision, Surface, mean_errors, sample_texels, survey};
+use roughcast::lobe::{Alpha, OrientedLobe, SquaredAlpha};
+use roughcast::map::{DecodeOptions, NormalLayout, NormalMap, decode};
+use roughcast::pyramid::{Moments, Rows, level_sizes};
+
+const PEERS: [Peer; 3] = [Peer::PlainMips, Peer::CorrectedVmf, Peer::D];
+const ALPHAS: [f32; 2] = [0.05, 0.2];
+
+/// Differences from the full judge.
+#[derive(Default)]
+struct Differences {
+    count: f64,
+    sum: f64,
+    squares: f64,
+    largest: f64,
+}
+
+impl Differences {
+    fn add(&mut self, difference: f64) {
+        self.count += 1.0;
+        self.sum += difference;
+        self.squares += difference * difference;
+        self.largest = self.largest.max(difference.abs());
+    }
+
+    fn text(&self) -> String {
+        let (mean, root) = (self.sum / self.count, (self.squares / self.count).sqrt());
+        format!("mean {mean:+.4}, root mean square {root:.4}, at most {:.4}", self.largest)
+    }
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let folders = ["../shared/data/maps", "fixtures/maps"].map(Path::new);
+    let folder = folders.into_iter().find(|f| f.is_dir()).ok_or("expected ../shared/data/maps or fixtures/maps")?;
+    let entries = std::fs::read_dir(folder)?.collect::<Result<Vec<_>, _>>()?;
+    let mut paths: Vec<PathBuf> = entries.into_iter().map(|e| e.path()).collect();
+    paths.retain(|path| path.to_string_lossy().contains("_normal"));
+    paths.sort();
+    let (mut same, mut more) = (Differences::default(), Differences::default());
+    for path in &paths {
+        let map = NormalMap::new(decode(&std::fs::read(path)?, &DecodeOptions::default())?, NormalLayout::Auto, false)?;
+        for alpha in ALPHAS {
+            compare(&map, alpha, &mut same, &mut more);
+        }
+        println!("{}: same texels: {}", path.display(), same.text());
+    }
+    println!("all: same texels: {}", same.text());
+    println!("all: against four times as many texels: {}", more.text());
+    Ok(())
+}
+
+fn compare(map: &NormalMap, alpha: f32, same: &mut Differences, more: &mut Differences) {
+    let sizes = level_sizes(map.width(), map.height());
+    let surface = Surface::of_map(map, SquaredAlpha::isotropic(Alpha(alpha)));
+    let row = |y: u32, out: &mut [OrientedLobe]| {
+        let mut texels = vec![Moments::default(); out.len()];
+        NormalOffsets::new(map).row(y, &mut texels);
+        for (lobe, m) in out.iter_mut().zip(texels) {
+            *lobe = OrientedLobe::new(m.mean, SquaredAlpha::isotropic(Alpha(alpha)));
+        }
+    };
+    let precision = Precision::QUICK;
+    let sites = survey(&sizes, 1..sizes.len(), precision, &row);
+    for (level, &size) in sizes.iter().enumerate().skip(1) {
+        let of: Vec<_> = sites.iter().filter(|s| s.level == level).collect();
+        let mut quick = [0.0; PEERS.len()];
+        for site in &of {
+            // Lobes from whole footprints: only the truth that they are held against is surveyed.
+            let moments = surface.footprint(size, site.texel).moments();
+            for (sum, peer) in quick.iter_mut().zip(PEERS) {
+                *sum += site.reference.error(&peer.lobe(Family::Ggx, &moments)) / of.len() as f64;
+            }
+        }
+        let full = |texels| {
+            mean_errors(&surface, Family::Ggx, size, &sample_texels(size, texels), |_, footprint, reference| {
+                let moments = footprint.moments();
+                PEERS.map(|peer| reference.error(&peer.lobe(Family::Ggx, &moments)))
+            })
+        };
+        quick.iter().zip(full(precision.texels)).for_each(|(quick, full)| same.add(quick - full));
+        // Whole footprints of coarse levels take minutes for so many, and there are no more texels.
+        if level <= 5 {
+            quick.iter().zip(full(4 * precision.texels)).for_each(|(quick, full)| more.add(quick - full));
+        }
+    }
+}

@@ -1,0 +1,201 @@
+//! Candidates for a material's roughness data, judged before one of them is made (DESIGN, sections 4 and 6).
+
+mod scene;
+
+use rayon::prelude::*;
+
+use self::scene::Scene;
+use super::chain::Encoding;
+use super::fold::Fold;
+use super::normals::Normals;
+use super::relief::Relief;
+use super::report::{Candidate, Choice, Miss};
+use super::sampled::Place;
+use super::settings::{Model, Settings};
+use crate::bump::{MAX_SLOPE, Wrap};
+use crate::choose::{Evidence, choose};
+use crate::judge::{Family, Precision, Reference, Site, is_two_peaked, oracle, survey};
+use crate::pyramid::{Area, Pyramid};
+use crate::texture::{EncodeError, Format};
+
+/// Texels of a level that tell why the bound is missed there.
+const WITNESSES: usize = 3;
+/// Half-vectors for each of them.
+const WITNESS_SAMPLES: usize = 256;
+
+/// What is to be judged.
+pub struct Trial<'a, 'f, 'r> {
+    /// The material's lobe and its bumps.
+    pub fold: &'a Fold<'f>,
+    /// The bound, the model asked for and the target.
+    pub settings: &'a Settings,
+    /// Where the texels of the portable profile point, where it is written.
+    pub normals: Option<&'a Normals<'a>>,
+    /// Bumps and c of the pyramid profile, where it is written.
+    pub pyramid: Option<(&'a Pyramid<Area<&'r Relief>>, f32)>,
+    /// The sampler's mode, across and down.
+    pub wrap: [Wrap; 2],
+    /// The fullest model that the layer can have.
+    pub widest: Model,
+    /// The finest level that can be sampled.
+    pub finest: usize,
+    /// The finest level that is written.
+    pub first: usize,
+}
+
+/// Errors of one candidate by site.
+type Errors = Vec<f64>;
+
+impl Trial<'_, '_, '_> {
+    /// Judges what the settings allow and chooses. Under a fixed model all models are judged in full size, so that the
+    /// report tells what they would have done.
+    pub fn run(&self) -> Result<Choice, EncodeError> {
+        let sizes = self.fold.sizes();
+        let finest = self.finest.min(sizes.len() - 1);
+        let lobes = self.fold.lobes();
+        let sites = survey(&sizes, finest..sizes.len(), Precision::QUICK, &|y, out: &mut [_]| lobes.row(0, y, out));
+        let scene = Scene::new(self, places(&sites), true)?;
+        let mut candidates = Vec::new();
+        for model in [Model::None, Model::Isotropic, Model::Anisotropic] {
+            if !self.offers(model) {
+                continue;
+            }
+            let full = scene.errors(&sites, model, self.first)?;
+            for first in self.firsts(model, &sizes) {
+                // Where the level is there, a smaller texture holds the same blocks.
+                let lacking: Vec<usize> = (0..sites.len()).filter(|i| sites[*i].level < first).collect();
+                let mut errors = full.clone();
+                if first > self.first && !lacking.is_empty() {
+                    let part: Vec<&Site> = lacking.iter().map(|i| &sites[*i]).collect();
+                    let magnified = scene.part(&lacking).errors_of(&part, model, first)?;
+                    lacking.iter().zip(magnified).for_each(|(i, e)| errors[*i] = e);
+                }
+                candidates.push(Candidate {
+                    model,
+                    first,
+                    bytes: self.bytes(model, first, &sizes),
+                    errors: by_level(&sites, &errors, finest, sizes.len()),
+                });
+            }
+        }
+        let errors: Vec<Vec<f32>> = candidates.iter().map(|c| c.errors.clone()).collect();
+        let chosen = match self.settings.model {
+            Model::Auto => choose(&errors, self.settings.max_error),
+            asked => candidates.iter().position(|c| c.model == asked.min(self.widest)),
+        };
+        let chosen = chosen.unwrap_or(0);
+        let misses = self.misses(&sites, &candidates[chosen], finest)?;
+        Ok(Choice { finest, candidates, chosen, misses })
+    }
+
+    fn offers(&self, model: Model) -> bool {
+        match model {
+            // A lobe that is elliptical already stays so, unless a circle is asked for.
+            Model::Isotropic => {
+                !self.fold.is_elliptical() || self.widest == Model::Isotropic || self.settings.model == Model::Isotropic
+            }
+            model => model <= self.widest,
+        }
+    }
+
+    /// The levels with which the roughness data may begin, coarsest first: full, half and quarter size.
+    fn firsts(&self, model: Model, sizes: &[(u32, u32)]) -> Vec<usize> {
+        let encoding = Encoding::of(self.settings, 3);
+        let fits = |first: usize| {
+            first == self.first || first < sizes.len() && encoding.starting_at(first).first(sizes) == first
+        };
+        let may_shrink = model != Model::None && self.settings.model == Model::Auto && self.fold.is_plain();
+        let last = self.first + if may_shrink { 2 } else { 0 };
+        (self.first..=last).rev().filter(|first| fits(*first)).collect()
+    }
+
+    /// Bytes of the roughness data on the GPU.
+    fn bytes(&self, model: Model, first: usize, sizes: &[(u32, u32)]) -> u64 {
+        let target = self.settings.target;
+        let of = |format: Format| sizes[first..].iter().map(|s| format.level_bytes(s.0, s.1) as u64).sum::<u64>();
+        let portable = match model {
+            Model::Isotropic => of(target.format(3)),
+            Model::Anisotropic => 2 * of(target.format(3)),
+            _ => 0,
+        };
+        let pyramid = match model {
+            Model::Isotropic => of(target.format(1)),
+            Model::Anisotropic => of(target.format(3)),
+            _ => 0,
+        };
+        u64::from(self.normals.is_some()) * portable + u64::from(self.pyramid.is_some()) * pyramid
+    }
+
+    /// The levels at which `chosen` misses the bound, and why.
+    fn misses(&self, sites: &[Site], chosen: &Candidate, finest: usize) -> Result<Vec<Miss>, EncodeError> {
+        let max_error = self.settings.max_error;
+        let missed: Vec<(usize, f32)> =
+            (finest..).zip(chosen.errors.iter().copied()).filter(|(_, e)| *e > max_error).collect();
+        let witnesses = |level: usize| {
+            let of_level: Vec<&Site> = sites.iter().filter(|s| s.level == level).collect();
+            let step = of_level.len().div_ceil(WITNESSES).max(1);
+            of_level.into_iter().step_by(step)
+        };
+        let looked_at: Vec<&Site> = missed.iter().flat_map(|(level, _)| witnesses(*level)).collect();
+        let places: Vec<Place> = looked_at.iter().map(|s| (s.level, s.texel.0, s.texel.1)).collect();
+        let ideal = Scene::new(self, places.clone(), false)?;
+        let (model, first) = (chosen.model, chosen.first);
+        let seen = Scene::new(self, places, true)?.errors_of(&looked_at, model, first)?;
+        let unencoded = ideal.errors_of(&looked_at, model, first)?;
+        let ellipse = (model == Model::Isotropic && self.widest == Model::Isotropic)
+            .then(|| ideal.errors_of(&looked_at, Model::Anisotropic, first))
+            .transpose()?;
+        let unclamped = ideal.unclamped(&looked_at, model, first)?;
+        let lobes = ideal.lobes(model, first)?;
+        let found: Vec<(f64, bool, f64)> = looked_at
+            .par_iter()
+            .zip(lobes)
+            .map(|(site, starts)| {
+                let reference = Reference::new(Family::Ggx, &site.footprint, WITNESS_SAMPLES);
+                let (_, error) = oracle(&reference, &starts);
+                (error, is_two_peaked(Family::Ggx, &site.footprint), steep_share(site))
+            })
+            .collect();
+        let miss = |(level, error): (usize, f32)| {
+            let of: Vec<usize> = (0..looked_at.len()).filter(|i| looked_at[*i].level == level).collect();
+            let mean =
+                |value: &dyn Fn(usize) -> f64| of.iter().map(|i| value(*i)).sum::<f64>() / of.len().max(1) as f64;
+            // Witnesses are few: what they tell is how much something would change.
+            let instead = |errors: &Errors| f64::from(error) + mean(&|i| errors[i] - seen[i]);
+            let best = f64::from(error) + mean(&|i| found[i].0 - seen[i]);
+            let evidence = Evidence {
+                unencoded: instead(&unencoded),
+                unclamped: instead(&unclamped),
+                ellipse: ellipse.as_ref().map(&instead),
+                oracle: best,
+                two_peaked: mean(&|i| f64::from(u8::from(found[i].1))),
+                steep: mean(&|i| found[i].2),
+            };
+            Miss { level, error, oracle: best.max(0.0) as f32, reason: evidence.reason(f64::from(max_error)) }
+        };
+        Ok(missed.into_iter().map(miss).collect())
+    }
+}
+
+fn places(sites: &[Site]) -> Vec<Place> {
+    sites.iter().map(|s| (s.level, s.texel.0, s.texel.1)).collect()
+}
+
+/// Mean errors of the levels from `finest` on, to four places: beyond them is noise that would only fill reports.
+fn by_level(sites: &[Site], errors: &Errors, finest: usize, levels: usize) -> Vec<f32> {
+    let mean = |level: usize| {
+        let of: Vec<f64> = sites.iter().zip(errors).filter(|(s, _)| s.level == level).map(|(_, e)| *e).collect();
+        let mean = of.iter().sum::<f64>() / of.len().max(1) as f64;
+        ((mean * 1e4).round() / 1e4) as f32
+    };
+    (finest..levels).map(mean).collect()
+}
+
+/// Share of a site's area that is as steep as slopes can be.
+fn steep_share(site: &Site) -> f64 {
+    let is_steep = |[x, y, z]: &[f64; 3]| (x * x + y * y).sqrt() >= 0.99 * f64::from(MAX_SLOPE) * z;
+    site.footprint.parts().iter().filter(|p| is_steep(&p.normal)).map(|p| p.weight).sum()
+}
+
+#[cfg(test)]
+mod tests;

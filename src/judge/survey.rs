@@ -1,0 +1,138 @@
+//! A quick judgement of a whole material: few texels per level, each with a coarse truth.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use super::clump::clumped;
+use super::footprint::{Footprint, Part, overlaps};
+use super::lobe::Family;
+use super::reference::{Reference, even_point};
+use super::score::sample_texels;
+use crate::lobe::OrientedLobe;
+
+/// How much a survey looks at, level by level: where a level has few texels, each is looked at the closer. Time grows with
+/// `half_vectors * parts`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Precision {
+    /// Texels of a level.
+    pub texels: usize,
+    /// Level-0 texels that are drawn from all their footprints together, where there are more.
+    pub ground: u32,
+    /// Parts of a footprint after clumping.
+    pub parts: usize,
+    /// Half-vectors for all texels together, at most 2048 for one.
+    pub half_vectors: usize,
+}
+
+impl Precision {
+    /// For a default bake: mean errors per level within about 0.01 of the full judge (`examples/survey.rs`).
+    pub const QUICK: Self = Self { texels: 64, ground: 1 << 17, parts: 256, half_vectors: 8192 };
+
+    fn samples(&self, texels: usize) -> usize {
+        (self.half_vectors / texels.max(1)).clamp(1, 2048)
+    }
+
+    /// Rows, and columns of each, that are drawn from one of `texels` footprints.
+    fn grid(&self, texels: usize) -> u32 {
+        (self.ground / texels.max(1) as u32).isqrt().clamp(1, 256)
+    }
+}
+
+/// A judged texel.
+pub struct Site {
+    /// Its level.
+    pub level: usize,
+    /// Column and row in the level.
+    pub texel: (u32, u32),
+    /// What it covers, clumped.
+    pub footprint: Footprint,
+    /// The truth that lobes are judged by.
+    pub reference: Reference,
+}
+
+/// A texel to be judged.
+struct Place {
+    level: usize,
+    size: (u32, u32),
+    texel: (u32, u32),
+    grid: u32,
+    samples: usize,
+    /// How many of the level come before it.
+    index: usize,
+}
+
+/// Writes a row of level-0 texels.
+pub type GroundRow<'a> = dyn Fn(u32, &mut [OrientedLobe]) + Sync + 'a;
+
+/// The judged texels of `levels` of a chain with `sizes`, level by level: always the same ones. `row` is read once for
+/// each row of level 0 that is needed. Depends on neither machine nor threads.
+pub fn survey(sizes: &[(u32, u32)], levels: Range<usize>, precision: Precision, row: &GroundRow<'_>) -> Vec<Site> {
+    let Some(&whole) = sizes.first() else { return Vec::new() };
+    let mut places = Vec::new();
+    for level in levels {
+        let Some(&size) = sizes.get(level) else { break };
+        let texels = sample_texels(size, precision.texels);
+        let (grid, samples) = (precision.grid(texels.len()), precision.samples(texels.len()));
+        let place = |(index, texel)| Place { level, size, texel, grid, samples, index };
+        places.extend(texels.into_iter().enumerate().map(place));
+    }
+    // All rows of level 0 that some texel covers, with the texels and the rows' shares in them.
+    let mut rows: BTreeMap<u32, Vec<(usize, f64)>> = BTreeMap::new();
+    for (index, place) in places.iter().enumerate() {
+        for (row, share) in drawn(whole.1, place.size.1, place.texel.1, place.grid, place.level) {
+            rows.entry(row).or_default().push((index, share));
+        }
+    }
+    let rows: Vec<_> = rows.into_iter().collect();
+    let read: Vec<Vec<(usize, Vec<Part>)>> = rows
+        .par_iter()
+        .map_init(
+            || vec![OrientedLobe::default(); whole.0 as usize],
+            |lobes, (y, users)| {
+                row(*y, lobes);
+                let parts = |&(index, share): &(usize, f64)| {
+                    let place = &places[index];
+                    // Each row draws other columns, or regular bumps could hide between them.
+                    let columns = drawn(whole.0, place.size.0, place.texel.0, place.grid, *y as usize);
+                    let part = |(column, weight): (u32, f64)| part(&lobes[column as usize], share * weight);
+                    (index, columns.into_iter().map(part).collect())
+                };
+                users.iter().map(parts).collect()
+            },
+        )
+        .collect();
+    let mut parts: Vec<Vec<Part>> = places.iter().map(|_| Vec::new()).collect();
+    for (index, mut of_row) in read.into_iter().flatten() {
+        parts[index].append(&mut of_row);
+    }
+    let site = |(place, parts): (Place, Vec<Part>)| {
+        let footprint = clumped(parts, precision.parts)?;
+        let reference = Reference::continued(Family::Ggx, &footprint, place.samples, place.index * place.samples);
+        Some(Site { level: place.level, texel: place.texel, footprint, reference })
+    };
+    places.into_par_iter().zip(parts).filter_map(site).collect()
+}
+
+/// The texels of an axis of `old` that texel `i` of `new` covers, with their shares; `limit` of them in even strata where
+/// there are more, `turn` deciding where in its stratum each lies.
+fn drawn(old: u32, new: u32, i: u32, limit: u32, turn: usize) -> Vec<(u32, f64)> {
+    let new = new.max(1);
+    let covered = f64::from(old) / f64::from(new);
+    if covered <= f64::from(limit) {
+        return overlaps(old, new, i);
+    }
+    let start = covered * f64::from(i.min(new - 1));
+    let at = |stratum: u32| {
+        let [jitter, _] = even_point(stratum as usize + 61 * turn);
+        let texel = start + (f64::from(stratum) + jitter) * covered / f64::from(limit);
+        ((texel as u32).min(old - 1), 1.0 / f64::from(limit))
+    };
+    (0..limit).map(at).collect()
+}
+
+fn part(lobe: &OrientedLobe, weight: f64) -> Part {
+    let a = lobe.squared_alpha.0;
+    Part { weight, normal: lobe.normal.map(f64::from), base: [a.uu, a.uv, a.vv].map(f64::from) }
+}
