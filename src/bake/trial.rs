@@ -14,12 +14,12 @@ use super::sampled::Place;
 use super::settings::{Model, Settings};
 use crate::bump::{MAX_SLOPE, Wrap};
 use crate::choose::{Evidence, choose};
-use crate::judge::{Family, Precision, Reference, Site, is_two_peaked, oracle, survey};
+use crate::judge::{Family, Lobe, Precision, Reference, Site, is_two_peaked, oracle, survey};
 use crate::pyramid::{Area, Pyramid};
 use crate::texture::{EncodeError, Format};
 
-/// Texels of a level that tell why the bound is missed there.
-const WITNESSES: usize = 3;
+/// Texels of a level for which the best lobe is sought where the bound is missed.
+const WITNESSES: usize = 8;
 /// Half-vectors for each of them.
 const WITNESS_SAMPLES: usize = 256;
 
@@ -54,8 +54,8 @@ impl Trial<'_, '_, '_> {
         let finest = self.finest.min(sizes.len() - 1);
         let lobes = self.fold.lobes();
         let sites = survey(&sizes, finest..sizes.len(), Precision::QUICK, &|y, out: &mut [_]| lobes.row(0, y, out));
-        let scene = Scene::new(self, places(&sites), true)?;
-        let mut candidates = Vec::new();
+        let scene = Scene::new(self, sites.iter().map(place).collect(), true)?;
+        let (mut candidates, mut by_site) = (Vec::new(), Vec::new());
         for model in [Model::None, Model::Isotropic, Model::Anisotropic] {
             if !self.offers(model) {
                 continue;
@@ -76,6 +76,7 @@ impl Trial<'_, '_, '_> {
                     bytes: self.bytes(model, first, &sizes),
                     errors: by_level(&sites, &errors, finest, sizes.len()),
                 });
+                by_site.push(errors);
             }
         }
         let errors: Vec<Vec<f32>> = candidates.iter().map(|c| c.errors.clone()).collect();
@@ -84,7 +85,7 @@ impl Trial<'_, '_, '_> {
             asked => candidates.iter().position(|c| c.model == asked.min(self.widest)),
         };
         let chosen = chosen.unwrap_or(0);
-        let misses = self.misses(&sites, &candidates[chosen], finest)?;
+        let misses = self.misses(&sites, &candidates[chosen], &by_site[chosen], finest)?;
         Ok(Choice { finest, candidates, chosen, misses })
     }
 
@@ -126,69 +127,82 @@ impl Trial<'_, '_, '_> {
         u64::from(self.normals.is_some()) * portable + u64::from(self.pyramid.is_some()) * pyramid
     }
 
-    /// The levels at which `chosen` misses the bound, and why.
-    fn misses(&self, sites: &[Site], chosen: &Candidate, finest: usize) -> Result<Vec<Miss>, EncodeError> {
+    /// The levels at which `chosen`, with the errors `seen` by site, misses the bound, and why.
+    fn misses(
+        &self,
+        sites: &[Site],
+        chosen: &Candidate,
+        seen: &Errors,
+        finest: usize,
+    ) -> Result<Vec<Miss>, EncodeError> {
         let max_error = self.settings.max_error;
         let missed: Vec<(usize, f32)> =
             (finest..).zip(chosen.errors.iter().copied()).filter(|(_, e)| *e > max_error).collect();
-        let witnesses = |level: usize| {
-            let of_level: Vec<&Site> = sites.iter().filter(|s| s.level == level).collect();
-            let step = of_level.len().div_ceil(WITNESSES).max(1);
-            of_level.into_iter().step_by(step)
-        };
-        let looked_at: Vec<&Site> = missed.iter().flat_map(|(level, _)| witnesses(*level)).collect();
-        let places: Vec<Place> = looked_at.iter().map(|s| (s.level, s.texel.0, s.texel.1)).collect();
-        let ideal = Scene::new(self, places.clone(), false)?;
+        let is_missed = |site: &Site| missed.iter().any(|(level, _)| *level == site.level);
+        let (of_missed, seen): (Vec<&Site>, Vec<f64>) =
+            sites.iter().zip(seen).filter(|(site, _)| is_missed(site)).unzip();
+        let ideal = Scene::new(self, of_missed.iter().map(|s| place(s)).collect(), false)?;
         let (model, first) = (chosen.model, chosen.first);
-        let seen = Scene::new(self, places, true)?.errors_of(&looked_at, model, first)?;
-        let unencoded = ideal.errors_of(&looked_at, model, first)?;
+        let unencoded = ideal.errors_of(&of_missed, model, first)?;
+        let unclamped = ideal.unclamped(&of_missed, model, first)?;
         let ellipse = (model == Model::Isotropic && self.widest == Model::Isotropic)
-            .then(|| ideal.errors_of(&looked_at, Model::Anisotropic, first))
+            .then(|| ideal.errors_of(&of_missed, Model::Anisotropic, first))
             .transpose()?;
-        let unclamped = ideal.unclamped(&looked_at, model, first)?;
         let lobes = ideal.lobes(model, first)?;
-        let found: Vec<(f64, bool, f64)> = looked_at
-            .par_iter()
-            .zip(lobes)
-            .map(|(site, starts)| {
-                let reference = Reference::new(Family::Ggx, &site.footprint, WITNESS_SAMPLES);
-                let (_, error) = oracle(&reference, &starts);
-                (error, is_two_peaked(Family::Ggx, &site.footprint), steep_share(site))
-            })
-            .collect();
         let miss = |(level, error): (usize, f32)| {
-            let of: Vec<usize> = (0..looked_at.len()).filter(|i| looked_at[*i].level == level).collect();
-            let mean =
-                |value: &dyn Fn(usize) -> f64| of.iter().map(|i| value(*i)).sum::<f64>() / of.len().max(1) as f64;
-            // Witnesses are few: what they tell is how much something would change.
-            let instead = |errors: &Errors| f64::from(error) + mean(&|i| errors[i] - seen[i]);
-            let best = f64::from(error) + mean(&|i| found[i].0 - seen[i]);
-            let evidence = Evidence {
-                unencoded: instead(&unencoded),
-                unclamped: instead(&unclamped),
-                ellipse: ellipse.as_ref().map(&instead),
-                oracle: best,
-                two_peaked: mean(&|i| f64::from(u8::from(found[i].1))),
-                steep: mean(&|i| found[i].2),
+            let of: Vec<usize> = (0..of_missed.len()).filter(|i| of_missed[*i].level == level).collect();
+            let mean = |of: &[usize], value: &dyn Fn(usize) -> f64| {
+                of.iter().map(|i| value(*i)).sum::<f64>() / of.len().max(1) as f64
             };
-            Miss { level, error, oracle: best.max(0.0) as f32, reason: evidence.reason(f64::from(max_error)) }
+            // Sites are spread evenly from the first on.
+            let witnesses = &of[..of.len().min(WITNESSES)];
+            let gained: f64 = witnesses
+                .par_iter()
+                .map(|i| seen[*i] - best_error(of_missed[*i], &lobes[*i]))
+                .collect::<Vec<_>>()
+                .iter()
+                .sum::<f64>()
+                / witnesses.len().max(1) as f64;
+            let best = (f64::from(error) - gained.max(0.0)).max(0.0);
+            let evidence = Evidence {
+                unencoded: mean(&of, &|i| unencoded[i]),
+                unclamped: mean(&of, &|i| unclamped[i]),
+                ellipse: ellipse.as_ref().map(|errors| mean(&of, &|i| errors[i])),
+                oracle: best,
+                two_peaked: mean(witnesses, &|i| {
+                    f64::from(u8::from(is_two_peaked(Family::Ggx, &of_missed[i].footprint)))
+                }),
+                steep: mean(&of, &|i| steep_share(of_missed[i])),
+            };
+            Miss { level, error, oracle: rounded(best), reason: evidence.reason(f64::from(max_error)) }
         };
         Ok(missed.into_iter().map(miss).collect())
     }
 }
 
-fn places(sites: &[Site]) -> Vec<Place> {
-    sites.iter().map(|s| (s.level, s.texel.0, s.texel.1)).collect()
+/// The error at `site` of the best lobe: sought with half-vectors of its own, or those that it is judged by would flatter
+/// it.
+fn best_error(site: &Site, starts: &[Lobe]) -> f64 {
+    let (best, _) = oracle(&Reference::new(Family::Ggx, &site.footprint, WITNESS_SAMPLES), starts);
+    starts.iter().chain([&best]).map(|lobe| site.reference.error(lobe)).fold(f64::INFINITY, f64::min)
 }
 
-/// Mean errors of the levels from `finest` on, to four places: beyond them is noise that would only fill reports.
+fn place(site: &Site) -> Place {
+    (site.level, site.texel.0, site.texel.1)
+}
+
+/// Mean errors of the levels from `finest` on.
 fn by_level(sites: &[Site], errors: &Errors, finest: usize, levels: usize) -> Vec<f32> {
     let mean = |level: usize| {
         let of: Vec<f64> = sites.iter().zip(errors).filter(|(s, _)| s.level == level).map(|(_, e)| *e).collect();
-        let mean = of.iter().sum::<f64>() / of.len().max(1) as f64;
-        ((mean * 1e4).round() / 1e4) as f32
+        rounded(of.iter().sum::<f64>() / of.len().max(1) as f64)
     };
     (finest..levels).map(mean).collect()
+}
+
+/// To four places: beyond them is noise that would only fill reports.
+fn rounded(error: f64) -> f32 {
+    ((error * 1e4).round() / 1e4) as f32
 }
 
 /// Share of a site's area that is as steep as slopes can be.
