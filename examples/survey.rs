@@ -70,7 +70,7 @@ fn compare(map: &NormalMap, alpha: f32, same: &mut Differences, more: &mut Diffe
         }
     };
     let precision = Precision::QUICK;
-    let sites = survey(&sizes, 1..sizes.len(), precision, &row);
+    let sites = survey(&sizes, 1..sizes.len(), Family::Ggx, precision, &row);
     for (level, &size) in sizes.iter().enumerate().skip(1) {
         let of: Vec<_> = sites.iter().filter(|s| s.level == level).collect();
         let mut quick = [0.0; PEERS.len()];

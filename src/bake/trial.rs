@@ -14,7 +14,8 @@ use super::sampled::Place;
 use super::settings::{Model, Settings};
 use crate::bump::{MAX_SLOPE, Wrap};
 use crate::choose::{Evidence, choose};
-use crate::judge::{Family, Lobe, Precision, Reference, Site, is_two_peaked, oracle, survey};
+use crate::judge::{Lobe, Precision, Reference, Site, is_two_peaked, oracle, survey};
+use crate::lobe::OrientedLobe;
 use crate::pyramid::{Area, Pyramid};
 use crate::texture::{EncodeError, Format};
 
@@ -53,7 +54,8 @@ impl Trial<'_, '_, '_> {
         let sizes = self.fold.sizes();
         let finest = self.finest.min(sizes.len() - 1);
         let lobes = self.fold.lobes();
-        let sites = survey(&sizes, finest..sizes.len(), Precision::QUICK, &|y, out: &mut [_]| lobes.row(0, y, out));
+        let row = |y, out: &mut [OrientedLobe]| lobes.row(0, y, out);
+        let sites = survey(&sizes, finest..sizes.len(), self.settings.family, Precision::QUICK, &row);
         let scene = Scene::new(self, sites.iter().map(place).collect(), true)?;
         let (mut candidates, mut by_site) = (Vec::new(), Vec::new());
         for model in [Model::None, Model::Isotropic, Model::Anisotropic] {
@@ -135,7 +137,7 @@ impl Trial<'_, '_, '_> {
         seen: &Errors,
         finest: usize,
     ) -> Result<Vec<Miss>, EncodeError> {
-        let max_error = self.settings.max_error;
+        let Settings { max_error, family, .. } = *self.settings;
         let missed: Vec<(usize, f32)> =
             (finest..).zip(chosen.errors.iter().copied()).filter(|(_, e)| *e > max_error).collect();
         let is_missed = |site: &Site| missed.iter().any(|(level, _)| *level == site.level);
@@ -169,9 +171,7 @@ impl Trial<'_, '_, '_> {
                 unclamped: mean(&of, &|i| unclamped[i]),
                 ellipse: ellipse.as_ref().map(|errors| mean(&of, &|i| errors[i])),
                 oracle: best,
-                two_peaked: mean(witnesses, &|i| {
-                    f64::from(u8::from(is_two_peaked(Family::Ggx, &of_missed[i].footprint)))
-                }),
+                two_peaked: mean(witnesses, &|i| f64::from(u8::from(is_two_peaked(family, &of_missed[i].footprint)))),
                 steep: mean(&of, &|i| steep_share(of_missed[i])),
             };
             Miss { level, error, oracle: rounded(best), reason: evidence.reason(f64::from(max_error)) }
@@ -183,7 +183,7 @@ impl Trial<'_, '_, '_> {
 /// The error at `site` of the best lobe: sought with half-vectors of its own, or those that it is judged by would flatter
 /// it.
 fn best_error(site: &Site, starts: &[Lobe]) -> f64 {
-    let (best, _) = oracle(&Reference::new(Family::Ggx, &site.footprint, WITNESS_SAMPLES), starts);
+    let (best, _) = oracle(&Reference::new(site.reference.family(), &site.footprint, WITNESS_SAMPLES), starts);
     starts.iter().chain([&best]).map(|lobe| site.reference.error(lobe)).fold(f64::INFINITY, f64::min)
 }
 

@@ -66,9 +66,15 @@ struct Place {
 /// Writes a row of level-0 texels.
 pub type GroundRow<'a> = dyn Fn(u32, &mut [OrientedLobe]) + Sync + 'a;
 
-/// The judged texels of `levels` of a chain with `sizes`, level by level: always the same ones. `row` is read once for
+/// The judged texels of `levels` of a chain with `sizes`, whose texels have lobes of `family`, level by level: always the same ones. `row` is read once for
 /// each row of level 0 that is needed. Depends on neither machine nor threads.
-pub fn survey(sizes: &[(u32, u32)], levels: Range<usize>, precision: Precision, row: &GroundRow<'_>) -> Vec<Site> {
+pub fn survey(
+    sizes: &[(u32, u32)],
+    levels: Range<usize>,
+    family: Family,
+    precision: Precision,
+    row: &GroundRow<'_>,
+) -> Vec<Site> {
     let Some(&whole) = sizes.first() else { return Vec::new() };
     let mut places = Vec::new();
     for level in levels {
@@ -109,7 +115,7 @@ pub fn survey(sizes: &[(u32, u32)], levels: Range<usize>, precision: Precision, 
     }
     let site = |(place, parts): (Place, Vec<Part>)| {
         let footprint = clumped(parts, precision.parts)?;
-        let reference = Reference::continued(Family::Ggx, &footprint, place.samples, place.index * place.samples);
+        let reference = Reference::continued(family, &footprint, place.samples, place.index * place.samples);
         Some(Site { level: place.level, texel: place.texel, footprint, reference })
     };
     places.into_par_iter().zip(parts).filter_map(site).collect()

@@ -59,7 +59,7 @@ fn few_or_equal_parts_stay_what_they_are() {
 #[test]
 fn surveys_agree_with_the_full_judge() {
     let (surface, sizes) = (surface(), crate::pyramid::level_sizes(SIDE, SIDE));
-    let sites = survey(&sizes, 1..sizes.len(), Precision::QUICK, &ground);
+    let sites = survey(&sizes, 1..sizes.len(), Family::Ggx, Precision::QUICK, &ground);
     for (level, &size) in sizes.iter().enumerate().skip(1) {
         let lobes = |footprint: &Footprint| {
             [Peer::PlainMips, Peer::CorrectedVmf, Peer::D].map(|peer| peer.lobe(Family::Ggx, &footprint.moments()))
@@ -83,7 +83,7 @@ fn surveys_do_not_depend_on_threads_and_begin_where_asked() {
     let sizes = crate::pyramid::level_sizes(SIDE, SIDE);
     let on = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| survey(&sizes, 2..5, Precision::QUICK, &ground))
+        pool.install(|| survey(&sizes, 2..5, Family::Ggx, Precision::QUICK, &ground))
     };
     let (one, three) = (on(1), on(3));
     assert_eq!(one.len(), three.len());
@@ -92,7 +92,7 @@ fn surveys_do_not_depend_on_threads_and_begin_where_asked() {
         assert_eq!((a.reference.points(), a.reference.densities()), (b.reference.points(), b.reference.densities()));
     }
     assert!(one.iter().all(|s| (2..5).contains(&s.level)));
-    assert!(survey(&sizes, 40..50, Precision::QUICK, &ground).is_empty());
+    assert!(survey(&sizes, 40..50, Family::Ggx, Precision::QUICK, &ground).is_empty());
 }
 
 #[test]

@@ -7,7 +7,7 @@ use crate::bake::chain::{Encoding, LevelRow};
 use crate::bake::pyramids::{Quantity, quantity_rows, range_of};
 use crate::bake::sampled::{Place, Sampled};
 use crate::bake::settings::Model;
-use crate::judge::{Family, Lobe, Site, shown_lobe, shown_normal, with_z};
+use crate::judge::{Lobe, Site, shown_lobe, shown_normal, with_z};
 use crate::lobe::SquaredAlpha;
 use crate::symmetric::Symmetric2;
 use crate::texture::{EncodeError, Format};
@@ -89,7 +89,9 @@ impl<'t, 'f, 'r> Scene<'t, 'f, 'r> {
             let a = SquaredAlpha(Symmetric2::new(uu, uv, vv));
             let a = if model == Model::Isotropic { SquaredAlpha::isotropic(a.closest_isotropic()) } else { a };
             let normals = self.normals.iter().filter_map(|n| n.get(i));
-            normals.map(|n| Lobe::new(Family::Ggx, *n, [a.0.uu, a.0.uv, a.0.vv].map(f64::from))).collect()
+            normals
+                .map(|n| Lobe::new(self.trial.settings.family, *n, [a.0.uu, a.0.uv, a.0.vv].map(f64::from)))
+                .collect()
         };
         Ok(worst(sites, (0..sites.len()).map(lobe).collect()))
     }
@@ -103,7 +105,7 @@ impl<'t, 'f, 'r> Scene<'t, 'f, 'r> {
         ];
         for (normals, shapes) in self.normals.iter().zip(shapes) {
             for ((lobes, normal), a) in lobes.iter_mut().zip(normals).zip(shapes) {
-                lobes.push(Lobe::new(Family::Ggx, *normal, a));
+                lobes.push(Lobe::new(self.trial.settings.family, *normal, a));
             }
         }
         Ok(lobes)

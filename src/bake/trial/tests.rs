@@ -5,7 +5,7 @@ use super::super::{BareBake, OwnRoughness, Profile, Relief, bake_map};
 use super::*;
 use crate::choose::Reason;
 use crate::judge::{Decoded, Surface, mean_errors, sample_texels};
-use crate::lobe::{Alpha, Roughness, SquaredAlpha};
+use crate::lobe::{Alpha, Family, Roughness, SquaredAlpha};
 use crate::map::{Image, NormalLayout, NormalMap, Samples};
 use crate::texture::Target;
 use crate::texture::ktx2::decode_payload;
@@ -151,14 +151,14 @@ fn textures_with_other_data_keep_their_size() {
 /// The quick judgement of a candidate against the full one of its files.
 #[test]
 fn errors_are_those_of_the_baked_files() {
-    for (slope, target) in [
-        (brushed as fn(u32, u32) -> [f32; 2], Target::Basis),
-        (rough_noise, Target::Float),
+    for (slope, target, family) in [
+        (brushed as fn(u32, u32) -> [f32; 2], Target::Basis, Family::Ggx),
+        (rough_noise, Target::Float, Family::Beckmann),
         #[cfg(feature = "bc")]
-        (brushed, Target::Bc),
+        (brushed, Target::Bc, Family::Ggx),
     ] {
         let image = normals(64, slope);
-        let settings = Settings { model: Model::Anisotropic, target, ..settings(0.1) };
+        let settings = Settings { model: Model::Anisotropic, target, family, ..settings(0.1) };
         let baked = bake(&image, 0.4, &settings);
         let judged = baked.choice.as_ref().unwrap();
         let map = NormalMap::new(image, NormalLayout::Xyz, false).unwrap();
@@ -176,8 +176,8 @@ fn errors_are_those_of_the_baked_files() {
                 anisotropy: Some(of(Content::Anisotropy)),
             };
             let texels = sample_texels(size, 128);
-            let [full] = mean_errors(&surface, Family::Ggx, size, &texels, |(x, y), _, reference| {
-                [reference.error(&decoded.lobe(Family::Ggx, x, y).unwrap())]
+            let [full] = mean_errors(&surface, family, size, &texels, |(x, y), _, reference| {
+                [reference.error(&decoded.lobe(family, x, y).unwrap())]
             });
             assert!((f64::from(*found) - full).abs() < 0.015, "{target:?}, level {level}: {found} {full}");
         }
