@@ -5,10 +5,13 @@ use std::collections::BinaryHeap;
 
 use super::footprint::{Footprint, Part, add_products, slope};
 
-/// Where a part lies: its slope in widths of the mean lobe, and the logarithm of the width of its own, of which a step
-/// counts as much as one of slopes. Small, since splitting moves it many times.
+/// Numbers that place a part.
+const PLACES: usize = 5;
+
+/// Where a part lies: its slope in widths of the mean lobe, the logarithm of the width of its own, and how long that is
+/// and in which direction. A step of each counts alike. Small, since splitting moves it many times.
 struct Placed {
-    at: [f32; 3],
+    at: [f32; PLACES],
     weight: f32,
     part: u32,
 }
@@ -27,7 +30,8 @@ pub fn clumped(parts: Vec<Part>, limit: usize) -> Option<Footprint> {
     let alpha = (parts.iter().map(|p| p.weight * squared(p)).sum::<f64>() / total).sqrt();
     let placed = |(index, part): (u32, &Part)| {
         let [u, v] = slope(part.normal);
-        let at = [u / alpha, v / alpha, 0.5 * libm::log(squared(part))].map(|c| c as f32);
+        let [along, across] = elongation(part.base);
+        let at = [u / alpha, v / alpha, 0.5 * libm::log(squared(part)), along, across].map(|c| c as f32);
         Placed { at, weight: (part.weight / total) as f32, part: index }
     };
     let mut placed: Vec<Placed> = (0..).zip(&parts).map(placed).collect();
@@ -38,6 +42,18 @@ pub fn clumped(parts: Vec<Part>, limit: usize) -> Option<Footprint> {
     }
     // In the order of the heap, which equal input makes equal.
     Footprint::new(groups.into_vec().iter().filter_map(|g| merged(&parts, g.members)).collect())
+}
+
+/// The logarithm of the ratio of a lobe's alphas, along twice the angle of the longer one.
+fn elongation([uu, uv, vv]: [f64; 3]) -> [f64; 2] {
+    let (mean, [x, y]) = (0.5 * (uu + vv), [0.5 * (uu - vv), uv]);
+    let radius = (x * x + y * y).sqrt();
+    if radius <= 0.0 {
+        return [0.0; 2];
+    }
+    // Alphas do not end at 0 in shaders.
+    let ratio = (mean + radius) / (mean - radius).max(1e-6);
+    [x, y].map(|c| 0.5 * libm::log(ratio) * c / radius)
 }
 
 /// Neighbours, and how much they vary.
@@ -52,18 +68,18 @@ struct Group<'a> {
 impl<'a> Group<'a> {
     fn new(members: &'a mut [Placed]) -> Self {
         // From one of them, so that squares do not cancel where all lie far from 0.
-        let origin = members.first().map_or([0.0; 3], |p| p.at);
-        let (mut weight, mut sum, mut squares) = (f32::MIN_POSITIVE, [0.0; 3], [0.0; 3]);
+        let origin = members.first().map_or([0.0; PLACES], |p| p.at);
+        let (mut weight, mut sum, mut squares) = (f32::MIN_POSITIVE, [0.0; PLACES], [0.0; PLACES]);
         for member in members.iter() {
             weight += member.weight;
-            for i in 0..3 {
+            for i in 0..PLACES {
                 let from = member.at[i] - origin[i];
                 sum[i] += member.weight * from;
                 squares[i] += member.weight * from * from;
             }
         }
-        let variation = [0, 1, 2].map(|i| (squares[i] - sum[i] / weight * sum[i]).max(0.0));
-        let axis = (0..3).max_by(|a, b| variation[*a].total_cmp(&variation[*b])).unwrap_or(0);
+        let variation: [f32; PLACES] = std::array::from_fn(|i| (squares[i] - sum[i] / weight * sum[i]).max(0.0));
+        let axis = (0..PLACES).max_by(|a, b| variation[*a].total_cmp(&variation[*b])).unwrap_or(0);
         Self { members, variation: variation[axis], axis, mean: origin[axis] + sum[axis] / weight }
     }
 

@@ -55,6 +55,28 @@ fn few_or_equal_parts_stay_what_they_are() {
     assert_eq!(clumped(Vec::new(), 4), None);
 }
 
+/// Lobes of one width that lie in all directions must not become round ones.
+#[test]
+fn clumps_keep_directions_apart() {
+    let turned = |i: u32| {
+        let (sin, cos) = (f64::from(i) * 0.618).sin_cos();
+        let [major, minor] = [0.09, 0.0009];
+        let base =
+            [major * cos * cos + minor * sin * sin, (major - minor) * sin * cos, major * sin * sin + minor * cos * cos];
+        Part { weight: 1.0, normal: [0.0, 0.0, 1.0], base }
+    };
+    let parts: Vec<Part> = (0..4096).map(turned).collect();
+    let whole = Reference::new(Family::Ggx, &Footprint::new(parts.clone()).unwrap(), 4096);
+    let few = Reference::new(Family::Ggx, &clumped(parts, 256).unwrap(), 4096);
+    for lobe in [
+        Lobe::new(Family::Ggx, [0.0, 0.0, 1.0], [0.09, 0.0, 0.0009]),
+        Lobe::isotropic(Family::Ggx, [0.0, 0.0, 1.0], 0.2),
+    ] {
+        let (full, quick) = (whole.error(&lobe), few.error(&lobe));
+        assert!((full - quick).abs() < 0.01, "{full} {quick}");
+    }
+}
+
 /// The quick judgement against the full one.
 #[test]
 fn surveys_agree_with_the_full_judge() {
