@@ -12,6 +12,7 @@ pub mod check;
 pub mod choose;
 pub mod cli;
 pub mod compare;
+pub mod config;
 pub mod gltf;
 pub mod inspect;
 pub mod judge;

@@ -5,17 +5,15 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use super::Outcome;
-use super::inputs::{self, Input, InputError};
-use super::options::{DocumentOptions, LobeName, TextureOptions};
+use super::inputs::Input;
 use super::progress::Progress;
 use super::report::{Asset, Report, Status};
-use super::view::ViewOptions;
+use super::selection::{Selected, Selection};
 use crate::bake::report::AssetReport;
 use crate::bake::{
     BakeError, JobError, Places, PublishError, Settings, Source, SourceError, bake, publish, read_file, write_file,
 };
 use crate::gltf::document::{Container, Document, DocumentError};
-use crate::texture::EncodeError;
 
 /// Bake glTF assets: KTX2 textures with the lost roughness in their mips, and a glTF that refers to them.
 ///
@@ -26,9 +24,6 @@ pub struct Args {
     /// .gltf or .glb files, or folders that are searched for them.
     #[arg(required = true, value_name = "INPUT")]
     inputs: Vec<PathBuf>,
-    /// Output folder.
-    #[arg(short, long, value_name = "DIR")]
-    output: PathBuf,
     /// Write what was done, chosen and skipped to a JSON file.
     #[arg(long, value_name = "FILE")]
     report: Option<PathBuf>,
@@ -38,15 +33,11 @@ pub struct Args {
     /// Print errors only.
     #[arg(short, long, conflicts_with = "json")]
     quiet: bool,
-    /// What the engine shades with.
-    #[arg(long, value_enum, default_value_t = LobeName::Ggx)]
-    lobe: LobeName,
+    /// Print the settings of each asset and where each comes from, and bake nothing.
+    #[arg(long, conflicts_with = "json")]
+    print_config: bool,
     #[command(flatten)]
-    texture: TextureOptions,
-    #[command(flatten)]
-    document: DocumentOptions,
-    #[command(flatten)]
-    view: ViewOptions,
+    selection: Selection,
 }
 
 /// Why an asset is not baked.
@@ -95,43 +86,43 @@ impl AssetError {
 /// # Errors
 /// When `out` or `err` cannot be written to.
 pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<Outcome> {
-    let settings =
-        Settings { view: args.view.view(), family: args.lobe.into(), ..args.texture.settings(Some(&args.document)) };
-    if let Err(reason) = check_settings(&settings) {
-        writeln!(err, "error: {reason}")?;
-        return Ok(Outcome::Usage);
-    }
-    let (inputs, input_errors) = inputs::find(&args.inputs, &args.output);
-    let mut outcome = Outcome::Done;
-    for error in &input_errors {
-        writeln!(err, "error: {error}")?;
-        outcome = outcome.and(Outcome::Failed);
-    }
-    // Among sources no output is safe, not even that of the other inputs.
-    if input_errors.iter().any(|e| matches!(e, InputError::OutputIsInput { .. })) {
+    let selected = match args.selection.find(&args.inputs) {
+        Ok(selected) => selected,
+        Err(reason) => {
+            writeln!(err, "error: {reason}")?;
+            return Ok(Outcome::Usage);
+        }
+    };
+    let (is_safe, mut outcome) = selected.complain(err)?;
+    if args.print_config {
+        for (input, resolved) in &selected.assets {
+            print(out, &format!("# {}\n{resolved}\n", input.path.display()))?;
+        }
         return Ok(outcome);
     }
-    let progress = Progress::new(inputs.len(), args.quiet);
+    if !is_safe {
+        return Ok(outcome);
+    }
+    let Selected { assets, errors, settings } = selected;
+    let progress = Progress::new(assets.len(), args.quiet);
     let mut report = Report {
         version: env!("CARGO_PKG_VERSION"),
         settings: settings.to_json(settings.model),
-        assets: input_errors
-            .iter()
-            .map(|e| Asset::failed(e.path().display().to_string(), 0.0, e.to_string()))
-            .collect(),
+        assets: errors.iter().map(|e| Asset::failed(e.path().display().to_string(), 0.0, e.to_string())).collect(),
     };
     let mut places = Places::default();
-    for (index, input) in inputs.iter().enumerate() {
+    for (index, (input, resolved)) in assets.iter().enumerate() {
         let start = Instant::now();
         let name = input.path.display().to_string();
         progress.set(index, 0.0, &name);
-        let result = bake_one(input, &settings, &mut places, &|share| progress.set(index, share, &name));
+        let result = bake_one(input, &resolved.settings, &mut places, &|share| progress.set(index, share, &name));
         let seconds = start.elapsed().as_secs_f64();
         let asset = match result {
             Ok((output, bytes, report)) => Asset {
                 input: name,
                 output: Some(output.display().to_string()),
                 status: if report.textures.is_empty() { Status::Copied } else { Status::Baked },
+                settings: Some(&resolved.settings).filter(|own| **own != settings).map(|own| own.to_json(own.model)),
                 seconds,
                 bytes,
                 error: None,
@@ -170,15 +161,6 @@ fn print(out: &mut dyn Write, text: &str) -> io::Result<()> {
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
         result => result,
     }
-}
-
-/// Settings that cannot be had together.
-fn check_settings(settings: &Settings) -> Result<(), String> {
-    settings.target.check_available().map_err(|e: EncodeError| e.to_string())?;
-    if settings.glb && settings.form == crate::bake::Form::Dual {
-        return Err("--gltf dual needs external textures, which --glb does not have: leave one of them out".to_owned());
-    }
-    Ok(())
 }
 
 fn bake_one(

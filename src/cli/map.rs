@@ -101,7 +101,7 @@ enum MapCommandError {
 /// # Errors
 /// When `out` or `err` cannot be written to.
 pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<Outcome> {
-    let settings = Settings { family: args.lobe.into(), ..args.texture.settings(None) };
+    let settings = Settings { family: args.lobe.into(), ..args.texture.settings() };
     if let Err(reason) = settings.target.check_available() {
         writeln!(err, "error: {reason}")?;
         return Ok(Outcome::Usage);

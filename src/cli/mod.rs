@@ -3,6 +3,7 @@
 mod bake;
 mod check;
 mod compare;
+mod init;
 mod inputs;
 mod inspect;
 mod map;
@@ -10,6 +11,7 @@ mod options;
 mod progress;
 mod render;
 mod report;
+mod selection;
 mod view;
 
 use std::io::Write;
@@ -32,6 +34,7 @@ pub struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     Bake(bake::Args),
+    Init(init::Args),
     Map(map::Args),
     Check(check::Args),
     Inspect(inspect::Args),
@@ -90,6 +93,7 @@ pub fn run(cli: Cli, out: &mut dyn Write, err: &mut dyn Write) -> std::io::Resul
     }
     match cli.command {
         Command::Bake(args) => bake::run(&args, out, err),
+        Command::Init(args) => init::run(&args, out, err),
         Command::Map(args) => map::run(&args, out, err),
         Command::Check(args) => check::run(&args, out, err),
         Command::Inspect(args) => inspect::run(&args, out, err),

@@ -3,7 +3,7 @@
 use clap::{Args, ValueEnum};
 
 use crate::bake::{Form, Model, Profile, Settings};
-use crate::bump::Frame;
+use crate::config::{Engine, FrameName, Values};
 use crate::lobe::Family;
 use crate::roughness::Distribution;
 use crate::texture::Target;
@@ -13,28 +13,28 @@ use crate::texture::uastc::Effort;
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Texture options")]
 pub struct TextureOptions {
-    /// What to write: data for any engine, for engines with a plugin, or both.
-    #[arg(long, value_enum, default_value_t = ProfileName::Portable)]
-    profile: ProfileName,
+    /// What to write: data for any engine, for engines with a plugin, or both. [default: portable]
+    #[arg(long, value_enum)]
+    profile: Option<ProfileName>,
     /// What to model of the lost bumps; auto takes the cheapest that stays within --max-error. [default: auto]
     #[arg(long, value_enum)]
     model: Option<ModelName>,
     /// Largest mean lobe error (0 to 1) that --model auto puts up with at any level: the share of reflected light that
-    /// goes where it should not.
-    #[arg(long, default_value_t = 0.1, value_parser = unit_interval, value_name = "E")]
-    max_error: f32,
-    /// How well lobes are fitted and how long block encoders search.
-    #[arg(long, value_enum, default_value_t = QualityName::Fast)]
-    quality: QualityName,
-    /// Shape that the slopes under a texel are taken to have; auto goes by the slopes themselves.
-    #[arg(long, value_enum, default_value_t = DistributionName::Auto)]
-    distribution: DistributionName,
+    /// goes where it should not. [default: 0.1]
+    #[arg(long, value_parser = unit_interval_f64, value_name = "E")]
+    max_error: Option<f64>,
+    /// How well lobes are fitted and how long block encoders search. [default: fast]
+    #[arg(long, value_enum)]
+    quality: Option<QualityName>,
+    /// Shape that the slopes under a texel are taken to have; auto goes by the slopes themselves. [default: auto]
+    #[arg(long, value_enum)]
+    distribution: Option<DistributionName>,
     /// Payload: UASTC for every engine, BC4/BC5/BC7, or half floats. [default: basis]
     #[arg(long, value_enum)]
     target: Option<TargetName>,
-    /// Largest number of texels of an input image.
-    #[arg(long, default_value_t = 1 << 28, value_name = "N")]
-    max_texels: u64,
+    /// Largest number of texels of an input image. [default: 268435456]
+    #[arg(long, value_name = "N")]
+    max_texels: Option<u64>,
     /// Leave version, settings and source digests out of the KTX2 files.
     #[arg(long)]
     no_provenance: bool,
@@ -50,51 +50,54 @@ pub struct DocumentOptions {
     gltf: Option<FormName>,
     /// Preset of --target, --gltf and --model for an engine; the options themselves win over it.
     #[arg(long, value_enum)]
-    engine: Option<Engine>,
+    engine: Option<EngineName>,
     /// Write .glb files with everything embedded.
-    #[arg(long)]
-    glb: bool,
-    /// Frame of the offsets of the pyramid profile.
-    #[arg(long, value_enum, default_value_t = FrameName::Unit)]
-    frame: FrameName,
-    /// Direction m of --frame main-direction, in the space of the mesh.
-    #[arg(long, value_parser = direction, default_value = "0,1,0", value_name = "X,Y,Z", allow_hyphen_values = true)]
-    main_direction: [f32; 3],
+    #[arg(long, num_args = 0..=1, require_equals = true, default_missing_value = "true", value_name = "BOOL")]
+    glb: Option<bool>,
+    /// Frame of the offsets of the pyramid profile. [default: unit]
+    #[arg(long, value_enum)]
+    frame: Option<FrameOption>,
+    /// Direction m of --frame main-direction, in the space of the mesh. [default: 0,1,0]
+    #[arg(long, value_parser = direction, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    main_direction: Option<[f64; 3]>,
     /// Relief of height maps, in widths of a repeat (in mesh units with --frame natural), instead of the asset's own.
-    #[arg(long, value_parser = finite, value_name = "S", allow_hyphen_values = true)]
-    height_scale: Option<f32>,
+    #[arg(long, value_parser = finite_f64, value_name = "S", allow_hyphen_values = true)]
+    height_scale: Option<f64>,
 }
 
 impl TextureOptions {
-    /// The settings, with what `document` adds.
-    pub fn settings(&self, document: Option<&DocumentOptions>) -> Settings {
-        let preset = document.and_then(|d| d.engine).map(Engine::preset).unwrap_or_default();
-        let defaults = Settings::default();
-        Settings {
-            profile: self.profile.into(),
-            model: self.model.map_or(preset.model, Into::into),
+    /// What is said.
+    pub fn values(&self) -> Values {
+        Values {
+            profile: self.profile.map(Into::into),
+            model: self.model.map(Into::into),
             max_error: self.max_error,
-            distribution: self.distribution.into(),
-            family: defaults.family,
-            target: self.target.map_or(preset.target, Into::into),
-            effort: self.quality.into(),
-            form: document.and_then(|d| d.gltf).map_or(preset.form, Into::into),
-            glb: document.is_some_and(|d| d.glb),
-            frame: document.map_or(defaults.frame, DocumentOptions::frame),
-            height_scale: document.and_then(|d| d.height_scale),
-            view: None,
+            quality: self.quality.map(Into::into),
+            distribution: self.distribution.map(Into::into),
+            target: self.target.map(Into::into),
             max_texels: self.max_texels,
-            provenance: !self.no_provenance,
+            provenance: self.no_provenance.then_some(false),
+            ..Values::default()
         }
+    }
+
+    /// The settings, for commands that know no others. Each value has been checked on its own, and none needs another.
+    pub fn settings(&self) -> Settings {
+        self.values().settings().unwrap_or_default()
     }
 }
 
 impl DocumentOptions {
-    fn frame(&self) -> Frame {
-        match self.frame {
-            FrameName::Natural => Frame::Natural,
-            FrameName::Unit => Frame::Unit,
-            FrameName::MainDirection => Frame::MainDirection(self.main_direction),
+    /// What is said, beside `values`.
+    pub fn values(&self, values: Values) -> Values {
+        Values {
+            gltf: self.gltf.map(Into::into),
+            engine: self.engine.map(Into::into),
+            glb: self.glb,
+            frame: self.frame.map(Into::into),
+            main_direction: self.main_direction,
+            height_scale: self.height_scale,
+            ..values
         }
     }
 }
@@ -196,47 +199,33 @@ names! {
     }
 }
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum FrameName {
-    /// Offsets in mesh units per repeat: bumps keep their height when the map is scaled
-    Natural,
-    /// Slopes in glTF's tangent frame
-    Unit,
-    /// Slopes along e1 = m x n and e2 = n x e1: no tangents at run time
-    MainDirection,
+names! {
+    /// `--frame`.
+    FrameOption => FrameName {
+        /// Offsets in mesh units per repeat: bumps keep their height when the map is scaled
+        Natural,
+        /// Slopes in glTF's tangent frame
+        Unit,
+        /// Slopes along e1 = m x n and e2 = n x e1: no tangents at run time
+        MainDirection,
+    }
 }
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Engine {
-    /// three.js
-    Three,
-    /// Babylon.js
-    Babylon,
-    /// PlayCanvas
-    Playcanvas,
-    /// Filament: its glTF loader has no anisotropy
-    Filament,
-    /// Bevy: refuses files that need KHR_texture_basisu
-    Bevy,
-    /// Godot: its glTF import has no anisotropy
-    Godot,
-}
-
-/// What an engine's preset sets.
-#[derive(Clone, Copy, Default)]
-struct Preset {
-    target: Target,
-    form: Form,
-    model: Model,
-}
-
-impl Engine {
-    fn preset(self) -> Preset {
-        match self {
-            Self::Three | Self::Babylon | Self::Playcanvas => Preset::default(),
-            Self::Bevy => Preset { form: Form::Dual, ..Preset::default() },
-            Self::Filament | Self::Godot => Preset { model: Model::Isotropic, ..Preset::default() },
-        }
+names! {
+    /// `--engine`.
+    EngineName => Engine {
+        /// three.js
+        Three,
+        /// Babylon.js
+        Babylon,
+        /// PlayCanvas
+        Playcanvas,
+        /// Filament: its glTF loader has no anisotropy
+        Filament,
+        /// Bevy: refuses files that need KHR_texture_basisu
+        Bevy,
+        /// Godot: its glTF import has no anisotropy
+        Godot,
     }
 }
 
@@ -253,10 +242,19 @@ pub fn finite(text: &str) -> Result<f32, String> {
     if number.is_finite() { Ok(number) } else { Err(format!("expected a finite number, found {number}")) }
 }
 
-fn direction(text: &str) -> Result<[f32; 3], String> {
-    let numbers = text.split(',').map(|part| finite(part.trim())).collect::<Result<Vec<_>, _>>()?;
+fn unit_interval_f64(text: &str) -> Result<f64, String> {
+    unit_interval(text)?;
+    finite_f64(text)
+}
+
+fn finite_f64(text: &str) -> Result<f64, String> {
+    finite(text)?;
+    text.parse().map_err(|_| format!("expected a number, found {text:?}"))
+}
+
+fn direction(text: &str) -> Result<[f64; 3], String> {
+    let numbers = text.split(',').map(|part| finite_f64(part.trim())).collect::<Result<Vec<_>, _>>()?;
     let found = numbers.len();
-    let m: [f32; 3] = numbers.try_into().map_err(|_| format!("expected three numbers x,y,z, found {found}"))?;
-    let length = m.iter().map(|x| x * x).sum::<f32>().sqrt();
-    if length > 0.0 { Ok(m.map(|x| x / length)) } else { Err("expected a direction, found 0,0,0".to_owned()) }
+    let m: [f64; 3] = numbers.try_into().map_err(|_| format!("expected three numbers x,y,z, found {found}"))?;
+    if m == [0.0; 3] { Err("expected a direction, found 0,0,0".to_owned()) } else { Ok(m) }
 }

@@ -28,6 +28,9 @@ pub struct Asset {
     pub output: Option<String>,
     /// How it ended.
     pub status: Status,
+    /// Its settings, where its configuration makes them other than those of the run.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub settings: Option<Value>,
     /// Seconds from reading to writing.
     pub seconds: f64,
     /// Bytes written.
@@ -59,6 +62,7 @@ impl Asset {
             input,
             output: None,
             status: Status::Failed,
+            settings: None,
             seconds,
             bytes: 0,
             error: Some(error),

@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use crate::bake::View;
+use crate::config::Values;
 
 /// The camera. Without --nearest all levels count as seen.
 #[derive(Debug, Args)]
@@ -10,32 +10,33 @@ use crate::bake::View;
 pub struct ViewOptions {
     /// Least distance of the camera from a surface, in units of the scene: the report then tells the finest level that
     /// is sampled on each material.
-    #[arg(long, value_parser = positive, value_name = "D", requires = "screen_height")]
+    #[arg(long, value_parser = positive, value_name = "D")]
     nearest: Option<f64>,
     /// Rows of pixels on the screen.
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..), value_name = "PX", requires = "nearest")]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..), value_name = "PX")]
     screen_height: Option<u32>,
-    /// Vertical field of view in degrees.
-    #[arg(long, value_parser = field_of_view, default_value_t = 45.0, value_name = "DEG", requires = "nearest")]
-    fov: f64,
-    /// Width of the screen over its height.
-    #[arg(long, value_parser = positive, default_value = "1.778", value_name = "RATIO", requires = "nearest")]
-    aspect: f64,
+    /// Vertical field of view in degrees. [default: 45]
+    #[arg(long, value_parser = field_of_view, value_name = "DEG")]
+    fov: Option<f64>,
+    /// Width of the screen over its height. [default: 1.778]
+    #[arg(long, value_parser = positive, value_name = "RATIO")]
+    aspect: Option<f64>,
     /// Leave levels that are too fine to be sampled out of the textures.
-    #[arg(long, requires = "nearest")]
-    trim: bool,
+    #[arg(long, num_args = 0..=1, require_equals = true, default_missing_value = "true", value_name = "BOOL")]
+    trim: Option<bool>,
 }
 
 impl ViewOptions {
-    /// The camera, where it is told.
-    pub fn view(&self) -> Option<View> {
-        Some(View {
-            nearest: self.nearest?,
-            screen_height: self.screen_height?,
+    /// What is said, beside `values`.
+    pub fn values(&self, values: Values) -> Values {
+        Values {
+            nearest: self.nearest,
+            screen_height: self.screen_height,
             fov: self.fov,
             aspect: self.aspect,
             trim: self.trim,
-        })
+            ..values
+        }
     }
 }
 

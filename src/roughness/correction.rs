@@ -12,7 +12,7 @@ use crate::pyramid::ShapedMoments;
 use crate::symmetric::Symmetric2;
 
 /// The shape that the offsets in a footprint are taken to have.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Distribution {
     /// The one that the footprint's own third and fourth moments tell.

@@ -3,6 +3,7 @@
 mod bad_input;
 mod bytes;
 mod compare;
+mod config;
 mod fixtures;
 mod notes;
 mod process;

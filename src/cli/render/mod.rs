@@ -201,7 +201,7 @@ struct Scored {
 /// # Errors
 /// When `out` or `err` cannot be written to.
 pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<Outcome> {
-    if let Err(reason) = args.texture.settings(None).target.check_available() {
+    if let Err(reason) = args.texture.settings().target.check_available() {
         writeln!(err, "error: {reason}")?;
         return Ok(Outcome::Usage);
     }
@@ -265,7 +265,7 @@ fn draw_all(args: &Args) -> Result<Vec<SheetReport>, RenderError> {
                 continue;
             }
         };
-        let settings = Settings { family: args.lobe.family(), ..args.texture.settings(None) };
+        let settings = Settings { family: args.lobe.family(), ..args.texture.settings() };
         let materials = input.columns(&settings, subject, args.roughness)?;
         for (done, columns) in materials.iter().enumerate() {
             let advance = |share: f32| {

@@ -31,7 +31,8 @@ use rayon::prelude::*;
 pub const BLOCK_BYTES: usize = 16;
 
 /// How hard the encoder searches.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Effort {
     /// Fits the modes that can win by the covariance of the colours. On eighteen real maps as near
     /// to the source as basis_universal's level 1, in a twentieth of its time.

@@ -1,0 +1,36 @@
+//! `roughcast init`.
+
+use std::fs::OpenOptions;
+use std::io::{self, Write};
+use std::path::PathBuf;
+
+use super::Outcome;
+use crate::config::{FILE_NAME, TEMPLATE};
+
+/// Write a commented roughcast.toml: every setting with its default.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Example:\n  roughcast init assets")]
+pub struct Args {
+    /// The folder whose assets it is for.
+    #[arg(default_value = ".", value_name = "DIR")]
+    folder: PathBuf,
+}
+
+/// Writes the file; one that is there stays.
+///
+/// # Errors
+/// When `out` or `err` cannot be written to.
+pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<Outcome> {
+    let path = args.folder.join(FILE_NAME);
+    let file = OpenOptions::new().write(true).create_new(true).open(&path);
+    match file.and_then(|mut file| file.write_all(TEMPLATE.as_bytes())) {
+        Ok(()) => {
+            writeln!(out, "wrote {}", path.display())?;
+            Ok(Outcome::Done)
+        }
+        Err(error) => {
+            writeln!(err, "error: {}: expected to write a new file, found: {error}", path.display())?;
+            Ok(Outcome::Failed)
+        }
+    }
+}

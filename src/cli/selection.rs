@@ -1,0 +1,200 @@
+//! Which assets a command is about, and which settings hold for each.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use super::Outcome;
+use super::inputs::{self, Input, InputError};
+use super::options::{DocumentOptions, LobeName, TextureOptions};
+use super::view::ViewOptions;
+use crate::bake::{Settings, read_file};
+use crate::config::{Config, ConfigError, FILE_NAME, Layer, Resolved, ValueError, Values, resolve};
+use crate::texture::EncodeError;
+
+/// Where outputs go and how they are made.
+#[derive(Debug, clap::Args)]
+pub struct Selection {
+    /// Output folder. [default: `output` in roughcast.toml]
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// Settings of every asset, instead of the roughcast.toml in its folder or in the nearest above.
+    #[arg(long, value_name = "FILE")]
+    config: Option<PathBuf>,
+    /// Read no roughcast.toml.
+    #[arg(long, conflicts_with = "config")]
+    no_config: bool,
+    /// What the engine shades with. [default: ggx]
+    #[arg(long, value_enum)]
+    lobe: Option<LobeName>,
+    #[command(flatten)]
+    texture: TextureOptions,
+    #[command(flatten)]
+    document: DocumentOptions,
+    #[command(flatten)]
+    view: ViewOptions,
+}
+
+/// Why nothing can be done.
+#[derive(Debug, thiserror::Error)]
+pub enum SelectionError {
+    /// A configuration that cannot be read.
+    #[error("{}: expected a readable file, found: {error}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// The system's error.
+        error: io::Error,
+    },
+    /// A configuration that is wrong.
+    #[error("{}: {error}", path.display())]
+    Config {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        error: ConfigError,
+    },
+    /// Settings that make no sense together.
+    #[error(transparent)]
+    Value(#[from] ValueError),
+    /// A target that this build does not have.
+    #[error(transparent)]
+    Encode(#[from] EncodeError),
+    /// No output folder.
+    #[error("expected an output folder, found none; name it with -o, or as `output` in {FILE_NAME}")]
+    NoOutput,
+}
+
+/// What a command line selects.
+pub struct Selected {
+    /// Assets, each with its settings.
+    pub assets: Vec<(Input, Resolved)>,
+    /// Inputs that cannot be used.
+    pub errors: Vec<InputError>,
+    /// Settings of assets without a configuration.
+    pub settings: Settings,
+}
+
+impl Selected {
+    /// Complains of inputs that cannot be used; returns whether the others may be worked on, and how the command ends.
+    ///
+    /// # Errors
+    /// When `err` cannot be written to.
+    pub fn complain(&self, err: &mut dyn Write) -> io::Result<(bool, Outcome)> {
+        for error in &self.errors {
+            writeln!(err, "error: {error}")?;
+        }
+        // Among sources no output is safe, not even that of the other inputs.
+        let is_safe = !self.errors.iter().any(|e| matches!(e, InputError::OutputIsInput { .. }));
+        Ok((is_safe, if self.errors.is_empty() { Outcome::Done } else { Outcome::Failed }))
+    }
+}
+
+impl Selection {
+    /// The assets of `arguments` and their settings.
+    ///
+    /// # Errors
+    /// [`SelectionError`] when nothing can be done.
+    pub fn find(&self, arguments: &[PathBuf]) -> Result<Selected, SelectionError> {
+        let lobe = self.lobe.map(Into::into);
+        let values = Values { lobe, ..self.view.values(self.document.values(self.texture.values())) };
+        let flags = Layer { origin: "command line".to_owned(), values };
+        let mut configs = Configs::default();
+        let output = match (&self.output, arguments.first()) {
+            (Some(output), _) => output.clone(),
+            (None, Some(first)) => {
+                let folder = if first.is_dir() { first.as_path() } else { first.parent().unwrap_or(Path::new("")) };
+                self.config(&mut configs, folder)?.and_then(|c| c.output_folder()).ok_or(SelectionError::NoOutput)?
+            }
+            (None, None) => return Err(SelectionError::NoOutput),
+        };
+        let (inputs, errors) = inputs::find(arguments, &output);
+        let mut assets = Vec::with_capacity(inputs.len());
+        for input in inputs {
+            let folder = input.path.parent().unwrap_or(Path::new(""));
+            let mut layers = match self.config(&mut configs, folder)? {
+                Some(found) => found.config.layers(&found.relative(&input.path)),
+                None => Vec::new(),
+            };
+            layers.push(flags.clone());
+            let resolved = resolve(&layers)?;
+            resolved.settings.target.check_available()?;
+            assets.push((input, resolved));
+        }
+        let settings = resolve(&[flags]).map_or_else(|_| Settings::default(), |resolved| resolved.settings);
+        Ok(Selected { assets, errors, settings })
+    }
+
+    fn config<'c>(&self, configs: &'c mut Configs, folder: &Path) -> Result<Option<&'c Found>, SelectionError> {
+        match &self.config {
+            _ if self.no_config => Ok(None),
+            Some(named) => configs.named(named),
+            None => configs.above(folder),
+        }
+    }
+}
+
+/// A configuration and the folder, without links, that its globs are relative to.
+struct Found {
+    config: Config,
+    root: PathBuf,
+}
+
+impl Found {
+    /// `asset` relative to the configuration's folder; as it is when it is elsewhere.
+    fn relative(&self, asset: &Path) -> PathBuf {
+        let folder = real(asset.parent().unwrap_or(Path::new("")));
+        let path = folder.join(asset.file_name().unwrap_or_default());
+        path.strip_prefix(&self.root).map_or_else(|_| asset.to_owned(), Path::to_owned)
+    }
+
+    fn output_folder(&self) -> Option<PathBuf> {
+        let folder = self.config.path.parent().unwrap_or(Path::new(""));
+        self.config.output.as_ref().map(|output| folder.join(output))
+    }
+}
+
+/// Configurations by their folders.
+#[derive(Default)]
+struct Configs(BTreeMap<PathBuf, Option<Found>>);
+
+impl Configs {
+    fn named(&mut self, path: &Path) -> Result<Option<&Found>, SelectionError> {
+        let root = real(path.parent().unwrap_or(Path::new("")));
+        if !self.0.contains_key(&root) {
+            self.0.insert(root.clone(), Some(read(path, &root)?));
+        }
+        Ok(self.0.get(&root).and_then(Option::as_ref))
+    }
+
+    /// The configuration in `folder`, or in the nearest folder above that has one.
+    fn above(&mut self, folder: &Path) -> Result<Option<&Found>, SelectionError> {
+        let start = real(folder);
+        if !self.0.contains_key(&start) {
+            let roots = start.ancestors().find(|root| root.join(FILE_NAME).is_file());
+            let found = roots.map(|root| read(&named_from_here(&root.join(FILE_NAME)), root)).transpose()?;
+            self.0.insert(start.clone(), found);
+        }
+        Ok(self.0.get(&start).and_then(Option::as_ref))
+    }
+}
+
+fn read(path: &Path, root: &Path) -> Result<Found, SelectionError> {
+    let failed = |error| SelectionError::Read { path: path.to_owned(), error };
+    let bytes = read_file(path).map_err(failed)?;
+    let text = String::from_utf8(bytes).map_err(|e| failed(io::Error::new(io::ErrorKind::InvalidData, e)))?;
+    let config = Config::parse(&text, path).map_err(|error| SelectionError::Config { path: path.to_owned(), error })?;
+    Ok(Found { config, root: root.to_owned() })
+}
+
+/// Relative to the working folder where it is below it: what a person wrote, and what is the same on every machine.
+fn named_from_here(path: &Path) -> PathBuf {
+    path.strip_prefix(real(Path::new(""))).map_or_else(|_| path.to_owned(), Path::to_owned)
+}
+
+/// The folder without links and dots; as it is where it does not exist.
+fn real(folder: &Path) -> PathBuf {
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned())
+}

@@ -1,0 +1,209 @@
+//! The file: its keys, its overrides, and what is wrong with it, by line.
+
+use std::path::{Path, PathBuf};
+
+use globset::{GlobBuilder, GlobMatcher};
+use serde_json::json;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::layers::Layer;
+use super::values::Values;
+
+/// What the file is called.
+pub const FILE_NAME: &str = "roughcast.toml";
+
+/// A file in which every setting stands with its default, as a comment.
+pub const TEMPLATE: &str = include_str!("template.toml");
+
+/// A read file.
+#[derive(Clone, Debug)]
+pub struct Config {
+    /// The file, as it was named.
+    pub path: PathBuf,
+    /// Output folder, relative to the file's own.
+    pub output: Option<PathBuf>,
+    defaults: Values,
+    overrides: Vec<Override>,
+}
+
+#[derive(Clone, Debug)]
+struct Override {
+    patterns: Vec<String>,
+    globs: Vec<GlobMatcher>,
+    values: Values,
+}
+
+/// What is wrong with a file. The caller adds its name.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ConfigError {
+    /// Not TOML.
+    #[error("expected TOML, found: {reason}")]
+    Syntax {
+        /// What the parser says, with the line.
+        reason: String,
+    },
+    /// A key that is no setting.
+    #[error(
+        "line {line}: expected the name of a setting, found {key:?}{}; `roughcast init` writes them all",
+        suggest(suggestion)
+    )]
+    UnknownKey {
+        /// Line, from 1.
+        line: usize,
+        /// The key.
+        key: String,
+        /// The name that is most like it.
+        suggestion: Option<String>,
+    },
+    /// A value of the wrong kind.
+    #[error("line {line}: {key}: expected another value, found: {reason}")]
+    Value {
+        /// Line, from 1.
+        line: usize,
+        /// The key.
+        key: String,
+        /// What the reader says.
+        reason: String,
+    },
+}
+
+fn suggest(name: &Option<String>) -> String {
+    name.as_ref().map_or_else(String::new, |name| format!("; did you mean {name:?}"))
+}
+
+impl Config {
+    /// Reads `text`, the content of `path`.
+    ///
+    /// # Errors
+    /// [`ConfigError`] for the first thing that is wrong, whether or not an asset would need it.
+    pub fn parse(text: &str, path: &Path) -> Result<Self, ConfigError> {
+        let table =
+            DeTable::parse(text).map_err(|e| ConfigError::Syntax { reason: e.to_string().trim_end().into() })?;
+        let reader = Reader { text };
+        let (defaults, rest) = reader.values(table.get_ref(), &["output", "override"])?;
+        let mut config = Self { path: path.to_owned(), output: None, defaults, overrides: Vec::new() };
+        for (key, value) in rest {
+            match (key, value.get_ref()) {
+                ("output", DeValue::String(folder)) => config.output = Some(PathBuf::from(folder.as_ref())),
+                ("override", DeValue::Array(tables)) => {
+                    for table in tables.iter() {
+                        config.overrides.push(reader.overriding(table)?);
+                    }
+                }
+                ("output", _) => return Err(reader.wrong(key, value, "not a string")),
+                _ => return Err(reader.wrong(key, value, "not a list of tables; write [[override]]")),
+            }
+        }
+        Ok(config)
+    }
+
+    /// The file's layers for `asset`, a path relative to the file's folder.
+    pub fn layers(&self, asset: &Path) -> Vec<Layer> {
+        let place = self.path.display();
+        let mut layers = vec![Layer { origin: place.to_string(), values: self.defaults.clone() }];
+        for part in self.overrides.iter().filter(|part| part.globs.iter().any(|glob| glob.is_match(asset))) {
+            let origin = format!("{place}, override of {}", part.patterns.join(", "));
+            layers.push(Layer { origin, values: part.values.clone() });
+        }
+        layers
+    }
+}
+
+/// Keys with their values.
+type Entries<'t> = Vec<(&'t str, &'t Spanned<DeValue<'t>>)>;
+
+struct Reader<'t> {
+    text: &'t str,
+}
+
+impl Reader<'_> {
+    /// The settings in `table`, and its entries of the names `others`.
+    fn values<'t>(&self, table: &'t DeTable<'t>, others: &[&str]) -> Result<(Values, Entries<'t>), ConfigError> {
+        let names = Values::names();
+        let (mut said, mut rest) = (serde_json::Map::new(), Vec::new());
+        for (key, value) in table.iter() {
+            let name = key.get_ref().as_ref();
+            if others.contains(&name) {
+                rest.push((name, value));
+                continue;
+            }
+            if !names.iter().any(|n| n == name) {
+                let known = names.iter().map(String::as_str).chain(others.iter().copied());
+                return Err(ConfigError::UnknownKey {
+                    line: self.line(key.span().start),
+                    key: name.to_owned(),
+                    suggestion: most_like(name, known),
+                });
+            }
+            let json = to_json(value.get_ref()).ok_or_else(|| self.wrong(name, value, "no finite value"))?;
+            // One by one, so that the line of the wrong one is known.
+            serde_json::from_value::<Values>(json!({ name: json }))
+                .map_err(|e| self.wrong(name, value, &e.to_string()))
+                .and_then(|values| match values.settings() {
+                    Err(error @ super::ValueError::Range { .. }) => Err(self.wrong(name, value, &error.to_string())),
+                    _ => Ok(()),
+                })?;
+            said.insert(name.to_owned(), json);
+        }
+        let values = serde_json::from_value(said.into()).unwrap_or_default();
+        Ok((values, rest))
+    }
+
+    fn overriding<'t>(&self, table: &'t Spanned<DeValue<'t>>) -> Result<Override, ConfigError> {
+        let DeValue::Table(entries) = table.get_ref() else {
+            return Err(self.wrong("override", table, "not a table; write [[override]]"));
+        };
+        let (values, rest) = self.values(entries, &["files"])?;
+        let Some((_, files)) = rest.first() else {
+            return Err(self.wrong("override", table, "no files; name those that it is for, as files = \"props/**\""));
+        };
+        let list: Vec<&DeValue<'_>> = match files.get_ref() {
+            DeValue::Array(list) => list.iter().map(Spanned::get_ref).collect(),
+            single => vec![single],
+        };
+        let (mut patterns, mut globs) = (Vec::new(), Vec::new());
+        for pattern in list {
+            let DeValue::String(pattern) = pattern else {
+                return Err(self.wrong("files", files, "neither a glob nor a list of globs"));
+            };
+            // As in .gitignore: a name alone is meant wherever it is.
+            let anywhere = if pattern.contains('/') { pattern.to_string() } else { format!("**/{pattern}") };
+            let glob = GlobBuilder::new(&anywhere).literal_separator(true).build();
+            globs.push(glob.map_err(|e| self.wrong("files", files, &e.to_string()))?.compile_matcher());
+            patterns.push(pattern.to_string());
+        }
+        Ok(Override { patterns, globs, values })
+    }
+
+    fn wrong(&self, key: &str, value: &Spanned<DeValue<'_>>, reason: &str) -> ConfigError {
+        ConfigError::Value { line: self.line(value.span().start), key: key.to_owned(), reason: reason.to_owned() }
+    }
+
+    fn line(&self, offset: usize) -> usize {
+        1 + self.text.bytes().take(offset).filter(|byte| *byte == b'\n').count()
+    }
+}
+
+/// As JSON; `None` where JSON has no such value.
+fn to_json(value: &DeValue<'_>) -> Option<serde_json::Value> {
+    Some(match value {
+        DeValue::String(text) => text.as_ref().into(),
+        DeValue::Boolean(truth) => (*truth).into(),
+        DeValue::Integer(number) => i64::from_str_radix(number.as_str(), number.radix()).ok()?.into(),
+        DeValue::Float(number) => serde_json::Number::from_f64(number.as_str().parse().ok()?)?.into(),
+        DeValue::Array(list) => list.iter().map(|v| to_json(v.get_ref())).collect::<Option<Vec<_>>>()?.into(),
+        DeValue::Table(_) | DeValue::Datetime(_) => return None,
+    })
+}
+
+/// The name most like `key`, if any is.
+fn most_like<'n>(key: &str, names: impl Iterator<Item = &'n str>) -> Option<String> {
+    let key = key.replace('_', "-").to_lowercase();
+    let scored = names.map(|name| (strsim::jaro_winkler(&key, name), name));
+    let (score, name) = scored.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    (score > 0.75).then(|| name.to_owned())
+}
+
+#[cfg(test)]
+mod tests;
