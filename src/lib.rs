@@ -8,6 +8,7 @@
 
 pub mod bake;
 pub mod bump;
+pub mod cache;
 pub mod check;
 pub mod choose;
 pub mod cli;
@@ -18,6 +19,7 @@ pub mod inspect;
 pub mod judge;
 pub mod lobe;
 pub mod map;
+pub mod plan;
 pub mod pyramid;
 pub mod render;
 pub mod roughness;

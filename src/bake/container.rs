@@ -171,8 +171,16 @@ pub fn embed_images(document: &mut Document, source: &Source<'_>) -> Result<(), 
 
 /// The files that images and buffers of `json` name, without repetition, relative to the document.
 pub fn files(json: &Json) -> Result<Vec<PathBuf>, ContainerError> {
+    named(&[("images", image_uris(json)?), ("buffers", buffer_uris(json)?)])
+}
+
+/// The same of buffers alone.
+pub fn buffer_files(json: &Json) -> Result<Vec<PathBuf>, ContainerError> {
+    named(&[("buffers", buffer_uris(json)?)])
+}
+
+fn named(lists: &[(&str, Vec<Option<String>>)]) -> Result<Vec<PathBuf>, ContainerError> {
     let mut files = Vec::new();
-    let lists = [("images", image_uris(json)?), ("buffers", buffer_uris(json)?)];
     for (array, uris) in lists {
         for (index, uri) in uris.iter().enumerate() {
             let Some(uri) = uri else { continue };

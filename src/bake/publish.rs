@@ -78,33 +78,51 @@ impl Places {
     }
 }
 
-/// Writes `baked` to `document`, and its files beside it. Files that it only refers to are copied from `source_folder`.
-/// The document comes last: whoever sees it sees everything that it names. Returns the bytes written.
+/// Checks that `files` and `copies` beside `document`, and itself, may be written for the asset `source`, and takes their
+/// places for it.
 ///
 /// # Errors
-/// [`PublishError`]; `source` is never overwritten, nor any file that is copied. `places` remembers the outputs of a run,
-/// so that no asset takes another's.
-pub fn publish(baked: &Baked, document: &Path, source: &Path, places: &mut Places) -> Result<u64, PublishError> {
+/// [`PublishError`] where an output is a source, or the place of another asset of the run, which `places` remembers.
+pub fn claim(
+    files: &[&Path],
+    copies: &[PathBuf],
+    document: &Path,
+    source: &Path,
+    places: &mut Places,
+) -> Result<(), PublishError> {
     let source_folder = source.parent().unwrap_or(Path::new(""));
     let folder = document.parent().unwrap_or(Path::new(""));
     let mut sources: BTreeSet<PathBuf> = BTreeSet::new();
-    for path in baked.copies.iter().map(|c| source_folder.join(c)).chain([source.to_owned()]) {
+    for path in copies.iter().map(|c| source_folder.join(c)).chain([source.to_owned()]) {
         sources.extend(fs::canonicalize(path));
     }
-    let outputs = baked.files.iter().map(|f| &f.path).chain(&baked.copies).map(|p| folder.join(p));
+    let outputs = files.iter().copied().chain(copies.iter().map(PathBuf::as_path)).map(|p| folder.join(p));
     for path in outputs.chain([document.to_owned()]) {
         if fs::canonicalize(&path).is_ok_and(|p| sources.contains(&p)) {
             return Err(PublishError::OverSource { path });
         }
     }
-    for copy in &baked.copies {
+    for copy in copies {
         let path = source_folder.join(copy);
         check_file(&path).map_err(|error| PublishError::Copy { path: path.clone(), error })?;
         places.take(&folder.join(copy), &path)?;
     }
-    for path in baked.files.iter().map(|f| folder.join(&f.path)).chain([document.to_owned()]) {
+    for path in files.iter().map(|f| folder.join(f)).chain([document.to_owned()]) {
         places.take(&path, &path)?;
     }
+    Ok(())
+}
+
+/// Writes `baked` to `document`, and its files beside it. Files that it only refers to are copied from the folder of
+/// `source`. The document comes last: whoever sees it sees everything that it names. Returns the bytes written.
+///
+/// # Errors
+/// [`PublishError`]; `source` is never overwritten, nor any file that is copied: see [`claim`].
+pub fn publish(baked: &Baked, document: &Path, source: &Path, places: &mut Places) -> Result<u64, PublishError> {
+    let files: Vec<&Path> = baked.files.iter().map(|file| file.path.as_path()).collect();
+    claim(&files, &baked.copies, document, source, places)?;
+    let source_folder = source.parent().unwrap_or(Path::new(""));
+    let folder = document.parent().unwrap_or(Path::new(""));
     let mut total = 0;
     for copy in &baked.copies {
         let path = source_folder.join(copy);
@@ -145,18 +163,29 @@ fn check_file(path: &Path) -> io::Result<()> {
 /// # Errors
 /// [`PublishError::Write`].
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<u64, PublishError> {
-    let write = || -> io::Result<()> {
-        let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        fs::create_dir_all(folder)?;
-        let mut file = tempfile::Builder::new().prefix(".roughcast-").tempfile_in(folder)?;
-        file.write_all(bytes)?;
-        file.as_file().sync_all()?;
-        set_ordinary_permissions(file.as_file())?;
-        file.persist(path).map_err(|e| e.error)?;
-        Ok(())
-    };
-    write().map_err(|error| PublishError::Write { path: path.to_owned(), error })?;
+    put(path, bytes, true).map_err(|error| PublishError::Write { path: path.to_owned(), error })?;
     Ok(bytes.len() as u64)
+}
+
+/// The same for what is verified when it is read: it need not survive the machine.
+///
+/// # Errors
+/// The system's.
+pub fn write_unsynced(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    put(path, bytes, false)
+}
+
+fn put(path: &Path, bytes: &[u8], is_synced: bool) -> io::Result<()> {
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    fs::create_dir_all(folder)?;
+    let mut file = tempfile::Builder::new().prefix(".roughcast-").tempfile_in(folder)?;
+    file.write_all(bytes)?;
+    if is_synced {
+        file.as_file().sync_all()?;
+    }
+    set_ordinary_permissions(file.as_file())?;
+    file.persist(path).map_err(|e| e.error)?;
+    Ok(())
 }
 
 /// Temporary files are private to their user; what is baked is for everyone whom the folder lets in.

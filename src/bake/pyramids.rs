@@ -1,7 +1,7 @@
 //! The pyramid profile: offsets and D or lambda_1, each with the range that its texels stand for.
 
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::chain::{Chain, Encoding, encode_chain};
 use super::settings::Settings;
@@ -11,7 +11,7 @@ use crate::roughness::{Factor, lambda_1};
 use crate::texture::EncodeError;
 
 /// What texels of 0 and 1 stand for, channel by channel: value = min + texel (max - min).
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Range {
     /// Value of a texel of 0.
     pub min: Vec<f32>,

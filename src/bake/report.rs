@@ -1,6 +1,6 @@
 //! What a bake did, as data (`schemas/report.schema.json`).
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::pyramids::Range;
 use super::settings::{Model, Settings};
@@ -9,7 +9,7 @@ use crate::choose::Reason;
 use crate::gltf::material::{LayerKind, Material};
 
 /// What was done for one asset.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct AssetReport {
     /// Layers of materials, in the order of the file.
@@ -19,7 +19,7 @@ pub struct AssetReport {
 }
 
 /// What was done for one layer of a material.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct LayerReport {
     /// Index into `materials`.
@@ -57,7 +57,7 @@ impl LayerReport {
 }
 
 /// How the roughness data of a layer was chosen, so that the choice can be audited.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Choice {
     /// The finest level that can be sampled, to which the first error of each candidate belongs.
@@ -71,7 +71,7 @@ pub struct Choice {
 }
 
 /// Roughness data that a layer might have.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Candidate {
     /// What it models.
@@ -85,7 +85,7 @@ pub struct Candidate {
 }
 
 /// A level at which the bound is exceeded.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Miss {
     /// The level.
@@ -156,7 +156,7 @@ fn ranges(numbers: impl Iterator<Item = usize>) -> String {
 }
 
 /// A texture that was written.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct TextureReport {
     /// Path relative to the asset.
@@ -170,7 +170,7 @@ pub struct TextureReport {
     /// Mip levels.
     pub levels: usize,
     /// Finer levels that were left out.
-    #[serde(skip_serializing_if = "is_zero")]
+    #[serde(default, skip_serializing_if = "is_zero")]
     pub trimmed: usize,
     /// Bytes of the KTX2 file.
     pub bytes: usize,
@@ -184,7 +184,7 @@ fn is_zero(n: &usize) -> bool {
 }
 
 /// What the texels of a baked texture are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Content {
     /// Unit normals.

@@ -1,6 +1,6 @@
 //! How close a camera comes, and hence the finest mip level that it can sample.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::gltf::density::Density;
 
@@ -21,7 +21,7 @@ pub struct View {
 }
 
 /// The finest level that a camera can sample of a layer's bump map.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Finest {
     /// Level, 0 the finest.

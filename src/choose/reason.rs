@@ -1,6 +1,6 @@
 //! Why an error bound is missed, by measurement.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// What was measured where a bound is missed; errors are means over the texels that were looked at.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,7 +20,7 @@ pub struct Evidence {
 }
 
 /// Why an error bound is missed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub enum Reason {
     /// Blocks cannot hold texels that differ so much.

@@ -1,19 +1,18 @@
 //! `roughcast bake`.
 
+use std::fmt::Display;
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 
 use super::Outcome;
-use super::inputs::Input;
+use super::jobs::{self, JobOptions, Planned};
 use super::progress::Progress;
-use super::report::{Asset, Report, Status};
-use super::selection::{Selected, Selection};
-use crate::bake::report::AssetReport;
-use crate::bake::{
-    BakeError, JobError, Places, PublishError, Settings, Source, SourceError, bake, publish, read_file, write_file,
-};
-use crate::gltf::document::{Container, Document, DocumentError};
+use super::report::{Asset, Report};
+use super::selection::Selection;
+use crate::bake::{Places, Settings, write_file};
+use crate::cache::{Cache, CacheError};
+use crate::plan;
 
 /// Bake glTF assets: KTX2 textures with the lost roughness in their mips, and a glTF that refers to them.
 ///
@@ -22,7 +21,7 @@ use crate::gltf::document::{Container, Document, DocumentError};
 #[command(after_help = "Example:\n  roughcast bake assets/helmet.gltf -o baked --engine bevy")]
 pub struct Args {
     /// .gltf or .glb files, or folders that are searched for them.
-    #[arg(required = true, value_name = "INPUT")]
+    #[arg(required_unless_present = "plan", value_name = "INPUT")]
     inputs: Vec<PathBuf>,
     /// Write what was done, chosen and skipped to a JSON file.
     #[arg(long, value_name = "FILE")]
@@ -34,51 +33,18 @@ pub struct Args {
     #[arg(short, long, conflicts_with = "json")]
     quiet: bool,
     /// Print the settings of each asset and where each comes from, and bake nothing.
-    #[arg(long, conflicts_with = "json")]
+    #[arg(long, conflicts_with_all = ["json", "plan"])]
     print_config: bool,
+    /// Keep outputs in this folder, and take from it what was baked before. Several runs may share it.
+    #[arg(long, value_name = "DIR")]
+    cache: Option<PathBuf>,
+    /// Largest size of that folder; what was not used for longest goes first. K, M, G and T are powers of 1024.
+    #[arg(long, value_name = "SIZE", value_parser = size, default_value = "10G")]
+    cache_size: u64,
+    #[command(flatten)]
+    jobs: JobOptions,
     #[command(flatten)]
     selection: Selection,
-}
-
-/// Why an asset is not baked.
-#[derive(Debug, thiserror::Error)]
-enum AssetError {
-    #[error("expected a readable file, found: {0}")]
-    Read(io::Error),
-    #[error(transparent)]
-    Document(#[from] DocumentError),
-    #[error(transparent)]
-    Bake(#[from] BakeError),
-    #[error(transparent)]
-    Publish(#[from] PublishError),
-}
-
-impl AssetError {
-    /// Whether trying again may help: something was busy or away, not missing or wrong.
-    fn is_passing(&self) -> bool {
-        let error = match self {
-            Self::Read(error)
-            | Self::Bake(BakeError::Source(SourceError::Read { error, .. }))
-            | Self::Bake(BakeError::Job(JobError::Source { error: SourceError::Read { error, .. }, .. })) => {
-                Some(error)
-            }
-            Self::Publish(error) => error.io(),
-            _ => None,
-        };
-        error.is_some_and(|e| {
-            use io::ErrorKind as Kind;
-            matches!(
-                e.kind(),
-                Kind::WouldBlock
-                    | Kind::TimedOut
-                    | Kind::Interrupted
-                    | Kind::ResourceBusy
-                    | Kind::StaleNetworkFileHandle
-                    | Kind::NetworkDown
-                    | Kind::HostUnreachable
-            )
-        })
-    }
 }
 
 /// Bakes what `args` name.
@@ -86,48 +52,59 @@ impl AssetError {
 /// # Errors
 /// When `out` or `err` cannot be written to.
 pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<Outcome> {
-    let selected = match args.selection.find(&args.inputs) {
-        Ok(selected) => selected,
-        Err(reason) => {
-            writeln!(err, "error: {reason}")?;
-            return Ok(Outcome::Usage);
+    let usage = |err: &mut dyn Write, reason: &dyn Display| -> io::Result<Outcome> {
+        writeln!(err, "error: {reason}")?;
+        Ok(Outcome::Usage)
+    };
+    let mut outcome = Outcome::Done;
+    let (planned, failed, settings) = match args.jobs.planned() {
+        Some(Err(reason)) => return usage(err, &reason),
+        Some(Ok(planned)) => (planned, Vec::new(), Settings::default()),
+        None => {
+            let selected = match args.selection.find(&args.inputs) {
+                Ok(selected) => selected,
+                Err(reason) => return usage(err, &reason),
+            };
+            let (is_safe, so_far) = selected.complain(err)?;
+            if args.print_config {
+                for (input, resolved) in &selected.assets {
+                    print(out, &format!("# {}\n{resolved}\n", input.path.display()))?;
+                }
+            }
+            if args.print_config || !is_safe {
+                return Ok(so_far);
+            }
+            outcome = so_far;
+            (jobs::plan(&selected.assets), selected.errors, selected.settings)
         }
     };
-    let (is_safe, mut outcome) = selected.complain(err)?;
-    if args.print_config {
-        for (input, resolved) in &selected.assets {
-            print(out, &format!("# {}\n{resolved}\n", input.path.display()))?;
-        }
-        return Ok(outcome);
-    }
-    if !is_safe {
-        return Ok(outcome);
-    }
-    let Selected { assets, errors, settings } = selected;
-    let progress = Progress::new(assets.len(), args.quiet);
+    let planned = match args.jobs.choose(planned) {
+        Ok(planned) => planned,
+        Err(reason) => return usage(err, &reason),
+    };
+    let cache = args.cache.as_deref().map(Cache::new);
+    let progress = Progress::new(planned.len(), args.quiet);
     let mut report = Report {
         version: env!("CARGO_PKG_VERSION"),
         settings: settings.to_json(settings.model),
-        assets: errors.iter().map(|e| Asset::failed(e.path().display().to_string(), 0.0, e.to_string())).collect(),
+        assets: failed.iter().map(|e| Asset::failed(e.path().display().to_string(), 0.0, e.to_string())).collect(),
     };
     let mut places = Places::default();
-    for (index, (input, resolved)) in assets.iter().enumerate() {
+    for (index, Planned { name, job }) in planned.into_iter().enumerate() {
         let start = Instant::now();
-        let name = input.path.display().to_string();
         progress.set(index, 0.0, &name);
-        let result = bake_one(input, &resolved.settings, &mut places, &|share| progress.set(index, share, &name));
+        let mut warn = |error: &CacheError| {
+            // The bake does not depend on who reads this.
+            let _ = progress.suspend(|| writeln!(err, "warning: {name}: {error}"));
+        };
+        let result = job.and_then(|job| {
+            args.jobs.check(&job)?;
+            let advance = |share| progress.set(index, share, &name);
+            Ok((job.typed_settings()?, plan::run(&job, &mut places, cache.as_ref(), &mut warn, &advance)?))
+        });
         let seconds = start.elapsed().as_secs_f64();
         let asset = match result {
-            Ok((output, bytes, report)) => Asset {
-                input: name,
-                output: Some(output.display().to_string()),
-                status: if report.textures.is_empty() { Status::Copied } else { Status::Baked },
-                settings: Some(&resolved.settings).filter(|own| **own != settings).map(|own| own.to_json(own.model)),
-                seconds,
-                bytes,
-                error: None,
-                report,
-            },
+            Ok((own, done)) => Asset::done(name, &done, seconds, (own != settings).then_some(own)),
             Err(error) => {
                 outcome = outcome.and(if error.is_passing() { Outcome::Retry } else { Outcome::Failed });
                 let message = error.to_string();
@@ -141,6 +118,11 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
         report.assets.push(asset);
     }
     progress.finish();
+    if let Some(cache) = &cache
+        && let Err(error) = cache.trim(args.cache_size)
+    {
+        writeln!(err, "warning: {error}")?;
+    }
     let mut json = serde_json::to_string_pretty(&report).map_err(io::Error::other)?;
     json.push('\n');
     if let Some(path) = &args.report
@@ -163,19 +145,17 @@ fn print(out: &mut dyn Write, text: &str) -> io::Result<()> {
     }
 }
 
-fn bake_one(
-    input: &Input,
-    settings: &Settings,
-    places: &mut Places,
-    advance: &dyn Fn(f32),
-) -> Result<(PathBuf, u64, AssetReport), AssetError> {
-    let bytes = read_file(&input.path).map_err(AssetError::Read)?;
-    let document = Document::parse(&bytes)?;
-    let folder = input.path.parent().unwrap_or(Path::new(""));
-    let source = Source { stem: &input.stem, document: &document, read: &|path| read_file(&folder.join(path)) };
-    let baked = bake(&source, settings, advance)?;
-    let extension = if baked.container == Container::Glb { "glb" } else { "gltf" };
-    let output = input.folder.join(format!("{}.{extension}", input.stem));
-    let bytes = publish(&baked, &output, &input.path, places)?;
-    Ok((output, bytes, baked.report))
+/// A number of bytes, with K, M, G or T for powers of 1024.
+fn size(text: &str) -> Result<u64, String> {
+    let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
+    let power = match text[digits.len()..].to_ascii_uppercase().as_str() {
+        "" => Some(0),
+        "K" => Some(1),
+        "M" => Some(2),
+        "G" => Some(3),
+        "T" => Some(4),
+        _ => None,
+    };
+    let bytes = power.and_then(|power| digits.parse::<u64>().ok()?.checked_mul(1 << (10 * power)));
+    bytes.ok_or_else(|| format!("expected a number of bytes such as 500M or 10G, found {text:?}"))
 }

@@ -6,8 +6,10 @@ mod compare;
 mod init;
 mod inputs;
 mod inspect;
+mod jobs;
 mod map;
 mod options;
+mod plan;
 mod progress;
 mod render;
 mod report;
@@ -36,6 +38,7 @@ enum Command {
     Bake(bake::Args),
     Init(init::Args),
     Map(map::Args),
+    Plan(plan::Args),
     Check(check::Args),
     Inspect(inspect::Args),
     Compare(compare::Args),
@@ -95,6 +98,7 @@ pub fn run(cli: Cli, out: &mut dyn Write, err: &mut dyn Write) -> std::io::Resul
         Command::Bake(args) => bake::run(&args, out, err),
         Command::Init(args) => init::run(&args, out, err),
         Command::Map(args) => map::run(&args, out, err),
+        Command::Plan(args) => plan::run(&args, out, err),
         Command::Check(args) => check::run(&args, out, err),
         Command::Inspect(args) => inspect::run(&args, out, err),
         Command::Compare(args) => compare::run(&args, out, err),

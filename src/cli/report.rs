@@ -3,7 +3,10 @@
 use serde::Serialize;
 use serde_json::Value;
 
+use crate::bake::Settings;
 use crate::bake::report::{AssetReport, Choice};
+
+use crate::plan::Done;
 
 /// What a run did.
 #[derive(Debug, Serialize)]
@@ -51,11 +54,32 @@ pub enum Status {
     Baked,
     /// Nothing in it has bumps: copied as it is.
     Copied,
+    /// It was baked before: its outputs are as the cache has them.
+    Cached,
     /// See `error`.
     Failed,
 }
 
 impl Asset {
+    /// An input that was baked; `own` are its settings where they are not those of the run.
+    pub fn done(input: String, done: &Done, seconds: f64, own: Option<Settings>) -> Self {
+        let status = match &done.report.textures {
+            _ if done.is_cached => Status::Cached,
+            textures if textures.is_empty() => Status::Copied,
+            _ => Status::Baked,
+        };
+        Self {
+            input,
+            output: Some(done.output.display().to_string()),
+            status,
+            settings: own.map(|own| own.to_json(own.model)),
+            seconds,
+            bytes: done.bytes,
+            error: None,
+            report: done.report.clone(),
+        }
+    }
+
     /// An input that could not be baked.
     pub fn failed(input: String, seconds: f64, error: String) -> Self {
         Self {
@@ -74,6 +98,9 @@ impl Asset {
     pub fn summary(&self) -> String {
         let mut text = match self.status {
             Status::Failed => return String::new(),
+            Status::Cached => {
+                return format!("cached {}: {:.1} MB, {:.2} s\n", self.input, self.bytes as f64 / 1e6, self.seconds);
+            }
             Status::Copied => format!("copied {}: no normal or height maps\n", self.input),
             Status::Baked => format!(
                 "baked {}: {} texture(s), {:.1} MB, {:.2} s\n",

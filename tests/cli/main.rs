@@ -2,10 +2,12 @@
 
 mod bad_input;
 mod bytes;
+mod cache;
 mod compare;
 mod config;
 mod fixtures;
 mod notes;
+mod plan;
 mod process;
 mod render;
 mod transcripts;

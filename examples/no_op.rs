@@ -1,0 +1,70 @@
+//! What a bake costs that has nothing to do: many assets, baked once with a cache, and again.
+//!
+//! `cargo run --release --example no_op -- 1000` prints the time of the second run beside that of reading and hashing the
+//! files concerned, one after the other.
+
+use std::error::Error;
+use std::fs;
+use std::path::Path;
+use std::time::Instant;
+
+use clap::Parser;
+use roughcast::cli::{Cli, Outcome, run};
+use walkdir::WalkDir;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let count: usize = std::env::args().nth(1).map_or(Ok(1000), |n| n.parse())?;
+    let folder = tempfile::tempdir()?;
+    let (assets, baked, cache) =
+        (folder.path().join("assets"), folder.path().join("baked"), folder.path().join("cache"));
+    let fixture = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/brushed");
+    for index in 0..count {
+        let asset = assets.join(format!("{index:05}"));
+        fs::create_dir_all(&asset)?;
+        for file in fs::read_dir(&fixture)? {
+            let file = file?;
+            let mut bytes = fs::read(file.path())?;
+            if file.path().extension().is_some_and(|e| e == "png") {
+                // What follows the end of a PNG is not read: images that differ, and bake to the same.
+                bytes.extend(index.to_le_bytes());
+            }
+            fs::write(asset.join(file.file_name()), bytes)?;
+        }
+    }
+    let bake = || -> Result<f64, Box<dyn Error>> {
+        let words = ["roughcast".as_ref(), "bake".as_ref(), assets.as_os_str(), "-o".as_ref(), baked.as_os_str()];
+        let cli = Cli::try_parse_from(words.into_iter().chain(["--cache".as_ref(), cache.as_os_str(), "-q".as_ref()]))?;
+        let start = Instant::now();
+        let (mut out, mut err) = (Vec::new(), Vec::new());
+        match run(cli, &mut out, &mut err)? {
+            Outcome::Done => Ok(start.elapsed().as_secs_f64()),
+            _ => Err(String::from_utf8_lossy(&err).into()),
+        }
+    };
+    let first = bake()?;
+    let (sources, outputs) = (best(|| hash_all(&assets))?, best(|| hash_all(&baked))?);
+    let again = best(&bake)?;
+    println!("{count} assets: baked in {first:.2} s, nothing to do in {again:.3} s");
+    println!("hashing the sources: {sources:.3} s, ratio {:.2}", again / sources);
+    println!("hashing sources and outputs: {:.3} s, ratio {:.2}", sources + outputs, again / (sources + outputs));
+    Ok(())
+}
+
+/// The shortest of three.
+fn best(measure: impl Fn() -> Result<f64, Box<dyn Error>>) -> Result<f64, Box<dyn Error>> {
+    (0..3).try_fold(f64::INFINITY, |least, _| Ok(least.min(measure()?)))
+}
+
+/// Seconds that it takes to read and hash every file below `folder`.
+fn hash_all(folder: &Path) -> Result<f64, Box<dyn Error>> {
+    let start = Instant::now();
+    let mut digests = Vec::new();
+    for entry in WalkDir::new(folder) {
+        let entry = entry?;
+        if entry.file_type().is_file() {
+            digests.push(blake3::hash(&fs::read(entry.path())?));
+        }
+    }
+    std::hint::black_box(digests);
+    Ok(start.elapsed().as_secs_f64())
+}

@@ -1,0 +1,40 @@
+//! What a bake of a document will read and write, as far as it is known before any image is decoded.
+
+use std::path::PathBuf;
+
+use serde_json::Value;
+
+use super::asset::BakeError;
+use super::container;
+use crate::gltf::document::{Container, Document};
+use crate::gltf::json::Json;
+use crate::gltf::material::materials;
+
+/// What is known of a document before its bake.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Survey {
+    /// Files that images and buffers name, relative to the document.
+    pub files: Vec<PathBuf>,
+    /// Those of buffers, which the output refers to as well unless it is a .glb.
+    pub buffers: Vec<PathBuf>,
+    /// Whether a material has bumps; without, the document comes back as it is.
+    pub has_bumps: bool,
+    /// The container of the document.
+    pub container: Container,
+}
+
+/// Surveys `document`.
+///
+/// # Errors
+/// [`BakeError`] for materials and references that a bake could not make sense of either.
+pub fn survey(document: &Document) -> Result<Survey, BakeError> {
+    let json: &Json = document.json();
+    let root: Value = json.value("")?.unwrap_or_default();
+    let materials = materials(&root).into_iter().collect::<Result<Vec<_>, _>>()?;
+    Ok(Survey {
+        files: container::files(json)?,
+        buffers: container::buffer_files(json)?,
+        has_bumps: materials.iter().any(|material| !material.layers.is_empty()),
+        container: document.container(),
+    })
+}

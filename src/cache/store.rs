@@ -1,0 +1,164 @@
+//! The folder of a cache: `jobs/<id>` and `blobs/<digest>`, in folders by their first two digits.
+
+use std::fs::{self, File};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+use walkdir::WalkDir;
+
+use super::entry::{Entry, Stored};
+use crate::bake::{Baked, write_unsynced};
+
+/// A cache in a folder.
+#[derive(Clone, Debug)]
+pub struct Cache {
+    root: PathBuf,
+}
+
+/// What is wrong with a cache. No reason for a job to fail.
+#[derive(Debug, thiserror::Error)]
+pub enum CacheError {
+    /// Other bytes than were written. The file is gone now.
+    #[error("{}: expected the bytes that were stored there, found others; dropped it, and bake again", path.display())]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The file system refused.
+    #[error("{}: expected a cache that can be read and written, found: {error}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// The system's error.
+        error: io::Error,
+    },
+}
+
+impl Cache {
+    /// The cache in `root`, which is made when something is stored.
+    pub fn new(root: &Path) -> Self {
+        Self { root: root.to_owned() }
+    }
+
+    /// The outputs of the job `id`, if it was run.
+    ///
+    /// # Errors
+    /// [`CacheError`] where the entry is there but of no use.
+    pub fn entry(&self, id: &str) -> Result<Option<Entry>, CacheError> {
+        let path = self.path("jobs", id);
+        let Some(bytes) = read(&path)? else { return Ok(None) };
+        let text = bytes.split_at_checked(DIGEST_LENGTH).filter(|(digest, rest)| hex(rest).as_bytes() == *digest);
+        let entry = text.and_then(|(_, json)| serde_json::from_slice::<Entry>(json).ok());
+        entry.filter(Entry::is_contained).map(Some).ok_or_else(|| dropped(path))
+    }
+
+    /// The bytes of a blob, if it is there.
+    ///
+    /// # Errors
+    /// [`CacheError`] where they are not what they were.
+    pub fn blob(&self, digest: &str) -> Result<Option<Vec<u8>>, CacheError> {
+        let path = self.path("blobs", digest);
+        match read(&path)? {
+            Some(bytes) if hex(&bytes) == digest => Ok(Some(bytes)),
+            Some(_) => Err(dropped(path)),
+            None => Ok(None),
+        }
+    }
+
+    /// Stores what the job `id` baked as `document`: blobs first, so that an entry's blobs are there.
+    ///
+    /// # Errors
+    /// [`CacheError::Io`].
+    pub fn put(&self, id: &str, document: &Path, baked: &Baked) -> Result<(), CacheError> {
+        let name = document.file_name().map(PathBuf::from).unwrap_or_default();
+        let mut files = Vec::with_capacity(baked.files.len());
+        for file in &baked.files {
+            files.push(self.put_blob(&file.path, &file.bytes)?);
+        }
+        let document = self.put_blob(&name, &baked.document)?;
+        let entry = Entry { document, files, copies: baked.copies.clone(), report: baked.report.clone() };
+        let path = self.path("jobs", id);
+        let json = serde_json::to_vec(&entry).map_err(|e| failed(&path)(e.into()))?;
+        let text = [hex(&json).as_bytes(), &json].concat();
+        write_unsynced(&path, &text).map_err(failed(&path))
+    }
+
+    fn put_blob(&self, name: &Path, bytes: &[u8]) -> Result<Stored, CacheError> {
+        let blake3 = hex(bytes);
+        let path = self.path("blobs", &blake3);
+        // Also over a blob that is there: it may be damaged.
+        write_unsynced(&path, bytes).map_err(failed(&path))?;
+        Ok(Stored { path: name.to_owned(), blake3, bytes: bytes.len() as u64 })
+    }
+
+    /// Marks the entry of the job `id` and its blobs as used.
+    pub fn touch(&self, id: &str, entry: &Entry) {
+        let blobs = entry.files.iter().chain([&entry.document]).map(|stored| self.path("blobs", &stored.blake3));
+        for path in blobs.chain([self.path("jobs", id)]) {
+            // Only the order of eviction depends on it.
+            let _ = File::open(path).and_then(|file| file.set_modified(SystemTime::now()));
+        }
+    }
+
+    /// Removes what was not used for longest until at most `limit` bytes are left.
+    ///
+    /// # Errors
+    /// [`CacheError::Io`] where the folder cannot be listed.
+    pub fn trim(&self, limit: u64) -> Result<(), CacheError> {
+        let mut files = Vec::new();
+        for kind in ["jobs", "blobs"].map(|kind| self.root.join(kind)).iter().filter(|kind| kind.exists()) {
+            for entry in WalkDir::new(kind) {
+                // Other processes remove files too.
+                let Ok(entry) = entry else { continue };
+                let Ok(facts) = entry.metadata() else { continue };
+                if facts.is_file() {
+                    let used = facts.modified().map_err(failed(entry.path()))?;
+                    files.push((used, entry.into_path(), facts.len()));
+                }
+            }
+        }
+        files.sort();
+        let mut total: u64 = files.iter().map(|(_, _, length)| length).sum();
+        for (_, path, length) in files {
+            if total <= limit {
+                break;
+            }
+            let _ = fs::remove_file(path);
+            total -= length;
+        }
+        Ok(())
+    }
+
+    fn path(&self, kind: &str, digest: &str) -> PathBuf {
+        self.root.join(kind).join(digest.get(..2).unwrap_or("")).join(digest)
+    }
+}
+
+/// Hexadecimal digits of a BLAKE3 digest.
+const DIGEST_LENGTH: usize = 64;
+
+fn hex(bytes: &[u8]) -> String {
+    blake3::hash(bytes).to_hex().to_string()
+}
+
+fn read(path: &Path) -> Result<Option<Vec<u8>>, CacheError> {
+    match fs::read(path) {
+        Ok(bytes) => Ok(Some(bytes)),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(failed(path)(error)),
+    }
+}
+
+fn dropped(path: PathBuf) -> CacheError {
+    let _ = fs::remove_file(&path);
+    CacheError::Damaged { path }
+}
+
+fn failed(path: &Path) -> impl Fn(io::Error) -> CacheError {
+    let path = path.to_owned();
+    move |error| CacheError::Io { path: path.clone(), error }
+}
+
+#[cfg(test)]
+mod tests;

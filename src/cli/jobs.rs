@@ -1,0 +1,139 @@
+//! Which jobs a command line asks for: all of a selection, those of a plan, or some of either.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use rayon::prelude::*;
+
+use super::inputs::Input;
+use crate::bake::read_file;
+use crate::config::Resolved;
+use crate::plan::{Job, Plan, RunError, Shard};
+
+/// A job by its asset's name for a person, or why it cannot be planned.
+pub struct Planned {
+    /// The source, as it was named.
+    pub name: String,
+    /// The job.
+    pub job: Result<Job, RunError>,
+}
+
+/// Plans every asset. Their files are hashed side by side; the order stays.
+pub fn plan(assets: &[(Input, Resolved)]) -> Vec<Planned> {
+    let planned = assets.par_iter().map(|(input, resolved)| Planned {
+        name: input.path.display().to_string(),
+        job: Job::new(&input.path, &input.folder, &resolved.values),
+    });
+    planned.collect()
+}
+
+/// What a plan has settled: all of a selection, by the ids of arguments and of groups of them.
+const NOT_WITH_A_PLAN: [&str; 8] =
+    ["inputs", "output", "config", "no_config", "lobe", "TextureOptions", "DocumentOptions", "ViewOptions"];
+
+/// Which jobs of all.
+#[derive(Debug, clap::Args)]
+pub struct JobOptions {
+    /// Run this job only: an id of `roughcast plan`, or its first digits (8 at least).
+    #[arg(long, value_name = "ID", value_parser = job_id)]
+    job: Option<String>,
+    /// Run the jobs of a file that `roughcast plan --json` wrote, in the same working folder.
+    #[arg(long, value_name = "FILE", conflicts_with_all = NOT_WITH_A_PLAN)]
+    plan: Option<PathBuf>,
+    /// Run the I-th of N parts, from 1.
+    #[arg(long, value_name = "I/N", value_parser = shard)]
+    shard: Option<Shard>,
+}
+
+/// Why there are no jobs.
+#[derive(Debug, thiserror::Error)]
+pub enum JobsError {
+    /// The plan cannot be read.
+    #[error("{}: expected a readable file, found: {error}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// The system's error.
+        error: io::Error,
+    },
+    /// The file is no plan.
+    #[error("{}: expected a plan as `roughcast plan --json` writes it, found: {reason}", path.display())]
+    NoPlan {
+        /// The file.
+        path: PathBuf,
+        /// What the reader says.
+        reason: String,
+    },
+    /// The plan is for another version, whose jobs these are not.
+    #[error("{}: expected a plan of version {}, found one of {version}; plan again", path.display(), env!("CARGO_PKG_VERSION"))]
+    OtherVersion {
+        /// The file.
+        path: PathBuf,
+        /// Its version.
+        version: String,
+    },
+    /// No job has the id.
+    #[error("expected the id of a job, found {id}, which none has; `roughcast plan` prints them")]
+    NoJob {
+        /// What was asked for.
+        id: String,
+    },
+}
+
+impl JobOptions {
+    /// The plan that is to be run, if one is named.
+    ///
+    /// # Errors
+    /// [`JobsError`].
+    pub fn planned(&self) -> Option<Result<Vec<Planned>, JobsError>> {
+        self.plan.as_deref().map(read_plan)
+    }
+
+    /// Checks that a job of a plan is what its files make of it now.
+    ///
+    /// # Errors
+    /// [`RunError::NotAsPlanned`], or why it cannot be planned any more.
+    pub fn check(&self, job: &Job) -> Result<(), RunError> {
+        if self.plan.is_some() { job.check() } else { Ok(()) }
+    }
+
+    /// Those of `planned` that are asked for. What cannot be planned has no id: it is told unless one job is asked for.
+    ///
+    /// # Errors
+    /// [`JobsError::NoJob`].
+    pub fn choose(&self, mut planned: Vec<Planned>) -> Result<Vec<Planned>, JobsError> {
+        if let Some(id) = &self.job {
+            planned.retain(|planned| planned.job.as_ref().is_ok_and(|job| job.id.starts_with(id)));
+            if planned.is_empty() {
+                return Err(JobsError::NoJob { id: id.clone() });
+            }
+        }
+        if let Some(shard) = self.shard {
+            planned.retain(|planned| planned.job.as_ref().map_or(true, |job| shard.has(job)));
+        }
+        Ok(planned)
+    }
+}
+
+fn read_plan(path: &Path) -> Result<Vec<Planned>, JobsError> {
+    let bytes = read_file(path).map_err(|error| JobsError::Read { path: path.to_owned(), error })?;
+    let plan: Plan = serde_json::from_slice(&bytes)
+        .map_err(|error| JobsError::NoPlan { path: path.to_owned(), reason: error.to_string() })?;
+    if plan.version != env!("CARGO_PKG_VERSION") {
+        return Err(JobsError::OtherVersion { path: path.to_owned(), version: plan.version });
+    }
+    Ok(plan.jobs.into_iter().map(|job| Planned { name: job.source.display().to_string(), job: Ok(job) }).collect())
+}
+
+fn job_id(text: &str) -> Result<String, String> {
+    let is_id = (8..=64).contains(&text.len()) && text.bytes().all(|b| matches!(b, b'0'..=b'9' | b'a'..=b'f'));
+    if is_id { Ok(text.to_owned()) } else { Err(format!("expected 8 to 64 hexadecimal digits, found {text:?}")) }
+}
+
+fn shard(text: &str) -> Result<Shard, String> {
+    let parts = text.split_once('/').and_then(|(i, n)| Some((i.parse().ok()?, n.parse().ok()?)));
+    match parts {
+        Some((index, count)) if 1 <= index && index <= count => Ok(Shard { index, count }),
+        _ => Err(format!("expected I/N with I from 1 to N, such as 2/8, found {text:?}")),
+    }
+}

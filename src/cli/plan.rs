@@ -1,0 +1,91 @@
+//! `roughcast plan`.
+
+use std::io::{self, Write};
+use std::path::PathBuf;
+
+use super::Outcome;
+use super::jobs::plan;
+use super::selection::Selection;
+use crate::plan::Plan;
+
+/// Print the jobs that a bake would run, and run none.
+///
+/// A job is one asset, named by all that decides on its outputs. Run a plan with `bake --plan FILE`, in parts with
+/// `--shard I/N`, on any machine that has the files at the same relative paths.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Example:\n  roughcast plan assets -o baked --json > plan.json\n  \
+    roughcast bake --plan plan.json --shard 1/8")]
+pub struct Args {
+    /// .gltf or .glb files, or folders that are searched for them, relative to the working folder.
+    #[arg(required = true, value_name = "INPUT")]
+    inputs: Vec<PathBuf>,
+    /// Print the whole plan, with inputs, outputs and command lines.
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    selection: Selection,
+}
+
+/// Prints the plan.
+///
+/// # Errors
+/// When `out` or `err` cannot be written to.
+pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<Outcome> {
+    let selected = match args.selection.find(&args.inputs) {
+        Ok(selected) => selected,
+        Err(reason) => {
+            writeln!(err, "error: {reason}")?;
+            return Ok(Outcome::Usage);
+        }
+    };
+    let (is_safe, mut outcome) = selected.complain(err)?;
+    if !is_safe {
+        return Ok(outcome);
+    }
+    let mut jobs = Vec::new();
+    for planned in plan(&selected.assets) {
+        let failed = match planned.job {
+            // The plan is for other machines too.
+            Ok(job) if job.source.is_absolute() || job.output.is_absolute() => {
+                writeln!(
+                    err,
+                    "error: {}: expected paths relative to the working folder, found an absolute one",
+                    planned.name
+                )?;
+                return Ok(Outcome::Usage);
+            }
+            Ok(job) => match job.inputs.iter().find(|input| input.blake3.is_none()) {
+                None => {
+                    jobs.push(job);
+                    continue;
+                }
+                Some(missing) => {
+                    outcome = outcome.and(Outcome::Failed);
+                    format!("expected a readable file at {}; the document refers to it", missing.path.display())
+                }
+            },
+            Err(error) => {
+                outcome = outcome.and(if error.is_passing() { Outcome::Retry } else { Outcome::Failed });
+                error.to_string()
+            }
+        };
+        writeln!(err, "error: {}: {failed}", planned.name)?;
+    }
+    if args.json {
+        let plan = Plan { version: env!("CARGO_PKG_VERSION").to_owned(), jobs };
+        writeln!(out, "{}", serde_json::to_string_pretty(&plan).map_err(io::Error::other)?)?;
+    } else {
+        for job in &jobs {
+            let id = job.id.get(..12).unwrap_or_default();
+            let to = job.output.display();
+            writeln!(
+                out,
+                "{id}  {} -> {to}, {} inputs, {:.1} MB",
+                job.source.display(),
+                job.inputs.len(),
+                job.cost as f64 / 1e6
+            )?;
+        }
+    }
+    Ok(outcome)
+}

@@ -1,0 +1,82 @@
+//! Why a job cannot be planned or run, and whether to try again.
+
+use std::io;
+use std::path::PathBuf;
+
+use crate::bake::{BakeError, JobError, PublishError, SourceError};
+use crate::config::ValueError;
+use crate::gltf::document::DocumentError;
+
+/// Why a job fails. The caller adds the asset's name.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// The document cannot be read.
+    #[error("expected a readable file, found: {0}")]
+    Read(io::Error),
+    /// The document is none.
+    #[error(transparent)]
+    Document(#[from] DocumentError),
+    /// The bake.
+    #[error(transparent)]
+    Bake(#[from] BakeError),
+    /// Its outputs cannot be written.
+    #[error(transparent)]
+    Publish(#[from] PublishError),
+    /// Settings of a plan that make no sense.
+    #[error(transparent)]
+    Value(#[from] ValueError),
+    /// Settings of a plan that are none.
+    #[error("expected the settings of a plan, found: {0}; plan again")]
+    Settings(String),
+    /// Another job than the one that was planned.
+    #[error("expected the job {planned}, found {found} from the same source: {reason}; plan again")]
+    NotAsPlanned {
+        /// The id that was planned.
+        planned: String,
+        /// The id that the files have now.
+        found: String,
+        /// What is not as it was.
+        reason: String,
+    },
+    /// A file that was written to while it was being baked.
+    #[error("expected {} to stay as it is during the bake, found that it changed; bake again", path.display())]
+    Changed {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A declared output that is not there after the bake.
+    #[error("expected the job to write {}, found nothing there", path.display())]
+    NoOutput {
+        /// The file or folder.
+        path: PathBuf,
+    },
+}
+
+impl RunError {
+    /// Whether trying again may help: something was busy or away, not missing or wrong.
+    pub fn is_passing(&self) -> bool {
+        let error = match self {
+            Self::Changed { .. } => return true,
+            Self::Read(error)
+            | Self::Bake(BakeError::Source(SourceError::Read { error, .. }))
+            | Self::Bake(BakeError::Job(JobError::Source { error: SourceError::Read { error, .. }, .. })) => {
+                Some(error)
+            }
+            Self::Publish(error) => error.io(),
+            _ => None,
+        };
+        error.is_some_and(|e| {
+            use io::ErrorKind as Kind;
+            matches!(
+                e.kind(),
+                Kind::WouldBlock
+                    | Kind::TimedOut
+                    | Kind::Interrupted
+                    | Kind::ResourceBusy
+                    | Kind::StaleNetworkFileHandle
+                    | Kind::NetworkDown
+                    | Kind::HostUnreachable
+            )
+        })
+    }
+}

@@ -1,0 +1,209 @@
+//! A job: one asset, and all that decides on what becomes of it.
+
+use std::fs;
+use std::path::{Component, Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value, json};
+
+use super::error::RunError;
+use crate::bake::{Settings, Survey, read_file, survey};
+use crate::config::Values;
+use crate::gltf::document::{Container, Document};
+
+/// The bake of one asset. Paths are relative to the working folder, if the command line's are.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct Job {
+    /// BLAKE3 of inputs, settings and tool version, in hex. The same asset in another folder is the same job.
+    pub id: String,
+    /// The .gltf or .glb file.
+    pub source: PathBuf,
+    /// Folder of the outputs.
+    pub output: PathBuf,
+    /// Every setting, by its name in `roughcast.toml`.
+    pub settings: Map<String, Value>,
+    /// Files that are read, the source first.
+    pub inputs: Vec<JobInput>,
+    /// What must be there afterwards.
+    pub outputs: Vec<JobOutput>,
+    /// Bytes of the inputs, if anything is to be baked: time grows with them.
+    pub cost: u64,
+    /// The command line that bakes this asset alone.
+    pub command: Vec<String>,
+}
+
+/// A file that a job reads.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct JobInput {
+    /// Where it is.
+    pub path: PathBuf,
+    /// BLAKE3 of its bytes in hex; absent where it cannot be read, which the job will say if it needs it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub blake3: Option<String>,
+    /// Its length.
+    pub bytes: u64,
+}
+
+/// What a job must have written.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct JobOutput {
+    /// Where it must be.
+    pub path: PathBuf,
+    /// What it must be.
+    pub kind: OutputKind,
+}
+
+/// A kind of output.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum OutputKind {
+    /// A file.
+    File,
+    /// A folder with files whose names the bake decides on.
+    Folder,
+}
+
+impl Job {
+    /// Plans the bake of `source` into the folder `output` with `settings`: reads and hashes its files, and decodes none.
+    ///
+    /// # Errors
+    /// [`RunError`] where the document cannot be read or understood.
+    pub fn new(source: &Path, output: &Path, settings: &Map<String, Value>) -> Result<Self, RunError> {
+        let bytes = read_file(source).map_err(RunError::Read)?;
+        let document = Document::parse(&bytes)?;
+        let survey = survey(&document)?;
+        let stem = stem(source);
+        // Without what has no meaning, such as a slash at the end.
+        let output: &Path = &output.components().collect::<PathBuf>();
+        let digest = |bytes: &[u8]| blake3::hash(bytes).to_hex().to_string();
+        let mut inputs =
+            vec![JobInput { path: source.to_owned(), blake3: Some(digest(&bytes)), bytes: bytes.len() as u64 }];
+        for file in &survey.files {
+            let path = beside(source, file);
+            let bytes = read_file(&path).ok();
+            let (blake3, bytes) = (bytes.as_deref().map(digest), bytes.map_or(0, |b| b.len() as u64));
+            inputs.push(JobInput { path, blake3, bytes });
+        }
+        let names = survey.files.iter().map(|file| file.to_string_lossy());
+        let files: Vec<(String, &Option<String>)> = [stem.clone().into()]
+            .into_iter()
+            .chain(names)
+            .map(|name| name.into_owned())
+            .zip(inputs.iter().map(|input| &input.blake3))
+            .collect();
+        let identity = json!({ "version": env!("CARGO_PKG_VERSION"), "settings": settings, "files": files });
+        let typed = typed(settings)?;
+        Ok(Self {
+            id: digest(identity.to_string().as_bytes()),
+            outputs: outputs(&survey, &typed, &stem, output),
+            cost: if survey.has_bumps { inputs.iter().map(|input| input.bytes).sum() } else { 0 },
+            command: command(source, output, settings),
+            source: source.to_owned(),
+            output: output.to_owned(),
+            settings: settings.clone(),
+            inputs,
+        })
+    }
+
+    /// The settings.
+    ///
+    /// # Errors
+    /// [`RunError`] where those of a plan are none.
+    pub fn typed_settings(&self) -> Result<Settings, RunError> {
+        typed(&self.settings)
+    }
+
+    /// The same job as the files are now.
+    ///
+    /// # Errors
+    /// [`RunError::NotAsPlanned`] if it is another one.
+    pub fn check(&self) -> Result<(), RunError> {
+        let now = Self::new(&self.source, &self.output, &self.settings)?;
+        if now.id == self.id {
+            return Ok(());
+        }
+        let changed = now.inputs.iter().find(|input| !self.inputs.contains(input));
+        let reason = changed.map_or_else(
+            || "the plan is of another version, or was edited".to_owned(),
+            |input| format!("{} is not as it was", input.path.display()),
+        );
+        Err(RunError::NotAsPlanned { planned: self.id.clone(), found: now.id, reason })
+    }
+
+    /// Name of the asset without its extension; outputs are named after it.
+    pub fn stem(&self) -> String {
+        stem(&self.source)
+    }
+}
+
+fn stem(source: &Path) -> String {
+    source.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+fn typed(settings: &Map<String, Value>) -> Result<Settings, RunError> {
+    let values: Values =
+        serde_json::from_value(Value::Object(settings.clone())).map_err(|e| RunError::Settings(e.to_string()))?;
+    Ok(values.settings()?)
+}
+
+fn outputs(survey: &Survey, settings: &Settings, stem: &str, folder: &Path) -> Vec<JobOutput> {
+    let file = |path: PathBuf| JobOutput { path, kind: OutputKind::File };
+    let is_glb = if survey.has_bumps { settings.glb } else { survey.container == Container::Glb };
+    let mut outputs = vec![file(folder.join(format!("{stem}.{}", if is_glb { "glb" } else { "gltf" })))];
+    if survey.has_bumps && !is_glb {
+        outputs.push(JobOutput { path: folder.join(format!("{stem}.roughcast")), kind: OutputKind::Folder });
+    }
+    if !is_glb {
+        outputs.extend(survey.buffers.iter().map(|buffer| file(folded(&folder.join(buffer)))));
+    }
+    outputs
+}
+
+/// The flags are the names of the settings; what is not set has no default.
+fn command(source: &Path, output: &Path, settings: &Map<String, Value>) -> Vec<String> {
+    let path = |path: &Path| path.to_string_lossy().into_owned();
+    let mut words = vec!["roughcast".to_owned(), "bake".to_owned(), path(source), "-o".to_owned(), path(output)];
+    words.push("--no-config".to_owned());
+    let has_view = settings.contains_key("nearest");
+    for (name, value) in settings {
+        match (name.as_str(), value) {
+            ("provenance", Value::Bool(true)) | ("glb" | "trim", Value::Bool(false)) => {}
+            ("provenance", _) => words.push("--no-provenance".to_owned()),
+            ("fov" | "aspect", _) if !has_view => {}
+            (_, Value::Bool(truth)) => words.push(format!("--{name}={truth}")),
+            (_, Value::String(text)) => words.push(format!("--{name}={text}")),
+            (_, Value::Array(list)) => {
+                let list: Vec<String> = list.iter().map(Value::to_string).collect();
+                words.push(format!("--{name}={}", list.join(",")));
+            }
+            (_, number) => words.push(format!("--{name}={number}")),
+        }
+    }
+    words
+}
+
+/// Where a file is that `source` refers to as `file`: one file, one path, unless links make another of it.
+pub fn beside(source: &Path, file: &Path) -> PathBuf {
+    let path = source.parent().unwrap_or(Path::new("")).join(file);
+    let short = folded(&path);
+    let is_same = || matches!((fs::canonicalize(&path), fs::canonicalize(&short)), (Ok(a), Ok(b)) if a == b);
+    if short == path || is_same() { short } else { path }
+}
+
+/// Without `.`, and without `..` where a name stands before it: one file, one path.
+fn folded(path: &Path) -> PathBuf {
+    let mut folded = PathBuf::new();
+    for part in path.components() {
+        match part {
+            Component::CurDir => {}
+            Component::ParentDir if matches!(folded.components().next_back(), Some(Component::Normal(_))) => {
+                folded.pop();
+            }
+            part => folded.push(part),
+        }
+    }
+    folded
+}

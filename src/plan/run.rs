@@ -1,0 +1,117 @@
+//! Running a job: from the cache if it is there, else by baking; either way all declared outputs are there afterwards.
+
+use std::collections::BTreeMap;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+
+use super::error::RunError;
+use super::job::{Job, OutputKind, beside};
+use super::restore::restore;
+use crate::bake::report::AssetReport;
+use crate::bake::{Places, Source, bake, publish, read_file};
+use crate::cache::{Cache, CacheError};
+use crate::gltf::document::Document;
+
+/// What a job did.
+#[derive(Clone, Debug)]
+pub struct Done {
+    /// The output document.
+    pub output: PathBuf,
+    /// Bytes of all outputs.
+    pub bytes: u64,
+    /// What is in them.
+    pub report: AssetReport,
+    /// Whether they were baked before.
+    pub is_cached: bool,
+}
+
+/// Runs `job`. `warn` is told of entries of the cache that were dropped; `advance` is as in [`bake`].
+///
+/// # Errors
+/// [`RunError`]; other jobs are not concerned.
+pub fn run(
+    job: &Job,
+    places: &mut Places,
+    cache: Option<&Cache>,
+    warn: &mut dyn FnMut(&CacheError),
+    advance: &dyn Fn(f32),
+) -> Result<Done, RunError> {
+    let restored = match cache {
+        None => None,
+        Some(cache) => restore(job, places, cache, warn)?,
+    };
+    let done = match restored {
+        Some(done) => done,
+        None => baked(job, places, cache, warn, advance)?,
+    };
+    for output in &job.outputs {
+        let is_there = match output.kind {
+            OutputKind::File => output.path.is_file(),
+            OutputKind::Folder => output.path.is_dir(),
+        };
+        if !is_there {
+            return Err(RunError::NoOutput { path: output.path.clone() });
+        }
+    }
+    Ok(done)
+}
+
+fn baked(
+    job: &Job,
+    places: &mut Places,
+    cache: Option<&Cache>,
+    warn: &mut dyn FnMut(&CacheError),
+    advance: &dyn Fn(f32),
+) -> Result<Done, RunError> {
+    let settings = job.typed_settings()?;
+    let inputs = Inputs::new(job);
+    let result: Result<_, RunError> = (|| {
+        let document = Document::parse(&inputs.read(&job.source).map_err(RunError::Read)?)?;
+        let read = |file: &Path| inputs.read(&beside(&job.source, file));
+        let stem = job.stem();
+        Ok(bake(&Source { stem: &stem, document: &document, read: &read }, &settings, advance)?)
+    })();
+    // Whatever else went wrong, half of a file that was being written explains it.
+    if let Some(path) = inputs.changed() {
+        return Err(RunError::Changed { path });
+    }
+    let baked = result?;
+    let extension = if baked.container == crate::gltf::document::Container::Glb { "glb" } else { "gltf" };
+    let output = job.output.join(format!("{}.{extension}", job.stem()));
+    let bytes = publish(&baked, &output, &job.source, places)?;
+    if let Some(cache) = cache
+        && let Err(error) = cache.put(&job.id, &output, &baked)
+    {
+        warn(&error);
+    }
+    Ok(Done { output, bytes, report: baked.report, is_cached: false })
+}
+
+/// The files of a job: what is read must be what was hashed.
+struct Inputs<'j> {
+    digests: BTreeMap<&'j Path, Option<&'j str>>,
+    changed: Mutex<Option<PathBuf>>,
+}
+
+impl<'j> Inputs<'j> {
+    fn new(job: &'j Job) -> Self {
+        let digests = job.inputs.iter().map(|input| (input.path.as_path(), input.blake3.as_deref())).collect();
+        Self { digests, changed: Mutex::new(None) }
+    }
+
+    fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
+        let bytes = read_file(path)?;
+        let digest = blake3::hash(&bytes).to_hex();
+        if self.digests.get(path) != Some(&Some(digest.as_str()))
+            && let Ok(mut changed) = self.changed.lock()
+        {
+            changed.get_or_insert_with(|| path.to_owned());
+        }
+        Ok(bytes)
+    }
+
+    fn changed(&self) -> Option<PathBuf> {
+        self.changed.lock().ok().and_then(|changed| changed.clone())
+    }
+}
