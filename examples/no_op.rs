@@ -43,7 +43,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let first = bake()?;
     let (sources, outputs) = (best(|| hash_all(&assets))?, best(|| hash_all(&baked))?);
-    let again = best(&bake)?;
+    let again = best(bake)?;
     println!("{count} assets: baked in {first:.2} s, nothing to do in {again:.3} s");
     println!("hashing the sources: {sources:.3} s, ratio {:.2}", again / sources);
     println!("hashing sources and outputs: {:.3} s, ratio {:.2}", sources + outputs, again / (sources + outputs));

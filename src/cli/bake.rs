@@ -5,6 +5,8 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 use std::time::Instant;
 
+use rayon::prelude::*;
+
 use super::Outcome;
 use super::jobs::{self, JobOptions, Planned};
 use super::progress::Progress;
@@ -12,7 +14,7 @@ use super::report::{Asset, Report};
 use super::selection::Selection;
 use crate::bake::{Places, Settings, write_file};
 use crate::cache::{Cache, CacheError};
-use crate::plan;
+use crate::plan::{self, Lookup};
 
 /// Bake glTF assets: KTX2 textures with the lost roughness in their mips, and a glTF that refers to them.
 ///
@@ -90,7 +92,10 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
         assets: failed.iter().map(|e| Asset::failed(e.path().display().to_string(), 0.0, e.to_string())).collect(),
     };
     let mut places = Places::default();
-    for (index, Planned { name, job }) in planned.into_iter().enumerate() {
+    // Hashing is all that a run without news does, so it is done side by side.
+    let look_up = |planned: &Planned| Some(Lookup::new(planned.job.as_ref().ok()?, cache.as_ref()?));
+    let lookups: Vec<Option<Lookup>> = planned.par_iter().map(look_up).collect();
+    for (index, (Planned { name, job }, lookup)) in planned.into_iter().zip(lookups).enumerate() {
         let start = Instant::now();
         progress.set(index, 0.0, &name);
         let mut warn = |error: &CacheError| {
@@ -100,7 +105,7 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
         let result = job.and_then(|job| {
             args.jobs.check(&job)?;
             let advance = |share| progress.set(index, share, &name);
-            Ok((job.typed_settings()?, plan::run(&job, &mut places, cache.as_ref(), &mut warn, &advance)?))
+            Ok((job.typed_settings()?, plan::run(&job, &mut places, cache.as_ref().zip(lookup), &mut warn, &advance)?))
         });
         let seconds = start.elapsed().as_secs_f64();
         let asset = match result {

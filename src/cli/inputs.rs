@@ -1,5 +1,7 @@
 //! Which assets a command line names, and where their outputs go.
 
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -86,18 +88,22 @@ impl InputError {
 pub fn find(arguments: &[PathBuf], output: &Path) -> (Vec<Input>, Vec<InputError>) {
     let mut inputs: Vec<Input> = Vec::new();
     let mut errors = Vec::new();
+    let mut taken: BTreeMap<(PathBuf, String), PathBuf> = BTreeMap::new();
     for argument in arguments {
         match find_one(argument, output) {
             Err(error) => errors.push(error),
             Ok((found, more)) => {
                 errors.extend(more);
                 for input in found {
-                    match inputs.iter().find(|i| i.folder == input.folder && i.stem == input.stem) {
-                        Some(other) if other.path != input.path => {
-                            errors.push(InputError::SameOutput { path: input.path, other: other.path.clone() });
+                    match taken.entry((input.folder.clone(), input.stem.clone())) {
+                        Entry::Occupied(other) if *other.get() != input.path => {
+                            errors.push(InputError::SameOutput { path: input.path, other: other.get().clone() });
                         }
-                        Some(_) => {}
-                        None => inputs.push(input),
+                        Entry::Occupied(_) => {}
+                        Entry::Vacant(free) => {
+                            free.insert(input.path.clone());
+                            inputs.push(input);
+                        }
                     }
                 }
             }

@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 
 pub use error::RunError;
 pub use job::{Job, JobInput, JobOutput, OutputKind};
+pub use restore::Lookup;
 pub use run::{Done, run};
 
 /// The jobs of a run (`schemas/plan.schema.json`).

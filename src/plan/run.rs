@@ -7,7 +7,7 @@ use std::sync::Mutex;
 
 use super::error::RunError;
 use super::job::{Job, OutputKind, beside};
-use super::restore::restore;
+use super::restore::{Lookup, restore};
 use crate::bake::report::AssetReport;
 use crate::bake::{Places, Source, bake, publish, read_file};
 use crate::cache::{Cache, CacheError};
@@ -26,20 +26,20 @@ pub struct Done {
     pub is_cached: bool,
 }
 
-/// Runs `job`. `warn` is told of entries of the cache that were dropped; `advance` is as in [`bake`].
+/// Runs `job`; `cache` comes with what it knows of it. `warn` is told of entries of the cache that were dropped; `advance` is as in [`bake`].
 ///
 /// # Errors
 /// [`RunError`]; other jobs are not concerned.
 pub fn run(
     job: &Job,
     places: &mut Places,
-    cache: Option<&Cache>,
+    cache: Option<(&Cache, Lookup)>,
     warn: &mut dyn FnMut(&CacheError),
     advance: &dyn Fn(f32),
 ) -> Result<Done, RunError> {
-    let restored = match cache {
-        None => None,
-        Some(cache) => restore(job, places, cache, warn)?,
+    let (cache, restored) = match cache {
+        None => (None, None),
+        Some((cache, lookup)) => (Some(cache), restore(job, places, cache, lookup, warn)?),
     };
     let done = match restored {
         Some(done) => done,
