@@ -1,13 +1,15 @@
 //! `roughcast bake`.
 
 use std::fmt::Display;
+use std::fs::File;
 use std::io::{self, Write};
 use std::path::PathBuf;
-use std::time::Instant;
+use std::time::{Instant, SystemTime};
 
 use rayon::prelude::*;
 
 use super::Outcome;
+use super::depfile::depfile;
 use super::jobs::{self, JobOptions, Planned};
 use super::progress::Progress;
 use super::report::{Asset, Report};
@@ -28,6 +30,9 @@ pub struct Args {
     /// Write what was done, chosen and skipped to a JSON file.
     #[arg(long, value_name = "FILE")]
     report: Option<PathBuf>,
+    /// Write which files each output was made from, as a Makefile for Make and Ninja.
+    #[arg(long, value_name = "FILE")]
+    depfile: Option<PathBuf>,
     /// Print that report instead of a summary.
     #[arg(long)]
     json: bool,
@@ -59,9 +64,9 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
         Ok(Outcome::Usage)
     };
     let mut outcome = Outcome::Done;
-    let (planned, failed, settings) = match args.jobs.planned() {
+    let (planned, failed, settings, configs) = match args.jobs.planned() {
         Some(Err(reason)) => return usage(err, &reason),
-        Some(Ok(planned)) => (planned, Vec::new(), Settings::default()),
+        Some(Ok(planned)) => (planned, Vec::new(), Settings::default(), Vec::new()),
         None => {
             let selected = match args.selection.find(&args.inputs) {
                 Ok(selected) => selected,
@@ -77,7 +82,7 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
                 return Ok(so_far);
             }
             outcome = so_far;
-            (jobs::plan(&selected.assets), selected.errors, selected.settings)
+            (jobs::plan(&selected.assets), selected.errors, selected.settings, selected.configs)
         }
     };
     let planned = match args.jobs.choose(planned) {
@@ -85,6 +90,7 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
         Err(reason) => return usage(err, &reason),
     };
     let cache = args.cache.as_deref().map(Cache::new);
+    let dependencies = depfile(planned.iter().filter_map(|planned| planned.job.as_ref().ok()), &configs);
     let progress = Progress::new(planned.len(), args.quiet);
     let mut report = Report {
         version: env!("CARGO_PKG_VERSION"),
@@ -109,7 +115,13 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
         });
         let seconds = start.elapsed().as_secs_f64();
         let asset = match result {
-            Ok((own, done)) => Asset::done(name, &done, seconds, (own != settings).then_some(own)),
+            Ok((own, done)) => {
+                if args.depfile.is_some() && done.is_cached {
+                    // Make takes what is older than an input for stale, and would ask again and again.
+                    let _ = File::open(&done.output).and_then(|file| file.set_modified(SystemTime::now()));
+                }
+                Asset::done(name, &done, seconds, (own != settings).then_some(own))
+            }
             Err(error) => {
                 outcome = outcome.and(if error.is_passing() { Outcome::Retry } else { Outcome::Failed });
                 let message = error.to_string();
@@ -130,11 +142,13 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
     }
     let mut json = serde_json::to_string_pretty(&report).map_err(io::Error::other)?;
     json.push('\n');
-    if let Some(path) = &args.report
-        && let Err(error) = write_file(path, json.as_bytes())
-    {
-        writeln!(err, "error: {error}")?;
-        outcome = outcome.and(Outcome::Failed);
+    for (path, text) in [(&args.report, &json), (&args.depfile, &dependencies)] {
+        if let Some(path) = path
+            && let Err(error) = write_file(path, text.as_bytes())
+        {
+            writeln!(err, "error: {error}")?;
+            outcome = outcome.and(Outcome::Failed);
+        }
     }
     if args.json {
         print(out, &json)?;

@@ -3,10 +3,13 @@
 mod bake;
 mod check;
 mod compare;
+mod completions;
+mod depfile;
 mod init;
 mod inputs;
 mod inspect;
 mod jobs;
+mod man;
 mod map;
 mod options;
 mod plan;
@@ -29,7 +32,7 @@ pub struct Cli {
     #[command(subcommand)]
     command: Command,
     /// Worker threads; 0 takes one per core. The bytes do not depend on it.
-    #[arg(long, global = true, default_value_t = 0, value_name = "N")]
+    #[arg(long, global = true, default_value_t = 0, value_name = "N", display_order = 900)]
     threads: usize,
 }
 
@@ -43,6 +46,8 @@ enum Command {
     Inspect(inspect::Args),
     Compare(compare::Args),
     Render(render::Args),
+    Completions(completions::Args),
+    Man(man::Args),
 }
 
 /// How a command ended.
@@ -103,5 +108,7 @@ pub fn run(cli: Cli, out: &mut dyn Write, err: &mut dyn Write) -> std::io::Resul
         Command::Inspect(args) => inspect::run(&args, out, err),
         Command::Compare(args) => compare::run(&args, out, err),
         Command::Render(args) => render::run(&args, out, err),
+        Command::Completions(args) => completions::run(&args, out),
+        Command::Man(args) => man::run(&args, out, err),
     }
 }

@@ -74,6 +74,8 @@ pub struct Selected {
     pub errors: Vec<InputError>,
     /// Settings of assets without a configuration.
     pub settings: Settings,
+    /// Configurations that were read.
+    pub configs: Vec<PathBuf>,
 }
 
 impl Selected {
@@ -123,7 +125,8 @@ impl Selection {
             assets.push((input, resolved));
         }
         let settings = resolve(&[flags]).map_or_else(|_| Settings::default(), |resolved| resolved.settings);
-        Ok(Selected { assets, errors, settings })
+        let configs = configs.0.into_values().flatten().map(|found| found.config.path).collect();
+        Ok(Selected { assets, errors, settings, configs })
     }
 
     fn config<'c>(&self, configs: &'c mut Configs, folder: &Path) -> Result<Option<&'c Found>, SelectionError> {

@@ -1,6 +1,7 @@
 //! The command as its users run it: a process, folders, exit codes, bytes. One binary, since each costs a link.
 
 mod bad_input;
+mod build;
 mod bytes;
 mod cache;
 mod compare;
