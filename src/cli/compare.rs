@@ -48,7 +48,7 @@ pub struct Args {
     #[arg(long, value_parser = unit_interval, default_value_t = 0.3, value_name = "R")]
     roughness: f32,
     /// The error bound by which --model auto chooses the model that is marked.
-    #[arg(long, default_value_t = 0.05, value_parser = unit_interval, value_name = "E")]
+    #[arg(long, default_value_t = Settings::default().max_error, value_parser = unit_interval, value_name = "E")]
     max_error: f32,
     /// The quality of the bake that is marked.
     #[arg(long, value_enum, default_value_t = QualityName::Fast)]
@@ -169,27 +169,25 @@ fn of_material(
     };
     let plain = bake(source, &Settings { model: Model::None, target: Target::Float, ..settings }, &|_| {})?;
     let (name, truth) = material(&plain)?;
-    let quality = Effort::from(args.quality);
-    let auto = bake(source, &Settings { model: Model::Auto, effort: quality, ..settings }, &|_| {})?;
-    let layer = auto.report.layers.iter().find(|l| l.layer == LayerKind::Base && l.model.is_some());
-    let chosen = layer.and_then(|l| l.model);
+    let models = [(Model::None, "none"), (Model::Isotropic, "isotropic"), (Model::Anisotropic, "anisotropic")];
+    let named = |(model, name): (Model, &str)| {
+        [(Effort::Fast, "fast"), (Effort::Best, "best")]
+            .map(|(effort, quality)| (model, effort, format!("ours, {name}, {quality}")))
+    };
+    let auto = (Model::Auto, Effort::from(args.quality), "ours, auto".to_owned());
     let mut ours = Vec::with_capacity(OURS);
-    for (model, model_name) in
-        [(Model::None, "none"), (Model::Isotropic, "isotropic"), (Model::Anisotropic, "anisotropic")]
-    {
-        for (effort, effort_name) in [(Effort::Fast, "fast"), (Effort::Best, "best")] {
-            let start = Instant::now();
-            let baked = bake(source, &Settings { model, effort, ..settings }, &|_| {})?;
-            let seconds = start.elapsed().as_secs_f64();
-            ours.push(Ours {
-                name: format!("ours, {model_name}, {effort_name}"),
-                material: material(&baked)?.1,
-                file_bytes: baked.report.textures.iter().map(|t| t.bytes as u64).sum(),
-                seconds,
-                chosen: chosen == Some(model) && effort == quality,
-            });
-            advance(ours.len() as f32 / (2 * OURS) as f32, &name);
-        }
+    for (model, effort, of_ours) in models.into_iter().flat_map(named).chain([auto]) {
+        let start = Instant::now();
+        let baked = bake(source, &Settings { model, effort, ..settings }, &|_| {})?;
+        let seconds = start.elapsed().as_secs_f64();
+        ours.push(Ours {
+            name: of_ours,
+            material: material(&baked)?.1,
+            file_bytes: baked.report.textures.iter().map(|t| t.bytes as u64).sum(),
+            seconds,
+            chosen: model == Model::Auto,
+        });
+        advance(ours.len() as f32 / (2 * OURS) as f32, &name);
     }
     let scored = |share: f32| advance(0.5 + 0.5 * share, &name);
     Ok(ours.try_into().ok().and_then(|ours| compare(&name, &truth, ours, usize::from(args.texels), &scored)))

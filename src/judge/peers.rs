@@ -98,7 +98,7 @@ impl Peer {
     }
 
     /// The perceptual roughness of those peers that know only `r` and the length of the mean normal; `r` for others.
-    /// Formulas: the peers' sources (see docs/accuracy.md for the table that they were checked against).
+    /// Formulas: the peers' sources (test `peers_follow_their_formulas` has values that they were checked against).
     pub fn roughness(self, r: f64, length: f64) -> f64 {
         let a2 = r * r * r * r;
         // A. Banerjee et al., "Clustering on the unit hypersphere using von Mises-Fisher distributions", 2005, eq. 4.4.
