@@ -50,6 +50,11 @@ impl Encoding {
         }
     }
 
+    /// For roughness with what stands beside it.
+    pub fn of_surface(self) -> Self {
+        Self { metric: Metric::Surface, ..self }
+    }
+
     /// For normals: two channels where the engine's BC5 path rebuilds z, else three.
     pub fn of_normals(settings: &Settings) -> Self {
         let channels = if settings.target == Target::Bc { 2 } else { 3 };

@@ -133,7 +133,7 @@ impl<'a> Fold<'a> {
     /// isotropic.
     pub fn bake(&self, model: Model, encoding: Encoding) -> Result<Folded, EncodeError> {
         let sizes = self.sizes();
-        let roughness = encode_chain(&sizes, encoding, &self.roughness_rows(model))?;
+        let roughness = encode_chain(&sizes, encoding.of_surface(), &self.roughness_rows(model))?;
         let anisotropy = (model == Model::Anisotropic)
             .then(|| encode_chain(&sizes, encoding, &self.anisotropy_rows()))
             .transpose()?;

@@ -118,7 +118,7 @@ impl<'t, 'f, 'r> Scene<'t, 'f, 'r> {
             return self.own();
         }
         let encoding = Encoding::of(self.trial.settings, 3);
-        let roughness = self.read(&self.sizes, first, encoding, &fold.roughness_rows(model))?;
+        let roughness = self.read(&self.sizes, first, encoding.of_surface(), &fold.roughness_rows(model))?;
         let axes = match model {
             Model::Anisotropic => Some(self.read(&self.sizes, first, encoding, &fold.anisotropy_rows())?),
             _ => None,

@@ -73,11 +73,12 @@ pub(super) fn one_line<const N: usize, const BITS: u32>(
     texels: &[Lane; N],
     all: &Moments<N>,
     axis: &[f32; N],
+    scale: &[f32; N],
     mode: &'static Mode,
     rounds: usize,
 ) -> Block {
     let mut block = empty(mode);
-    let line = fit::<N, BITS>(texels, &ALL, all, axis, mode.range, rounds);
+    let line = fit::<N, BITS>(texels, &ALL, all, axis, scale, mode.range, rounds);
     block.place(&line, std::array::from_fn(|c| c), 0, 0, 0xffff);
     block
 }
@@ -87,24 +88,33 @@ pub(super) fn two_planes<const N: usize, const BITS: u32>(
     texels: &[Lane; N],
     all: &Moments<N>,
     selector: usize,
+    scale: &[f32; N],
     mode: &'static Mode,
     rounds: usize,
 ) -> Block {
     let mut block = empty(mode);
     block.selector = selector;
-    let alone = fit::<1, BITS>(&[texels[selector]], &ALL, &part(all, [selector]), &[1.0], mode.range, rounds);
+    let alone = fit::<1, BITS>(
+        &[texels[selector]],
+        &ALL,
+        &part(all, [selector]),
+        &[1.0],
+        &[scale[selector]],
+        mode.range,
+        rounds,
+    );
     block.place(&alone, [selector], 0, 1, 0xffff);
     if N == 2 {
         let channels = [1 - selector];
-        let line = together::<N, 1, BITS>(texels, all, channels, mode, rounds);
+        let line = together::<N, 1, BITS>(texels, all, channels, scale, mode, rounds);
         block.place(&line, channels, 0, 0, 0xffff);
     } else if N == 3 {
         let channels = rest(selector);
-        let line = together::<N, 2, BITS>(texels, all, channels, mode, rounds);
+        let line = together::<N, 2, BITS>(texels, all, channels, scale, mode, rounds);
         block.place(&line, channels, 0, 0, 0xffff);
     } else {
         let channels = [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]][selector];
-        let line = together::<N, 3, BITS>(texels, all, channels, mode, rounds);
+        let line = together::<N, 3, BITS>(texels, all, channels, scale, mode, rounds);
         block.place(&line, channels, 0, 0, 0xffff);
     }
     block
@@ -115,13 +125,14 @@ fn together<const N: usize, const M: usize, const BITS: u32>(
     texels: &[Lane; N],
     all: &Moments<N>,
     channels: [usize; M],
+    scale: &[f32; N],
     mode: &'static Mode,
     rounds: usize,
 ) -> Line<M> {
     let texels = channels.map(|c| texels[c]);
     let m = part(all, channels);
     let axis = principal_axis(&m.scatter);
-    fit::<M, BITS>(&texels, &ALL, &m, &axis, mode.range, rounds)
+    fit::<M, BITS>(&texels, &ALL, &m, &axis, &channels.map(|c| scale[c]), mode.range, rounds)
 }
 
 /// The `S` subsets of a pattern, ready to be fitted.
@@ -170,6 +181,7 @@ impl<const N: usize, const S: usize> Split<N, S> {
 pub(super) fn split_lines<const N: usize, const S: usize, const BITS: u32>(
     texels: &[Lane; N],
     split: &Split<N, S>,
+    scale: &[f32; N],
     mode: &'static Mode,
     rounds: usize,
 ) -> Block {
@@ -177,7 +189,7 @@ pub(super) fn split_lines<const N: usize, const S: usize, const BITS: u32>(
     block.pattern = split.pattern;
     for (subset, mask) in split.masks.iter().enumerate() {
         let (m, axis) = (&split.moments[subset], &split.axes[subset]);
-        let line = fit::<N, BITS>(texels, mask, m, axis, mode.range, rounds);
+        let line = fit::<N, BITS>(texels, mask, m, axis, scale, mode.range, rounds);
         block.place(&line, std::array::from_fn(|c| c), subset, 0, block.members(subset));
     }
     block

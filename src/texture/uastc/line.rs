@@ -107,22 +107,23 @@ pub(super) fn quantise(range: &Range, value: f32) -> u8 {
 }
 
 /// Fits a line of `BITS`-bit weights through the members of `subset`, starting along `axis`, with
-/// one or more `rounds` of regression; the best round wins.
+/// one or more `rounds` of regression; the best round wins. A channel of `texels` has `scale` per level.
 #[inline(always)]
 pub(super) fn fit<const N: usize, const BITS: u32>(
     texels: &[Lane; N],
     subset: &Lane,
     m: &Moments<N>,
     axis: &[f32; N],
+    scale: &[f32; N],
     range: &Range,
     rounds: usize,
 ) -> Line<N> {
     let weights = spread::<N, BITS>(texels, subset, m, axis);
     let (low, high) = regress(texels, subset, m, &weights);
-    let (mut best, mut weights) = settle::<N, BITS>(texels, subset, &low, &high, range);
+    let (mut best, mut weights) = settle::<N, BITS>(texels, subset, &low, &high, scale, range);
     for _ in 1..rounds {
         let (low, high) = regress(texels, subset, m, &weights);
-        let (line, next) = settle::<N, BITS>(texels, subset, &low, &high, range);
+        let (line, next) = settle::<N, BITS>(texels, subset, &low, &high, scale, range);
         if line.error >= best.error {
             break;
         }
@@ -174,20 +175,21 @@ pub(super) fn settle<const N: usize, const BITS: u32>(
     subset: &Lane,
     low: &[f32; N],
     high: &[f32; N],
+    scale: &[f32; N],
     range: &Range,
 ) -> (Line<N>, Lane) {
-    let low = low.map(|v| quantise(range, v));
-    let high = high.map(|v| quantise(range, v));
-    let from = low.map(f32::from);
-    let to = high.map(f32::from);
-    let indices = project::<N, BITS>(texels, &from, &to);
+    let quantised = |ends: &[f32; N]| std::array::from_fn(|c| quantise(range, ends[c] / scale[c]));
+    let scaled = |ends: [u8; N]| std::array::from_fn(|c| f32::from(ends[c]) * scale[c]);
+    let (low, high): ([u8; N], [u8; N]) = (quantised(low), quantised(high));
+    let (from, to) = (low.map(f32::from), high.map(f32::from));
+    let indices = project::<N, BITS>(texels, &scaled(low), &scaled(high));
     let (mut weights, mut errors) = ([0.0; 16], [0.0; 16]);
     for i in 0..16 {
         weights[i] = ramp::<BITS>(indices[i]) as f32;
     }
     for c in 0..N {
         for i in 0..16 {
-            let d = decode(from[c], to[c] - from[c], weights[i]) - texels[c][i];
+            let d = scale[c] * decode(from[c], to[c] - from[c], weights[i]) - texels[c][i];
             errors[i] += d * d;
         }
     }

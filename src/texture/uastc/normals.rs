@@ -27,14 +27,14 @@ pub(super) fn fast(texels: &[Lane; 3]) -> Block {
     let line_estimate = 1.05 * off + 0.003 * along + 2.0;
     let line = || {
         if along < 300.0 {
-            one_line::<2, 3>(&xy, &all, &axis, &MODE_5, 1)
+            one_line::<2, 3>(&xy, &all, &axis, &[1.0; 2], &MODE_5, 1)
         } else if along > 25000.0 && off < 0.02 * along {
-            one_line::<2, 5>(&xy, &all, &axis, &MODE_18, 1)
+            one_line::<2, 5>(&xy, &all, &axis, &[1.0; 2], &MODE_18, 1)
         } else {
-            one_line::<2, 4>(&xy, &all, &axis, &MODE_0, 1)
+            one_line::<2, 4>(&xy, &all, &axis, &[1.0; 2], &MODE_0, 1)
         }
     };
-    let planes = || two_planes::<2, 2>(&xy, &all, 0, &MODE_6, 1);
+    let planes = || two_planes::<2, 2>(&xy, &all, 0, &[1.0; 2], &MODE_6, 1);
     let mut winner = Winner(if planes_estimate < line_estimate { planes() } else { line() });
     if planes_estimate < line_estimate {
         if line_estimate < DOUBT * planes_estimate {
@@ -48,10 +48,10 @@ pub(super) fn fast(texels: &[Lane; 3]) -> Block {
         let split = Split::in_two(&xy, pattern);
         let (off, along) = split.scatter();
         if off + along / 12.0 < 1.4 * winner.0.error {
-            winner.offer(split_lines::<2, 2, 2>(&xy, &split, &MODE_4, 1));
+            winner.offer(split_lines::<2, 2, 2>(&xy, &split, &[1.0; 2], &MODE_4, 1));
             // Sixteen levels an endpoint are too coarse for less.
             if winner.0.error > 150.0 {
-                winner.offer(split_lines::<2, 2, 3>(&xy, &split, &MODE_2, 1));
+                winner.offer(split_lines::<2, 2, 3>(&xy, &split, &[1.0; 2], &MODE_2, 1));
             }
         }
     }
@@ -74,23 +74,23 @@ pub(super) fn best(texels: &[Lane; 3]) -> Block {
         block.aim(&target, 2, 0);
         winner.offer(block);
     };
-    offer(one_line::<2, 4>(&xy, &all, &axis, &MODE_0, 2));
+    offer(one_line::<2, 4>(&xy, &all, &axis, &[1.0; 2], &MODE_0, 2));
     if along > 400.0 {
-        offer(one_line::<2, 5>(&xy, &all, &axis, &MODE_18, 2));
+        offer(one_line::<2, 5>(&xy, &all, &axis, &[1.0; 2], &MODE_18, 2));
     }
     if along < 3000.0 {
-        offer(one_line::<2, 3>(&xy, &all, &axis, &MODE_5, 2));
+        offer(one_line::<2, 3>(&xy, &all, &axis, &[1.0; 2], &MODE_5, 2));
     }
     if along < 200.0 {
-        offer(one_line::<2, 2>(&xy, &all, &axis, &MODE_1, 2));
+        offer(one_line::<2, 2>(&xy, &all, &axis, &[1.0; 2], &MODE_1, 2));
     }
     for selector in 0..2 {
-        offer(two_planes::<2, 2>(&xy, &all, selector, &MODE_6, 2));
+        offer(two_planes::<2, 2>(&xy, &all, selector, &[1.0; 2], &MODE_6, 2));
     }
     for pattern in likely_patterns::<2, 2>(&xy, &all, &axis) {
         let split = Split::in_two(&xy, pattern);
-        offer(split_lines::<2, 2, 2>(&xy, &split, &MODE_4, 2));
-        offer(split_lines::<2, 2, 3>(&xy, &split, &MODE_2, 2));
+        offer(split_lines::<2, 2, 2>(&xy, &split, &[1.0; 2], &MODE_4, 2));
+        offer(split_lines::<2, 2, 3>(&xy, &split, &[1.0; 2], &MODE_2, 2));
     }
     let mut splits = Split::in_three(&xy);
     let expected = |split: &Split<2, 3>| {
@@ -99,7 +99,7 @@ pub(super) fn best(texels: &[Lane; 3]) -> Block {
     };
     splits.sort_by(|a, b| expected(a).total_cmp(&expected(b)));
     for split in &splits[..2] {
-        offer(split_lines::<2, 3, 2>(&xy, split, &MODE_3, 2));
+        offer(split_lines::<2, 3, 2>(&xy, split, &[1.0; 2], &MODE_3, 2));
     }
     winner.0.aim(&target, 0, 2);
     winner.0

@@ -11,34 +11,34 @@ use super::tables::Range;
 
 impl Block {
     /// Polishes the endpoints of an opaque block.
-    pub(super) fn polish(&mut self, texels: &[Lane; 3], passes: usize) {
+    pub(super) fn polish(&mut self, texels: &[Lane; 3], scale: &[f32; 3], passes: usize) {
         match self.mode.weight_bits {
-            2 => self.polish_lines::<2>(texels, passes),
-            3 => self.polish_lines::<3>(texels, passes),
-            4 => self.polish_lines::<4>(texels, passes),
-            _ => self.polish_lines::<5>(texels, passes),
+            2 => self.polish_lines::<2>(texels, scale, passes),
+            3 => self.polish_lines::<3>(texels, scale, passes),
+            4 => self.polish_lines::<4>(texels, scale, passes),
+            _ => self.polish_lines::<5>(texels, scale, passes),
         }
     }
 
-    fn polish_lines<const BITS: u32>(&mut self, texels: &[Lane; 3], passes: usize) {
+    fn polish_lines<const BITS: u32>(&mut self, texels: &[Lane; 3], scale: &[f32; 3], passes: usize) {
         self.error = 0.0;
         if self.mode.planes == 2 {
             let alone = self.selector;
-            self.polish_line::<1, BITS>(texels, [alone], (0, 1), (&ALL, 0xffff), passes);
-            self.polish_line::<2, BITS>(texels, rest(alone), (0, 0), (&ALL, 0xffff), passes);
+            self.polish_line::<1, BITS>((texels, scale), [alone], (0, 1), (&ALL, 0xffff), passes);
+            self.polish_line::<2, BITS>((texels, scale), rest(alone), (0, 0), (&ALL, 0xffff), passes);
         } else if self.mode.subsets == 2 {
             for (subset, mask) in SUBSETS[self.pattern].iter().enumerate() {
                 let members = (mask, self.members(subset));
-                self.polish_line::<3, BITS>(texels, [0, 1, 2], (subset, 0), members, passes);
+                self.polish_line::<3, BITS>((texels, scale), [0, 1, 2], (subset, 0), members, passes);
             }
         } else {
-            self.polish_line::<3, BITS>(texels, [0, 1, 2], (0, 0), (&ALL, 0xffff), passes);
+            self.polish_line::<3, BITS>((texels, scale), [0, 1, 2], (0, 0), (&ALL, 0xffff), passes);
         }
     }
 
     fn polish_line<const N: usize, const BITS: u32>(
         &mut self,
-        texels: &[Lane; 3],
+        (texels, scale): (&[Lane; 3], &[f32; 3]),
         channels: [usize; N],
         (subset, plane): (usize, usize),
         (mask, members): (&Lane, u16),
@@ -46,7 +46,7 @@ impl Block {
     ) {
         let texels = channels.map(|c| texels[c]);
         let [low, high] = [0, 1].map(|end| channels.map(|c| self.endpoints[subset][c][end]));
-        let line = polish::<N, BITS>(&texels, mask, low, high, self.mode.range, passes);
+        let line = polish::<N, BITS>(&texels, mask, [low, high], &channels.map(|c| scale[c]), self.mode.range, passes);
         self.place(&line, channels, subset, plane, members);
     }
 }
@@ -55,16 +55,15 @@ impl Block {
 fn polish<const N: usize, const BITS: u32>(
     texels: &[Lane; N],
     subset: &Lane,
-    low: [u8; N],
-    high: [u8; N],
+    mut ends: [[u8; N]; 2],
+    scale: &[f32; N],
     range: &Range,
     passes: usize,
 ) -> Line<N> {
     let settled = |ends: &[[u8; N]; 2]| {
-        let [low, high] = ends.map(|end| end.map(f32::from));
-        settle::<N, BITS>(texels, subset, &low, &high, range).0
+        let [low, high] = ends.map(|end| std::array::from_fn(|c| f32::from(end[c]) * scale[c]));
+        settle::<N, BITS>(texels, subset, &low, &high, scale, range).0
     };
-    let mut ends = [low, high];
     let mut best = settled(&ends);
     for _ in 0..passes {
         let before = best.error;

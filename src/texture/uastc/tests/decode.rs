@@ -23,32 +23,35 @@ pub(super) fn every_mode<const N: usize>(texels: &Texels) -> Vec<(u8, Block)> {
     let mut blocks = Vec::new();
     for rounds in [1, 3] {
         if N == 3 {
-            blocks.push((0, one_line::<N, 4>(&lanes, &all, &axis, &MODE_0, rounds)));
-            blocks.push((1, one_line::<N, 2>(&lanes, &all, &axis, &MODE_1, rounds)));
-            blocks.push((5, one_line::<N, 3>(&lanes, &all, &axis, &MODE_5, rounds)));
-            blocks.push((18, one_line::<N, 5>(&lanes, &all, &axis, &MODE_18, rounds)));
+            blocks.push((0, one_line::<N, 4>(&lanes, &all, &axis, &[1.0; N], &MODE_0, rounds)));
+            blocks.push((1, one_line::<N, 2>(&lanes, &all, &axis, &[1.0; N], &MODE_1, rounds)));
+            blocks.push((5, one_line::<N, 3>(&lanes, &all, &axis, &[1.0; N], &MODE_5, rounds)));
+            blocks.push((18, one_line::<N, 5>(&lanes, &all, &axis, &[1.0; N], &MODE_18, rounds)));
             for selector in 0..3 {
-                let block = two_planes::<N, 2>(&lanes, &all, selector, &MODE_6, rounds);
+                let block = two_planes::<N, 2>(&lanes, &all, selector, &[1.0; N], &MODE_6, rounds);
                 blocks.push((6, block));
             }
             for pattern in 0..PATTERNS.len() {
                 let split = Split::in_two(&lanes, pattern);
-                blocks.push((2, split_lines::<N, 2, 3>(&lanes, &split, &MODE_2, rounds)));
-                blocks.push((4, split_lines::<N, 2, 2>(&lanes, &split, &MODE_4, rounds)));
+                blocks.push((2, split_lines::<N, 2, 3>(&lanes, &split, &[1.0; N], &MODE_2, rounds)));
+                blocks.push((4, split_lines::<N, 2, 2>(&lanes, &split, &[1.0; N], &MODE_4, rounds)));
             }
             for split in Split::in_three(&lanes) {
-                blocks.push((3, split_lines::<N, 3, 2>(&lanes, &split, &MODE_3, rounds)));
+                blocks.push((3, split_lines::<N, 3, 2>(&lanes, &split, &[1.0; N], &MODE_3, rounds)));
             }
         } else {
-            blocks.push((10, one_line::<N, 4>(&lanes, &all, &axis, &MODE_10, rounds)));
-            blocks.push((12, one_line::<N, 3>(&lanes, &all, &axis, &MODE_12, rounds)));
-            blocks.push((14, one_line::<N, 2>(&lanes, &all, &axis, &MODE_14, rounds)));
+            blocks.push((10, one_line::<N, 4>(&lanes, &all, &axis, &[1.0; N], &MODE_10, rounds)));
+            blocks.push((12, one_line::<N, 3>(&lanes, &all, &axis, &[1.0; N], &MODE_12, rounds)));
+            blocks.push((14, one_line::<N, 2>(&lanes, &all, &axis, &[1.0; N], &MODE_14, rounds)));
             for selector in 0..4 {
-                let block = two_planes::<N, 2>(&lanes, &all, selector, &MODE_11, rounds);
+                let block = two_planes::<N, 2>(&lanes, &all, selector, &[1.0; N], &MODE_11, rounds);
                 blocks.push((11, block));
             }
             for pattern in 0..PATTERNS.len() {
-                blocks.push((9, split_lines::<N, 2, 2>(&lanes, &Split::in_two(&lanes, pattern), &MODE_9, rounds)));
+                blocks.push((
+                    9,
+                    split_lines::<N, 2, 2>(&lanes, &Split::in_two(&lanes, pattern), &[1.0; N], &MODE_9, rounds),
+                ));
             }
         }
     }

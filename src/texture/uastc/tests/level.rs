@@ -67,11 +67,13 @@ fn bytes_are_pinned() {
     assert_eq!(found, PINNED, "{found:#x?}");
 }
 
-const PINNED: [u64; 6] = [
+const PINNED: [u64; 8] = [
     0x0d40_159a_c215_017c,
+    0x36b8_165b_5d80_27d2,
     0x9f83_4582_49e6_2570,
     0x8511_e71a_1423_142c,
     0xe8df_b1fc_cb4a_01d1,
+    0x330c_24c1_3036_9921,
     0x508a_73ba_d7f5_b608,
     0x7eb8_baad_9a6d_ecec,
 ];

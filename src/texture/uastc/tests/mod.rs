@@ -124,4 +124,4 @@ pub(super) fn all_kinds() -> Vec<Texels> {
 }
 
 pub(super) const EFFORTS: [Effort; 2] = [Effort::Fast, Effort::Best];
-pub(super) const METRICS: [Metric; 3] = [Metric::Rgb, Metric::Rgba, Metric::Direction];
+pub(super) const METRICS: [Metric; 4] = [Metric::Rgb, Metric::Surface, Metric::Rgba, Metric::Direction];

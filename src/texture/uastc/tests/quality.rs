@@ -30,3 +30,20 @@ fn best_is_never_worse_than_fast() {
         }
     }
 }
+
+#[test]
+fn surfaces_keep_roughness_before_occlusion_and_metal() {
+    // Sums of squared differences over all blocks, of roughness alone and with a sixteenth of the others.
+    let sums = |metric, effort| {
+        all_kinds().iter().fold([0.0, 0.0], |[roughness, weighted], texels| {
+            let block = decoded(&encode_block(texels, metric, effort));
+            let of = |c: usize| (0..16).map(|i| f64::from(texels[i][c].abs_diff(block[i][c])).powi(2)).sum::<f64>();
+            [roughness + of(1), weighted + of(1) + (of(0) + of(2)) / 16.0]
+        })
+    };
+    for effort in EFFORTS {
+        let [evenly, surface] = [Metric::Rgb, Metric::Surface].map(|metric| sums(metric, effort));
+        assert!(surface[0] < 0.5 * evenly[0], "{effort:?}: {} of {}", surface[0], evenly[0]);
+        assert!(surface[1] < 0.8 * evenly[1], "{effort:?}: {} of {}", surface[1], evenly[1]);
+    }
+}
