@@ -1,7 +1,7 @@
 //! What a bake costs that has nothing to do: many assets, baked once with a cache, and again.
 //!
 //! `cargo run --release --example no_op -- 1000` prints the time of the second run beside that of reading and hashing the
-//! files concerned, one after the other.
+//! files concerned, one after the other. A second number makes each image that many KiB longer.
 
 use std::error::Error;
 use std::fs;
@@ -13,7 +13,8 @@ use roughcast::cli::{Cli, Outcome, run};
 use walkdir::WalkDir;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let count: usize = std::env::args().nth(1).map_or(Ok(1000), |n| n.parse())?;
+    let mut numbers = std::env::args().skip(1).map(|n| n.parse::<usize>());
+    let (count, padding) = (numbers.next().unwrap_or(Ok(1000))?, numbers.next().unwrap_or(Ok(0))?);
     let folder = tempfile::tempdir()?;
     let (assets, baked, cache) =
         (folder.path().join("assets"), folder.path().join("baked"), folder.path().join("cache"));
@@ -27,6 +28,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             if file.path().extension().is_some_and(|e| e == "png") {
                 // What follows the end of a PNG is not read: images that differ, and bake to the same.
                 bytes.extend(index.to_le_bytes());
+                bytes.resize(bytes.len() + 1024 * padding, 0);
             }
             fs::write(asset.join(file.file_name()), bytes)?;
         }

@@ -1,9 +1,9 @@
 //! Writing what was baked: beside its place, synced, then renamed, so that nothing half-written is ever visible.
 
-use std::collections::btree_map::Entry;
-use std::collections::{BTreeMap, BTreeSet};
-use std::fs;
-use std::io::{self, Write};
+use std::collections::hash_map::Entry;
+use std::collections::{BTreeSet, HashMap};
+use std::fs::{self, File};
+use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
 use super::asset::{Baked, NewFile};
@@ -57,16 +57,21 @@ impl PublishError {
     }
 }
 
-/// Where the outputs of a run are, each with the source that it is a copy of, or with itself.
+/// Where the outputs of a run are.
 #[derive(Debug, Default)]
-pub struct Places(BTreeMap<PathBuf, PathBuf>);
+pub struct Places {
+    /// Each output with the source that it is a copy of, or with itself.
+    taken: HashMap<PathBuf, PathBuf>,
+    /// Folders without links and dots.
+    folders: HashMap<PathBuf, PathBuf>,
+}
 
 impl Places {
     /// Takes a place for a copy of `source`.
     fn take(&mut self, path: &Path, source: &Path) -> Result<(), PublishError> {
-        let source = fs::canonicalize(source).unwrap_or_else(|_| source.to_owned());
-        match self.0.entry(path.to_owned()) {
-            Entry::Occupied(taken) if *taken.get() != source => {
+        let source = self.real(source);
+        match self.taken.entry(path.to_owned()) {
+            Entry::Occupied(taken) if !is_same_file(taken.get(), &source) => {
                 Err(PublishError::SamePlace { path: path.to_owned(), other: taken.get().clone() })
             }
             Entry::Occupied(_) => Ok(()),
@@ -76,6 +81,28 @@ impl Places {
             }
         }
     }
+
+    /// `path` without links and dots in its folder, which is looked up once; as it is where there is no such folder.
+    fn real(&mut self, path: &Path) -> PathBuf {
+        let Some(name) = path.file_name() else { return path.to_owned() };
+        let folder = path.parent().unwrap_or(Path::new(""));
+        if let Some(real) = self.folders.get(folder) {
+            return real.join(name);
+        }
+        let named = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+        match fs::canonicalize(named) {
+            Ok(real) => {
+                let path = real.join(name);
+                self.folders.insert(folder.to_owned(), real);
+                path
+            }
+            Err(_) => path.to_owned(),
+        }
+    }
+}
+
+fn is_same_file(a: &Path, b: &Path) -> bool {
+    a == b || matches!((fs::canonicalize(a), fs::canonicalize(b)), (Ok(a), Ok(b)) if a == b)
 }
 
 /// Checks that `files` and `copies` beside `document`, and itself, may be written for the asset `source`, and takes their
@@ -94,11 +121,15 @@ pub fn claim(
     let folder = document.parent().unwrap_or(Path::new(""));
     let mut sources: BTreeSet<PathBuf> = BTreeSet::new();
     for path in copies.iter().map(|c| source_folder.join(c)).chain([source.to_owned()]) {
-        sources.extend(fs::canonicalize(path));
+        // What a link names is a source, too. (An output that is a link is replaced, not what it names.)
+        if path.is_symlink() {
+            sources.extend(fs::canonicalize(&path));
+        }
+        sources.insert(places.real(&path));
     }
     let outputs = files.iter().copied().chain(copies.iter().map(PathBuf::as_path)).map(|p| folder.join(p));
     for path in outputs.chain([document.to_owned()]) {
-        if fs::canonicalize(&path).is_ok_and(|p| sources.contains(&p)) {
+        if sources.contains(&places.real(&path)) {
             return Err(PublishError::OverSource { path });
         }
     }
@@ -143,11 +174,15 @@ const MAX_FILE_BYTES: u64 = 8 << 30;
 /// # Errors
 /// The system's, or that it is no ordinary file, or larger than 8 GiB.
 pub fn read_file(path: &Path) -> io::Result<Vec<u8>> {
-    check_file(path)?;
-    fs::read(path)
+    let length = check_file(path)?;
+    let mut bytes = Vec::with_capacity(usize::try_from(length).unwrap_or(0));
+    // Not past the end of a file that someone adds to.
+    File::open(path)?.take(MAX_FILE_BYTES).read_to_end(&mut bytes)?;
+    Ok(bytes)
 }
 
-fn check_file(path: &Path) -> io::Result<()> {
+/// Checks that the file may be read; returns its length.
+fn check_file(path: &Path) -> io::Result<u64> {
     let facts = fs::metadata(path)?;
     if !facts.is_file() {
         return Err(io::Error::new(io::ErrorKind::InvalidInput, "not an ordinary file"));
@@ -155,7 +190,7 @@ fn check_file(path: &Path) -> io::Result<()> {
     if facts.len() > MAX_FILE_BYTES {
         return Err(io::Error::new(io::ErrorKind::FileTooLarge, "larger than 8 GiB"));
     }
-    Ok(())
+    Ok(facts.len())
 }
 
 /// Writes a file whole or not at all, making its folder; returns its length.
@@ -190,12 +225,12 @@ fn put(path: &Path, bytes: &[u8], is_synced: bool) -> io::Result<()> {
 
 /// Temporary files are private to their user; what is baked is for everyone whom the folder lets in.
 #[cfg(unix)]
-fn set_ordinary_permissions(file: &fs::File) -> io::Result<()> {
+fn set_ordinary_permissions(file: &File) -> io::Result<()> {
     use std::os::unix::fs::PermissionsExt;
     file.set_permissions(fs::Permissions::from_mode(0o644))
 }
 
 #[cfg(not(unix))]
-fn set_ordinary_permissions(_: &fs::File) -> io::Result<()> {
+fn set_ordinary_permissions(_: &File) -> io::Result<()> {
     Ok(())
 }

@@ -3,7 +3,7 @@
 use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
-use std::time::SystemTime;
+use std::time::{Duration, SystemTime};
 
 use walkdir::WalkDir;
 
@@ -92,12 +92,18 @@ impl Cache {
         Ok(Stored { path: name.to_owned(), blake3, bytes: bytes.len() as u64 })
     }
 
-    /// Marks the entry of the job `id` and its blobs as used.
+    /// Marks the entry of the job `id` and its blobs as used, unless that was done within the hour: a run that has nothing
+    /// to do would write more than it reads.
     pub fn touch(&self, id: &str, entry: &Entry) {
+        let now = SystemTime::now();
+        let marked = fs::metadata(self.path("jobs", id)).and_then(|facts| facts.modified());
+        if marked.is_ok_and(|marked| now.duration_since(marked).is_ok_and(|age| age < MARK_AGE)) {
+            return;
+        }
         let blobs = entry.files.iter().chain([&entry.document]).map(|stored| self.path("blobs", &stored.blake3));
         for path in blobs.chain([self.path("jobs", id)]) {
             // Only the order of eviction depends on it.
-            let _ = File::open(path).and_then(|file| file.set_modified(SystemTime::now()));
+            let _ = File::open(path).and_then(|file| file.set_modified(now));
         }
     }
 
@@ -134,6 +140,9 @@ impl Cache {
         self.root.join(kind).join(digest.get(..2).unwrap_or("")).join(digest)
     }
 }
+
+/// How exactly the order of eviction is known.
+const MARK_AGE: Duration = Duration::from_secs(3600);
 
 /// Hexadecimal digits of a BLAKE3 digest.
 const DIGEST_LENGTH: usize = 64;

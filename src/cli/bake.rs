@@ -140,8 +140,11 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
     {
         writeln!(err, "warning: {error}")?;
     }
-    let mut json = serde_json::to_string_pretty(&report).map_err(io::Error::other)?;
-    json.push('\n');
+    let json = if args.json || args.report.is_some() {
+        serde_json::to_string_pretty(&report).map_err(io::Error::other)? + "\n"
+    } else {
+        String::new()
+    };
     for (path, text) in [(&args.report, &json), (&args.depfile, &dependencies)] {
         if let Some(path) = path
             && let Err(error) = write_file(path, text.as_bytes())

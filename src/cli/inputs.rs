@@ -118,7 +118,8 @@ fn find_one(argument: &Path, output: &Path) -> Result<(Vec<Input>, Vec<InputErro
         fs::metadata(argument).map_err(|e| InputError::NotAnAsset { path: path.clone(), found: e.to_string() })?;
     let own_folder = if facts.is_dir() { argument } else { folder_of(argument) };
     // Outputs below a folder that holds sources could take the place of one.
-    if real(own_folder).is_some_and(|own| real(output).is_some_and(|output| own.starts_with(output))) {
+    let real_output = real(output);
+    if real_output.as_ref().is_some_and(|output| real(own_folder).is_some_and(|own| own.starts_with(output))) {
         return Err(InputError::OutputIsInput { path: output.to_owned() });
     }
     if facts.is_file() {
@@ -133,7 +134,8 @@ fn find_one(argument: &Path, output: &Path) -> Result<(Vec<Input>, Vec<InputErro
     }
     let (mut inputs, mut errors) = (Vec::new(), Vec::new());
     let walk = WalkDir::new(argument).follow_links(true).sort_by_file_name().into_iter();
-    for entry in walk.filter_entry(|e| !(e.file_type().is_dir() && is_same_folder(e.path(), output))) {
+    let is_output = |folder: &Path| real_output.is_some() && real(folder) == real_output;
+    for entry in walk.filter_entry(|e| !(e.file_type().is_dir() && is_output(e.path()))) {
         match entry {
             Err(error) => {
                 let path = error.path().unwrap_or(argument).to_owned();
@@ -167,10 +169,6 @@ fn folder_of(path: &Path) -> &Path {
 
 fn is_asset(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("gltf") || e.eq_ignore_ascii_case("glb"))
-}
-
-fn is_same_folder(a: &Path, b: &Path) -> bool {
-    real(a).is_some() && real(a) == real(b)
 }
 
 /// The folder without links and dots, if it exists.

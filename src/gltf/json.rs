@@ -103,12 +103,9 @@ impl Json {
     /// # Errors
     /// [`JsonError::Read`] if the value is not a `T`.
     pub fn read<T: DeserializeOwned>(&self, pointer: &str) -> Result<Option<T>, JsonError> {
-        let Some(text) = self.text(pointer) else {
-            return Ok(None);
-        };
         // By way of a tree, in which a repeated key has one value; derived readers refuse it.
-        let read = serde_json::from_str::<Value>(&text).and_then(T::deserialize);
-        read.map(Some).map_err(|source| JsonError::Read { pointer: pointer.to_owned(), source })
+        let read = self.value(pointer)?.map(T::deserialize).transpose();
+        read.map_err(|source| JsonError::Read { pointer: pointer.to_owned(), source })
     }
 
     /// The value at `pointer` as a tree, or `None` if nothing is there.
@@ -116,7 +113,8 @@ impl Json {
     /// # Errors
     /// [`JsonError::Read`] if it holds a number beyond the range of `f64`.
     pub fn value(&self, pointer: &str) -> Result<Option<Value>, JsonError> {
-        self.read(pointer)
+        let value = self.text(pointer).map(|text| serde_json::from_str(&text)).transpose();
+        value.map_err(|source| JsonError::Read { pointer: pointer.to_owned(), source })
     }
 
     /// Number of members or elements of the object or array at `pointer`; `None` if there is none.

@@ -1,5 +1,3 @@
-use std::time::Duration;
-
 use super::*;
 use crate::bake::NewFile;
 use crate::bake::report::AssetReport;
@@ -70,7 +68,7 @@ fn what_was_not_used_for_longest_goes_first() {
     let (folder, cache, first) = filled();
     cache.put("4567", Path::new("out/b.gltf"), &baked(b"other texels")).expect("a writable folder");
     let second = cache.entry("4567").expect("an entry").expect("an entry");
-    let old = SystemTime::now() - Duration::from_secs(3600);
+    let old = SystemTime::now() - 2 * MARK_AGE;
     for entry in WalkDir::new(folder.path()).into_iter().flatten().filter(|e| e.file_type().is_file()) {
         File::open(entry.path()).and_then(|f| f.set_modified(old)).expect("a file");
     }
