@@ -67,9 +67,8 @@ pub struct Places {
 }
 
 impl Places {
-    /// Takes a place for a copy of `source`.
-    fn take(&mut self, path: &Path, source: &Path) -> Result<(), PublishError> {
-        let source = self.real(source);
+    /// Takes a place for a copy of `source`, or for the output itself.
+    fn take(&mut self, path: &Path, source: PathBuf) -> Result<(), PublishError> {
         match self.taken.entry(path.to_owned()) {
             Entry::Occupied(taken) if !is_same_file(taken.get(), &source) => {
                 Err(PublishError::SamePlace { path: path.to_owned(), other: taken.get().clone() })
@@ -136,10 +135,11 @@ pub fn claim(
     for copy in copies {
         let path = source_folder.join(copy);
         check_file(&path).map_err(|error| PublishError::Copy { path: path.clone(), error })?;
-        places.take(&folder.join(copy), &path)?;
+        let source = places.real(&path);
+        places.take(&folder.join(copy), source)?;
     }
     for path in files.iter().map(|f| folder.join(f)).chain([document.to_owned()]) {
-        places.take(&path, &path)?;
+        places.take(&path, path.clone())?;
     }
     Ok(())
 }
