@@ -5,6 +5,7 @@ use std::collections::{BTreeSet, HashMap};
 use std::fs::{self, File};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use super::asset::{Baked, NewFile};
 
@@ -154,6 +155,8 @@ pub fn publish(baked: &Baked, document: &Path, source: &Path, places: &mut Place
     claim(&files, &baked.copies, document, source, places)?;
     let source_folder = source.parent().unwrap_or(Path::new(""));
     let folder = document.parent().unwrap_or(Path::new(""));
+    let below: BTreeSet<&Path> = files.iter().filter_map(|file| file.parent()).chain([Path::new("")]).collect();
+    below.iter().for_each(|below| sweep(&Path::new(".").join(folder).join(below)));
     let mut total = 0;
     for copy in &baked.copies {
         let path = source_folder.join(copy);
@@ -213,7 +216,7 @@ pub fn write_unsynced(path: &Path, bytes: &[u8]) -> io::Result<()> {
 fn put(path: &Path, bytes: &[u8], is_synced: bool) -> io::Result<()> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     fs::create_dir_all(folder)?;
-    let mut file = tempfile::Builder::new().prefix(".roughcast-").tempfile_in(folder)?;
+    let mut file = tempfile::Builder::new().prefix(UNFINISHED).tempfile_in(folder)?;
     file.write_all(bytes)?;
     if is_synced {
         file.as_file().sync_all()?;
@@ -221,6 +224,23 @@ fn put(path: &Path, bytes: &[u8], is_synced: bool) -> io::Result<()> {
     set_ordinary_permissions(file.as_file())?;
     file.persist(path).map_err(|e| e.error)?;
     Ok(())
+}
+
+/// How names of files begin that are being written.
+const UNFINISHED: &str = ".roughcast-";
+
+/// Nobody writes on a file for so long: its process was killed.
+const UNFINISHED_AGE: Duration = Duration::from_secs(3600);
+
+/// Removes what bakes left in `folder` that were killed while they wrote.
+fn sweep(folder: &Path) {
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let is_unfinished = entry.file_name().as_encoded_bytes().starts_with(UNFINISHED.as_bytes());
+        let modified = || entry.metadata().and_then(|facts| facts.modified()).ok();
+        if is_unfinished && modified().and_then(|m| m.elapsed().ok()).is_some_and(|age| age > UNFINISHED_AGE) {
+            let _ = fs::remove_file(entry.path());
+        }
+    }
 }
 
 /// Temporary files are private to their user; what is baked is for everyone whom the folder lets in.

@@ -11,5 +11,6 @@ mod notes;
 mod plan;
 mod process;
 mod render;
+mod survival;
 mod transcripts;
 mod validator;
