@@ -6,8 +6,6 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 use std::time::{Instant, SystemTime};
 
-use rayon::prelude::*;
-
 use super::Outcome;
 use super::depfile::depfile;
 use super::jobs::{self, JobOptions, Planned};
@@ -16,7 +14,7 @@ use super::report::{Asset, Report};
 use super::selection::Selection;
 use crate::bake::{Places, Settings, write_file};
 use crate::cache::{Cache, CacheError};
-use crate::plan::{self, Lookup};
+use crate::plan::{self, Lookup, RunError};
 
 /// Bake glTF assets: KTX2 textures with the lost roughness in their mips, and a glTF that refers to them.
 ///
@@ -98,42 +96,54 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
         assets: failed.iter().map(|e| Asset::failed(e.path().display().to_string(), 0.0, e.to_string())).collect(),
     };
     let mut places = Places::default();
-    // Hashing is all that a run without news does, so it is done side by side.
-    let look_up = |planned: &Planned| Some(Lookup::new(planned.job.as_ref().ok()?, cache.as_ref()?));
-    let lookups: Vec<Option<Lookup>> = planned.par_iter().map(look_up).collect();
-    for (index, (Planned { name, job }, lookup)) in planned.into_iter().zip(lookups).enumerate() {
+    // What to tell of an error, and whether trying again may help.
+    let told = |error: &RunError| (error.to_string(), error.is_passing());
+    // Assets are baked side by side, and written and told of in order.
+    let prepare = |index: usize| {
         let start = Instant::now();
-        progress.set(index, 0.0, &name);
+        let Planned { name, job } = &planned[index];
+        progress.set(index, 0.0, name);
+        let prepared = job.as_ref().map_err(told).and_then(|job| {
+            args.jobs.check(job).map_err(|error| told(&error))?;
+            let lookup = cache.as_ref().map(|cache| Lookup::new(job, cache));
+            let prepared = plan::prepare(job, lookup, &|share| progress.set(index, share, name));
+            Ok((job, prepared.map_err(|error| told(&error))?))
+        });
+        (prepared, start.elapsed().as_secs_f64())
+    };
+    plan::in_order(planned.len(), rayon::current_num_threads(), prepare, |index, (prepared, seconds)| {
+        let name = &planned[index].name;
+        let start = Instant::now();
         let mut warn = |error: &CacheError| {
             // The bake does not depend on who reads this.
             let _ = progress.suspend(|| writeln!(err, "warning: {name}: {error}"));
         };
-        let result = job.and_then(|job| {
-            args.jobs.check(&job)?;
-            let advance = |share| progress.set(index, share, &name);
-            Ok((job.typed_settings()?, plan::run(&job, &mut places, cache.as_ref().zip(lookup), &mut warn, &advance)?))
+        let result = prepared.and_then(|(job, prepared)| {
+            let done = plan::finish(job, prepared, &mut places, cache.as_ref(), &mut warn);
+            done.and_then(|done| Ok((job.typed_settings()?, done))).map_err(|error| told(&error))
         });
-        let seconds = start.elapsed().as_secs_f64();
+        let seconds = seconds + start.elapsed().as_secs_f64();
         let asset = match result {
             Ok((own, done)) => {
                 if args.depfile.is_some() && done.is_cached {
                     // Make takes what is older than an input for stale, and would ask again and again.
                     let _ = File::open(&done.output).and_then(|file| file.set_modified(SystemTime::now()));
                 }
-                Asset::done(name, &done, seconds, (own != settings).then_some(own))
+                Asset::done(name.clone(), &done, seconds, (own != settings).then_some(own))
             }
-            Err(error) => {
-                outcome = outcome.and(if error.is_passing() { Outcome::Retry } else { Outcome::Failed });
-                let message = error.to_string();
+            Err((message, is_passing)) => {
+                outcome = outcome.and(if is_passing { Outcome::Retry } else { Outcome::Failed });
                 progress.suspend(|| writeln!(err, "error: {name}: {message}"))?;
-                Asset::failed(name, seconds, message)
+                Asset::failed(name.clone(), seconds, message)
             }
         };
+        progress.set(index, 1.0, name);
         if !args.quiet && !args.json {
             progress.suspend(|| print(out, &asset.summary()))?;
         }
         report.assets.push(asset);
-    }
+        Ok::<(), io::Error>(())
+    })?;
     progress.finish();
     if let Some(cache) = &cache
         && let Err(error) = cache.trim(args.cache_size)

@@ -1,5 +1,6 @@
 //! The progress bar: on a terminal only.
 
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -10,24 +11,29 @@ const STEPS: f32 = 1000.0;
 /// A bar over assets, of which each moves it by its share.
 pub struct Progress {
     bar: ProgressBar,
+    /// Steps that each asset is along.
+    along: Vec<AtomicU64>,
 }
 
 impl Progress {
     /// For `assets` assets; hidden when `quiet` or when standard error is no terminal.
     pub fn new(assets: usize, quiet: bool) -> Self {
+        let along = (0..assets).map(|_| AtomicU64::new(0)).collect();
         if quiet {
-            return Self { bar: ProgressBar::hidden() };
+            return Self { bar: ProgressBar::hidden(), along };
         }
         let bar = ProgressBar::new((assets as f32 * STEPS) as u64);
         let style = ProgressStyle::with_template("{elapsed_precise} [{bar:40}] {percent:>3} %  {msg}");
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()).progress_chars("=> "));
         bar.enable_steady_tick(Duration::from_millis(200));
-        Self { bar }
+        Self { bar, along }
     }
 
     /// Work on asset `index` (from 0) has reached `share` (0 to 1).
     pub fn set(&self, index: usize, share: f32, name: &str) {
-        self.bar.set_position(((index as f32 + share) * STEPS) as u64);
+        let now = (share * STEPS) as u64;
+        let before = self.along.get(index).map_or(now, |along| along.fetch_max(now, Ordering::Relaxed));
+        self.bar.inc(now.saturating_sub(before));
         self.bar.set_message(name.to_owned());
     }
 

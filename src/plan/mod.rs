@@ -4,6 +4,7 @@
 //! no clock, network or home folder: run anywhere, it writes the same bytes.
 
 mod error;
+mod in_order;
 mod job;
 mod restore;
 mod run;
@@ -11,9 +12,10 @@ mod run;
 use serde::{Deserialize, Serialize};
 
 pub use error::RunError;
+pub use in_order::in_order;
 pub use job::{Job, JobInput, JobOutput, OutputKind};
 pub use restore::Lookup;
-pub use run::{Done, run};
+pub use run::{Done, Prepared, finish, prepare};
 
 /// The jobs of a run (`schemas/plan.schema.json`).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -23,6 +23,11 @@ impl Lookup {
         let is_in_place = entry.as_ref().is_ok_and(|entry| entry.as_ref().is_some_and(|entry| is_in_place(job, entry)));
         Self { entry, is_in_place }
     }
+
+    /// Whether the cache has an entry of use.
+    pub fn is_found(&self) -> bool {
+        matches!(self.entry, Ok(Some(_)))
+    }
 }
 
 fn is_in_place(job: &Job, entry: &Entry) -> bool {

@@ -9,9 +9,9 @@ use super::error::RunError;
 use super::job::{Job, OutputKind, beside};
 use super::restore::{Lookup, restore};
 use crate::bake::report::AssetReport;
-use crate::bake::{Places, Source, bake, publish, read_file};
+use crate::bake::{Baked, Places, Source, bake, publish, read_file};
 use crate::cache::{Cache, CacheError};
-use crate::gltf::document::Document;
+use crate::gltf::document::{Container, Document};
 
 /// What a job did.
 #[derive(Clone, Debug)]
@@ -26,24 +26,43 @@ pub struct Done {
     pub is_cached: bool,
 }
 
-/// Runs `job`; `cache` comes with what it knows of it. `warn` is told of entries of the cache that were dropped; `advance` is as in [`bake`].
+/// The part of a job that needs neither the places of outputs nor other jobs.
+pub struct Prepared {
+    /// What a cache knows, if there is one.
+    lookup: Option<Lookup>,
+    /// What was baked, unless the cache has it.
+    baked: Option<Baked>,
+}
+
+/// Bakes `job` in memory, unless its `lookup` found it. Jobs may be prepared side by side; `advance` is as in [`bake`].
 ///
 /// # Errors
 /// [`RunError`]; other jobs are not concerned.
-pub fn run(
+pub fn prepare(job: &Job, lookup: Option<Lookup>, advance: &dyn Fn(f32)) -> Result<Prepared, RunError> {
+    let is_known = lookup.as_ref().is_some_and(Lookup::is_found);
+    Ok(Prepared { baked: if is_known { None } else { Some(baked(job, advance)?) }, lookup })
+}
+
+/// Writes what was prepared; `warn` is told of entries of the cache that were dropped.
+///
+/// # Errors
+/// [`RunError`]; other jobs are not concerned.
+pub fn finish(
     job: &Job,
+    prepared: Prepared,
     places: &mut Places,
-    cache: Option<(&Cache, Lookup)>,
+    cache: Option<&Cache>,
     warn: &mut dyn FnMut(&CacheError),
-    advance: &dyn Fn(f32),
 ) -> Result<Done, RunError> {
-    let (cache, restored) = match cache {
-        None => (None, None),
-        Some((cache, lookup)) => (Some(cache), restore(job, places, cache, lookup, warn)?),
+    let restored = match cache.zip(prepared.lookup) {
+        None => None,
+        Some((cache, lookup)) => restore(job, places, cache, lookup, warn)?,
     };
-    let done = match restored {
-        Some(done) => done,
-        None => baked(job, places, cache, warn, advance)?,
+    let done = match (restored, prepared.baked) {
+        (Some(done), _) => done,
+        (None, Some(baked)) => written(job, &baked, places, cache, warn)?,
+        // The entry is there, and what it names is not.
+        (None, None) => written(job, &baked(job, &|_| ())?, places, cache, warn)?,
     };
     for output in &job.outputs {
         let is_there = match output.kind {
@@ -57,13 +76,7 @@ pub fn run(
     Ok(done)
 }
 
-fn baked(
-    job: &Job,
-    places: &mut Places,
-    cache: Option<&Cache>,
-    warn: &mut dyn FnMut(&CacheError),
-    advance: &dyn Fn(f32),
-) -> Result<Done, RunError> {
+fn baked(job: &Job, advance: &dyn Fn(f32)) -> Result<Baked, RunError> {
     let settings = job.typed_settings()?;
     let inputs = Inputs::new(job);
     let result: Result<_, RunError> = (|| {
@@ -73,19 +86,28 @@ fn baked(
         Ok(bake(&Source { stem: &stem, document: &document, read: &read }, &settings, advance)?)
     })();
     // Whatever else went wrong, half of a file that was being written explains it.
-    if let Some(path) = inputs.changed() {
-        return Err(RunError::Changed { path });
+    match inputs.changed() {
+        Some(path) => Err(RunError::Changed { path }),
+        None => result,
     }
-    let baked = result?;
-    let extension = if baked.container == crate::gltf::document::Container::Glb { "glb" } else { "gltf" };
+}
+
+fn written(
+    job: &Job,
+    baked: &Baked,
+    places: &mut Places,
+    cache: Option<&Cache>,
+    warn: &mut dyn FnMut(&CacheError),
+) -> Result<Done, RunError> {
+    let extension = if baked.container == Container::Glb { "glb" } else { "gltf" };
     let output = job.output.join(format!("{}.{extension}", job.stem()));
-    let bytes = publish(&baked, &output, &job.source, places)?;
+    let bytes = publish(baked, &output, &job.source, places)?;
     if let Some(cache) = cache
-        && let Err(error) = cache.put(&job.id, &output, &baked)
+        && let Err(error) = cache.put(&job.id, &output, baked)
     {
         warn(&error);
     }
-    Ok(Done { output, bytes, report: baked.report, is_cached: false })
+    Ok(Done { output, bytes, report: baked.report.clone(), is_cached: false })
 }
 
 /// The files of a job: what is read must be what was hashed.
