@@ -46,7 +46,8 @@ fn a_bake_that_is_killed_leaves_whole_files_and_the_next_completes() {
     let mut killed = 0;
     for round in 0..50 {
         if round % 5 == 0 {
-            fs::remove_dir_all(folder.join("cache")).expect("a folder");
+            // Not there, if the last one was killed before it began.
+            let _ = fs::remove_dir_all(folder.join("cache"));
         }
         let way = round % 2;
         let mut child = start(folder, WAYS[way]);
