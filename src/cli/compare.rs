@@ -45,10 +45,10 @@ pub struct Args {
     #[arg(long, value_parser = finite, default_value_t = 0.05, value_name = "S", allow_hyphen_values = true)]
     height_scale: f32,
     /// Roughness of a bare map, 0 to 1.
-    #[arg(long, value_parser = unit_interval, default_value_t = 0.3, value_name = "R")]
+    #[arg(long, value_parser = unit_interval, allow_negative_numbers = true, default_value_t = 0.3, value_name = "R")]
     roughness: f32,
     /// The error bound by which --model auto chooses the model that is marked.
-    #[arg(long, default_value_t = Settings::default().max_error, value_parser = unit_interval, value_name = "E")]
+    #[arg(long, default_value_t = Settings::default().max_error, value_parser = unit_interval, allow_negative_numbers = true, value_name = "E")]
     max_error: f32,
     /// The quality of the bake that is marked.
     #[arg(long, value_enum, default_value_t = QualityName::Fast)]

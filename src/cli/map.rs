@@ -54,7 +54,7 @@ pub struct Args {
     #[arg(long, value_name = "IMAGE")]
     roughness: Option<PathBuf>,
     /// The surface's own roughness, 0 to 1; multiplies --roughness.
-    #[arg(long, value_parser = unit_interval, value_name = "R")]
+    #[arg(long, value_parser = unit_interval, allow_negative_numbers = true, value_name = "R")]
     roughness_factor: Option<f32>,
     /// Print what was written as JSON.
     #[arg(long)]

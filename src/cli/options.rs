@@ -21,7 +21,7 @@ pub struct TextureOptions {
     model: Option<ModelName>,
     /// Largest mean lobe error (0 to 1) that --model auto puts up with at any level: the share of reflected light that
     /// goes where it should not. [default: 0.1]
-    #[arg(long, value_parser = unit_interval_f64, value_name = "E")]
+    #[arg(long, value_parser = unit_interval_f64, allow_negative_numbers = true, value_name = "E")]
     max_error: Option<f64>,
     /// How well lobes are fitted and how long block encoders search. [default: fast]
     #[arg(long, value_enum)]

@@ -10,16 +10,16 @@ use crate::config::Values;
 pub struct ViewOptions {
     /// Least distance of the camera from a surface, in units of the scene: the report then tells the finest level that
     /// is sampled on each material.
-    #[arg(long, value_parser = positive, value_name = "D")]
+    #[arg(long, value_parser = positive, allow_negative_numbers = true, value_name = "D")]
     nearest: Option<f64>,
     /// Rows of pixels on the screen.
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..), value_name = "PX")]
     screen_height: Option<u32>,
     /// Vertical field of view in degrees. [default: 45]
-    #[arg(long, value_parser = field_of_view, value_name = "DEG")]
+    #[arg(long, value_parser = field_of_view, allow_negative_numbers = true, value_name = "DEG")]
     fov: Option<f64>,
     /// Width of the screen over its height. [default: 1.778]
-    #[arg(long, value_parser = positive, value_name = "RATIO")]
+    #[arg(long, value_parser = positive, allow_negative_numbers = true, value_name = "RATIO")]
     aspect: Option<f64>,
     /// Leave levels that are too fine to be sampled out of the textures.
     #[arg(long, num_args = 0..=1, require_equals = true, default_missing_value = "true", value_name = "BOOL")]

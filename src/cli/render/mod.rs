@@ -46,7 +46,7 @@ pub struct Args {
     #[arg(long, value_enum, value_delimiter = ',', value_name = "SCENE")]
     scene: Vec<SceneName>,
     /// Distances from the eye to the surface, in repeats of the map; a row for each. [default: what suits the scene]
-    #[arg(long, value_parser = distance, value_delimiter = ',', value_name = "D")]
+    #[arg(long, value_parser = distance, allow_negative_numbers = true, value_delimiter = ',', value_name = "D")]
     distance: Vec<f64>,
     /// The lobe that shades, which the columns are baked for.
     #[arg(long, value_enum, default_value_t = LobeName::Ggx)]
@@ -70,7 +70,7 @@ pub struct Args {
     #[arg(long, value_parser = finite, default_value_t = 0.05, value_name = "S", allow_hyphen_values = true)]
     height_scale: f32,
     /// Roughness of a bare map or the waves, 0 to 1. [default: what suits the scene]
-    #[arg(long, value_parser = unit_interval, value_name = "R")]
+    #[arg(long, value_parser = unit_interval, allow_negative_numbers = true, value_name = "R")]
     roughness: Option<f32>,
     /// Also write linear radiance as OpenEXR.
     #[arg(long)]
