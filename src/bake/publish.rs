@@ -184,8 +184,11 @@ pub fn read_file(path: &Path) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Checks that the file may be read; returns its length.
-fn check_file(path: &Path) -> io::Result<u64> {
+/// Checks that [`read_file`] may read the file; returns its length.
+///
+/// # Errors
+/// As there.
+pub fn check_file(path: &Path) -> io::Result<u64> {
     let facts = fs::metadata(path)?;
     if !facts.is_file() {
         return Err(io::Error::new(io::ErrorKind::InvalidInput, "not an ordinary file"));

@@ -1,7 +1,7 @@
 //! Levels and key/value data of a KTX2 file. Sections are those of the KTX File Format Specification 2.0.
 
 use super::findings::{Code, Findings};
-use crate::texture::ktx2::Ktx2;
+use crate::texture::ktx2::{Ktx2, ReadError};
 
 /// "Level Index": a full chain, stored smallest level first, each level aligned.
 pub fn check_levels(file: &Ktx2<'_>, findings: &mut Findings) {
@@ -38,6 +38,12 @@ pub fn check_levels(file: &Ktx2<'_>, findings: &mut Findings) {
             );
         }
         end = facts.offset.saturating_add(facts.length);
+    }
+    for level in 0..file.level_count() {
+        if let Err(ReadError::LevelLength { expected, found, .. }) = file.check_length(level) {
+            let message = format!("expected {expected} bytes, found {found}; bake again");
+            findings.add(Code::LevelLength, format!("level {level}"), message);
+        }
     }
     if header.supercompression_scheme.is_none() {
         check_alignment(file, findings);

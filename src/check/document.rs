@@ -10,7 +10,7 @@ use serde_json::Value;
 use super::extension::RoughnessPyramid;
 use super::findings::{Code, Finding, Findings};
 use super::materials::check_materials;
-use super::origin::Origin;
+use super::scope::Scope;
 use super::sources::{Sources, Textures};
 use super::texture::{Usage, check_texture};
 use crate::bake::{Source, SourceError};
@@ -33,7 +33,7 @@ pub fn check_document(
     name: &str,
     bytes: &[u8],
     read: &(dyn Fn(&Path) -> io::Result<Vec<u8>> + Sync),
-    origin: Option<&Origin<'_>>,
+    scope: &Scope<'_>,
 ) -> CheckedDocument {
     let mut findings = Findings::new(name, "");
     let parsed = Document::parse(bytes).and_then(|document| {
@@ -62,7 +62,7 @@ pub fn check_document(
     let source = Source { stem: "", document: &document, read };
     check_buffers(&root, &source, &mut findings);
 
-    let mut images = Images { name, source, root: &root, origin, contents: BTreeMap::new(), list: Vec::new() };
+    let mut images = Images { name, source, root: &root, scope, contents: BTreeMap::new(), list: Vec::new() };
     for image in 0..root.images.len() {
         images.check(image, &textures, &uses.normals, &mut findings);
     }
@@ -101,7 +101,7 @@ struct Images<'a> {
     name: &'a str,
     source: Source<'a>,
     root: &'a Root,
-    origin: Option<&'a Origin<'a>>,
+    scope: &'a Scope<'a>,
     /// What the provenance of KTX2 images says that they hold; no entry for other images.
     contents: BTreeMap<usize, Option<String>>,
     list: Vec<Finding>,
@@ -138,7 +138,7 @@ impl Images<'_> {
                 Some(path) => Findings::new(beside(self.name, &path), ""),
                 None => Findings::new(self.name, place),
             };
-            let content = check_texture(&bytes, usage, self.origin, &mut of_image);
+            let content = check_texture(&bytes, usage, self.scope, &mut of_image);
             self.contents.insert(index, content);
             self.list.append(&mut of_image.into_list());
         }

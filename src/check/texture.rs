@@ -4,7 +4,8 @@ use super::basisu::check_basisu;
 use super::container::{check_keys, check_levels};
 use super::descriptor::check_descriptor;
 use super::findings::{Code, Findings};
-use super::origin::{Origin, check_origin};
+use super::origin::check_origin;
+use super::scope::Scope;
 use super::texels::check_texels;
 use crate::texture::ktx2::{Ktx2, PROVENANCE_KEY};
 
@@ -19,12 +20,7 @@ pub struct Usage {
 
 /// Checks a KTX2 file; returns what its provenance says that its texels are. Files that name another writer are only
 /// read: their making is not ours to judge.
-pub fn check_texture(
-    bytes: &[u8],
-    usage: Usage,
-    origin: Option<&Origin<'_>>,
-    findings: &mut Findings,
-) -> Option<String> {
+pub fn check_texture(bytes: &[u8], usage: Usage, scope: &Scope<'_>, findings: &mut Findings) -> Option<String> {
     let file = match Ktx2::parse(bytes) {
         Ok(file) => file,
         Err(error) => {
@@ -39,8 +35,10 @@ pub fn check_texture(
     check_keys(&file, bytes, findings);
     check_descriptor(&file, findings);
     check_basisu(&file, usage.by_basisu, findings);
-    let content = check_origin(&file, origin, findings).map(|provenance| provenance.content);
-    check_texels(&file, usage.normals || content.as_deref() == Some("normal"), findings);
+    let content = check_origin(&file, scope.origin, findings).map(|provenance| provenance.content);
+    if scope.is_deep {
+        check_texels(&file, usage.normals || content.as_deref() == Some("normal"), findings);
+    }
     content
 }
 

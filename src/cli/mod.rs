@@ -5,6 +5,7 @@ mod check;
 mod compare;
 mod completions;
 mod depfile;
+mod head;
 mod init;
 mod inputs;
 mod inspect;

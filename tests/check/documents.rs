@@ -8,6 +8,7 @@ use roughcast::check::Code;
 use roughcast::cli::Outcome;
 use roughcast::gltf::document::Document;
 use roughcast::gltf::json::Json;
+use roughcast::texture::ktx2::Ktx2;
 use serde_json::{Value, json};
 
 use crate::fixture::{Bake, bake, findings, roughcast, write_asset};
@@ -127,7 +128,7 @@ fn each_damage_is_found_at_its_place() {
     for fixture in FIXTURES {
         let bake = bake(fixture.options);
         (fixture.damage)(&bake);
-        let (outcome, report) = if fixture.with_source { bake.check_source() } else { bake.check(&[]) };
+        let (outcome, report) = if fixture.with_source { bake.check_source(&[]) } else { bake.check(&[]) };
         let expected = (fixture.code.to_string(), fixture.file.to_owned(), fixture.place.to_owned());
         assert!(findings(&report).contains(&expected), "{expected:?}: {report:#}");
         let is_note = fixture.code == Code::DualSource;
@@ -140,7 +141,7 @@ fn each_damage_is_found_at_its_place() {
 fn staleness_is_told_of_the_right_textures() {
     let bake = bake(&[]);
     fs::copy(bake.source.join("bumps.png"), bake.source.join("surface.png")).unwrap();
-    let (_, report) = bake.check_source();
+    let (_, report) = bake.check_source(&[]);
     let stale: Vec<String> = findings(&report).into_iter().filter(|f| f.0 == "RC1505").map(|f| f.1).collect();
     assert!(!stale.is_empty() && stale.iter().all(|file| file.starts_with("surface.")), "{report}");
 }
@@ -149,7 +150,7 @@ fn staleness_is_told_of_the_right_textures() {
 #[test]
 fn embedded_textures_have_a_place() {
     let bake = bake(&["--glb", "--no-provenance"]);
-    let (_, report) = bake.check_source();
+    let (_, report) = bake.check_source(&[]);
     let places: Vec<_> = findings(&report).into_iter().filter(|f| f.0 == "RC1506").map(|f| (f.1, f.2)).collect();
     assert!(places.contains(&("ridges.glb".to_owned(), "/images/0, key roughcast".to_owned())), "{report}");
 }
@@ -187,4 +188,20 @@ fn embedded_sources_are_compared() {
     assert!(stale.contains(&("RC1505".to_owned(), "image1.normal.ktx2".to_owned())), "{stale:?}");
     let stale = check("bumps.png", "bumps.png");
     assert!(!stale.is_empty() && stale.iter().all(|f| f.1 != "image1.normal.ktx2"), "{stale:?}");
+}
+
+/// A texel that no longer decodes is nothing to a check of headers, which does not read it.
+#[test]
+fn levels_are_read_only_with_deep() {
+    let bake = bake(&["--gltf", "strict"]);
+    let texture = bake.texture("bumps.normal.ktx2");
+    let mut bytes = fs::read(&texture).unwrap();
+    let level = Ktx2::parse(&bytes).unwrap().levels()[0];
+    bytes[level.offset as usize..][..level.length as usize].fill(0xFF);
+    fs::write(&texture, bytes).unwrap();
+    let (outcome, report) = bake.check_source(&[]);
+    assert_eq!((outcome, findings(&report)), (Outcome::Done, vec![]), "{report}");
+    let (outcome, report) = bake.check_source(&["--deep"]);
+    let expected = ("RC1401".to_owned(), "bumps.normal.ktx2".to_owned(), "level 0".to_owned());
+    assert_eq!((outcome, findings(&report)), (Outcome::Findings, vec![expected]), "{report}");
 }

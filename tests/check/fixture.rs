@@ -103,8 +103,8 @@ impl Bake {
     }
 
     /// The same with `--source`.
-    pub fn check_source(&self) -> (Outcome, Value) {
-        self.check(&["--source", self.source.to_str().unwrap()])
+    pub fn check_source(&self, options: &[&str]) -> (Outcome, Value) {
+        self.check(&[&["--source", self.source.to_str().unwrap()], options].concat())
     }
 }
 

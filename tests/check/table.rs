@@ -23,8 +23,10 @@ fn the_documentation_agrees_with_the_table() {
     let expected: Vec<String> =
         Code::ALL.iter().map(|c| format!("{c} {}: {}", c.severity().name(), c.title())).collect();
     assert_eq!(headings, expected);
-    for section in sections {
+    for (section, code) in sections.into_iter().zip(Code::ALL) {
         assert!(section.contains("\nCause: ") && section.contains("\nRemedy: "), "{section}");
+        let is_of_texels = (1400..1500).contains(&(*code as u16));
+        assert_eq!(section.contains("\nNeeds: `--deep`."), is_of_texels, "{section}");
     }
 }
 

@@ -121,18 +121,13 @@ impl<'a> Ktx2<'a> {
     /// See [`ReadError`]. BasisLZ has no such payload and is [`ReadError::Unsupported`].
     pub fn level_bytes(&self, level: u32) -> Result<Cow<'a, [u8]>, ReadError> {
         let expected = self.payload_length(level)?;
-        let (facts, stored) = self.stored(level)?;
-        let found = match self.header().supercompression_scheme {
-            None => stored.len() as u64,
-            Some(_) => facts.uncompressed_length,
-        };
-        let of_wrong_length = |found| ReadError::LevelLength { level, expected, found };
+        let (_, stored) = self.stored(level)?;
+        self.check_length(level)?;
         let inflated = match self.header().supercompression_scheme {
             Some(SupercompressionScheme::BasisLZ) => {
                 let what = "a BasisLZ payload by itself".to_owned();
                 return Err(ReadError::Unsupported { what });
             }
-            _ if found != expected => return Err(of_wrong_length(found)),
             None => return Ok(Cow::Borrowed(stored)),
             Some(SupercompressionScheme::Zstandard) => inflate::zstd(stored, expected),
             Some(SupercompressionScheme::ZLIB) => inflate::zlib(stored, expected),
@@ -143,9 +138,25 @@ impl<'a> Ktx2<'a> {
         };
         let inflated = inflated.map_err(|error| ReadError::Compression { level, what: error.to_string() })?;
         if inflated.len() as u64 != expected {
-            return Err(of_wrong_length(inflated.len() as u64));
+            return Err(ReadError::LevelLength { level, expected, found: inflated.len() as u64 });
         }
         Ok(Cow::Owned(inflated))
+    }
+
+    /// Checks that the level index gives level `level` the length, not supercompressed, that its size and format make. Its
+    /// bytes are not looked at. The level index has no such length under BasisLZ.
+    ///
+    /// # Errors
+    /// [`ReadError::LevelLength`], or why there is no such length.
+    pub fn check_length(&self, level: u32) -> Result<(), ReadError> {
+        let expected = self.payload_length(level)?;
+        let (facts, _) = self.stored(level)?;
+        let found = match self.header().supercompression_scheme {
+            None => facts.length,
+            Some(SupercompressionScheme::BasisLZ) => return Ok(()),
+            Some(_) => facts.uncompressed_length,
+        };
+        if found == expected { Ok(()) } else { Err(ReadError::LevelLength { level, expected, found }) }
     }
 
     /// Decodes level `level` of a plain 2D texture.
