@@ -11,7 +11,7 @@ use std::path::PathBuf;
 
 use roughcast::bake::Places;
 use roughcast::config::resolve;
-use roughcast::plan::{Job, run};
+use roughcast::plan::{Job, finish, prepare};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let assets = PathBuf::from(var_os("CARGO_MANIFEST_DIR").ok_or("Cargo sets CARGO_MANIFEST_DIR")?).join("assets");
@@ -29,7 +29,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         for input in &job.inputs {
             println!("cargo::rerun-if-changed={}", input.path.display());
         }
-        run(&job, &mut places, None, &mut |_| {}, &|_| {})?;
+        let prepared = prepare(&job, None, &|_| {})?;
+        finish(&job, prepared, &mut places, None, &mut |_| {})?;
     }
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! What a fuzzer found, tried again.
+//! What a fuzzer found, tried again, and where it starts from, cut off.
 
 use std::fs;
 use std::path::Path;
@@ -6,35 +6,37 @@ use std::path::Path;
 #[path = "fuzz/entries.rs"]
 mod entries;
 
-/// Runs `entry` on the files that once broke it and on those that a fuzzer starts from.
-fn replay(name: &str, entry: fn(&[u8])) {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fuzz");
-    let mut count = 0;
-    for files in [folder.join("found").join(name), folder.join("seeds").join(name)] {
-        for file in fs::read_dir(files).into_iter().flatten() {
-            entry(&fs::read(file.expect("a file").path()).expect("a file"));
-            count += 1;
-        }
+/// Runs `entry` on the files in `found` that once broke it, and on every piece of `start`.
+fn replay(name: &str, entry: fn(&[u8]), start: &[u8]) {
+    let found = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fuzz/found").join(name);
+    for file in fs::read_dir(found).into_iter().flatten() {
+        entry(&fs::read(file.expect("a file").path()).expect("a file"));
     }
-    assert!(count > 0, "no files for {name}");
+    for length in (0..start.len()).step_by(start.len().div_ceil(100)) {
+        entry(&start[..length]);
+    }
+    entry(start);
 }
 
 #[test]
 fn documents() {
-    replay("document", entries::document);
+    replay("document", entries::document, include_bytes!("../fixtures/brushed/brushed.gltf"));
+    replay("document", entries::document, include_bytes!("../fixtures/waves/waves.glb"));
 }
 
 #[test]
 fn textures() {
-    replay("texture", entries::texture);
+    replay("texture", entries::texture, b"\xABKTX 20\xBB\r\n\x1A\n\0\0\0\0\x01\0\0\0");
 }
 
 #[test]
 fn configurations() {
-    replay("configuration", entries::configuration);
+    replay("configuration", entries::configuration, include_bytes!("../src/config/template.toml"));
 }
 
 #[test]
 fn images() {
-    replay("image", entries::image);
+    let mut named = vec![6];
+    named.extend(include_bytes!("../fixtures/maps/dunes_height.exr"));
+    replay("image", entries::image, &named);
 }

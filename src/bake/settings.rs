@@ -130,7 +130,8 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// What decides on the bytes of a texture that models `model`, for its provenance.
+    /// What decides on the bytes of a texture that models `model`, for its provenance. Where that was chosen, `asked` is what
+    /// was asked for.
     pub fn to_json(&self, model: Model) -> Value {
         let frame = match self.frame {
             Frame::Natural => json!("natural"),
@@ -152,6 +153,9 @@ impl Settings {
             "frame": frame,
             "heightScale": self.height_scale.map(f64::from),
         });
+        if model != self.model {
+            settings["asked"] = json!(self.model);
+        }
         if let Some(view) = self.view {
             settings["view"] = json!(view);
         }

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 use std::path::{Path, PathBuf};
 
-use ::gltf::json::Root;
+use ::gltf::json::{Image, Root};
 use serde_json::Value;
 
 use super::extension::RoughnessPyramid;
@@ -13,10 +13,12 @@ use super::materials::check_materials;
 use super::scope::Scope;
 use super::sources::{Sources, Textures};
 use super::texture::{Usage, check_texture};
+use super::variance::{Levels, Ranged, check_variance};
 use crate::bake::{Source, SourceError};
-use crate::gltf::document::{Document, DocumentError};
+use crate::gltf::document::{Container, Document, DocumentError};
 use crate::gltf::texture::ImageLocation;
 use crate::gltf::uri::{Uri, relative_path};
+use crate::texture::ktx2::Ktx2;
 
 const KTX2_MIME: &str = "image/ktx2";
 
@@ -68,6 +70,18 @@ pub fn check_document(
     }
     for (pointer, pyramid) in &uses.pyramids {
         check_contents(pointer, pyramid, &textures, &images.contents, &mut findings);
+        if scope.is_deep {
+            images.check_variance(pointer, pyramid, &textures, &mut findings);
+        }
+    }
+    let is_baked = images.contents.values().any(Option::is_some);
+    if let Some(settings) = scope.settings.filter(|_| is_baked) {
+        let is_glb = document.container() == Container::Glb;
+        if settings.glb != is_glb {
+            let message =
+                format!("expected glb = {}, found glb = {is_glb}; bake again, and delete this one", settings.glb);
+            findings.add(Code::OtherSettings, "", message);
+        }
     }
     let mut list = findings.into_list();
     list.append(&mut images.list);
@@ -111,13 +125,9 @@ impl Images<'_> {
     fn check(&mut self, index: usize, textures: &Textures, normals: &BTreeSet<usize>, findings: &mut Findings) {
         let Some(image) = self.root.images.get(index) else { return };
         let place = format!("/images/{index}");
-        let location = match (&image.uri, &image.buffer_view) {
-            (Some(uri), _) => ImageLocation::Uri(uri.clone()),
-            (None, Some(view)) => ImageLocation::BufferView(view.value()),
-            (None, None) => {
-                findings.add(Code::BadReference, place, "expected a uri or a bufferView, found neither; bake again");
-                return;
-            }
+        let Some(location) = location(image) else {
+            findings.add(Code::BadReference, place, "expected a uri or a bufferView, found neither; bake again");
+            return;
         };
         let bytes = match self.source.image(&location) {
             Ok(bytes) => bytes,
@@ -142,6 +152,26 @@ impl Images<'_> {
             self.contents.insert(index, content);
             self.list.append(&mut of_image.into_list());
         }
+    }
+
+    /// The bytes of the KTX2 of a texture.
+    fn ktx2(&self, texture: u32, textures: &Textures) -> Option<Vec<u8>> {
+        let image = self.root.images.get(textures.get(texture as usize).basisu?)?;
+        self.source.image(&location(image)?).ok()
+    }
+
+    fn check_variance(&self, pointer: &str, pyramid: &RoughnessPyramid, textures: &Textures, findings: &mut Findings) {
+        let Some(offset) = self.ktx2(pyramid.offset_texture.index, textures) else { return };
+        let roughness = pyramid.roughness_texture.as_ref().and_then(|info| self.ktx2(info.index, textures));
+        let roughness = match (&pyramid.roughness_model, &roughness, &pyramid.roughness_min, &pyramid.roughness_max) {
+            (Some(model), Some(bytes), Some(min), Some(max)) => {
+                Ktx2::parse(bytes).ok().map(|file| (*model, Ranged { file, min, max }))
+            }
+            _ => None,
+        };
+        let Ok(file) = Ktx2::parse(&offset) else { return };
+        let offset = Ranged { file, min: &pyramid.offset_min, max: &pyramid.offset_max };
+        check_variance(&Levels { offset, roughness }, pointer, findings);
     }
 
     fn check_core_source(
@@ -198,6 +228,13 @@ fn files(root: &Root) -> Vec<PathBuf> {
     let images = root.images.iter().filter_map(|i| i.uri.as_ref());
     let uris = images.chain(root.buffers.iter().filter_map(|b| b.uri.as_ref()));
     uris.filter_map(|uri| relative_path(uri).ok()).collect()
+}
+
+fn location(image: &Image) -> Option<ImageLocation> {
+    match (&image.uri, &image.buffer_view) {
+        (Some(uri), _) => Some(ImageLocation::Uri(uri.clone())),
+        (None, view) => Some(ImageLocation::BufferView(view.as_ref()?.value())),
+    }
 }
 
 fn external(location: &ImageLocation) -> Option<PathBuf> {

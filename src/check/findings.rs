@@ -1,6 +1,7 @@
 //! What `check` can find: one table. `docs/findings.md` gives cause and remedy of each; a test holds the two together.
 
 use std::fmt;
+use std::str::FromStr;
 
 use serde::{Serialize, Serializer};
 
@@ -99,6 +100,7 @@ codes! {
     UndecodableLevel 1401 Error "a level cannot be decoded";
     NormalLength 1402 Error "normals are not of unit length";
     NotFinite 1403 Error "texels are NaN or infinite";
+    Variance 1404 Error "variance is not conserved from level to level";
     // 15xx: where textures come from.
     NoProvenance 1501 Note "the texture has no provenance";
     BadProvenance 1502 Error "the provenance cannot be read";
@@ -106,11 +108,42 @@ codes! {
     MissingSource 1504 Error "a source cannot be read";
     Stale 1505 Error "a source has changed since the bake";
     Untraceable 1506 Warning "without provenance, staleness cannot be told";
+    OtherSettings 1507 Warning "the settings are not those that hold for the asset";
+    OldVersion 1508 Error "the texture was baked by a version below --min-version";
+    NewerVersion 1509 Warning "the texture was baked by a newer version";
+    LobeError 1510 Note "the lobe error is above the bound";
+    NoOutput 1511 Warning "a source has no output";
+}
+
+impl Code {
+    /// Whether baking the asset again makes it go away.
+    pub fn is_cured_by_bake(self) -> bool {
+        !matches!(
+            self,
+            Self::NotBasis
+                | Self::DualSource
+                | Self::SourceFormat
+                | Self::NoTangentSpace
+                | Self::LeftOver
+                | Self::MissingSource
+                | Self::NewerVersion
+                | Self::LobeError
+        )
+    }
 }
 
 impl fmt::Display for Code {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "RC{:04}", *self as u16)
+    }
+}
+
+impl FromStr for Code {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let code = Self::ALL.iter().find(|code| code.to_string().eq_ignore_ascii_case(text));
+        code.copied().ok_or_else(|| format!("expected the number of a finding, such as RC1207, found {text:?}"))
     }
 }
 

@@ -11,11 +11,14 @@ mod extension;
 mod findings;
 mod materials;
 mod origin;
+mod provenance;
 mod render;
 mod scope;
+mod settings;
 mod sources;
 mod texels;
 mod texture;
+mod variance;
 
 pub use document::{CheckedDocument, check_document};
 pub use extension::{FrameName, RoughnessModel, RoughnessPyramid, TextureInfo};

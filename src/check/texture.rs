@@ -4,7 +4,7 @@ use super::basisu::check_basisu;
 use super::container::{check_keys, check_levels};
 use super::descriptor::check_descriptor;
 use super::findings::{Code, Findings};
-use super::origin::check_origin;
+use super::provenance::check_provenance;
 use super::scope::Scope;
 use super::texels::check_texels;
 use crate::texture::ktx2::{Ktx2, PROVENANCE_KEY};
@@ -35,7 +35,7 @@ pub fn check_texture(bytes: &[u8], usage: Usage, scope: &Scope<'_>, findings: &m
     check_keys(&file, bytes, findings);
     check_descriptor(&file, findings);
     check_basisu(&file, usage.by_basisu, findings);
-    let content = check_origin(&file, scope.origin, findings).map(|provenance| provenance.content);
+    let content = check_provenance(&file, scope, findings).map(|provenance| provenance.content);
     if scope.is_deep {
         check_texels(&file, usage.normals || content.as_deref() == Some("normal"), findings);
     }

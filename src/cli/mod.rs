@@ -19,6 +19,7 @@ mod render;
 mod report;
 mod selection;
 mod view;
+mod work;
 
 use std::io::Write;
 

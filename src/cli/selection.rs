@@ -19,6 +19,13 @@ pub struct Selection {
     /// Output folder. [default: `output` in roughcast.toml]
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
+    #[command(flatten)]
+    settings: SettingOptions,
+}
+
+/// How outputs are made.
+#[derive(Debug, clap::Args)]
+pub struct SettingOptions {
     /// Settings of every asset, instead of the roughcast.toml in its folder or in the nearest above.
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
@@ -99,19 +106,47 @@ impl Selection {
     /// # Errors
     /// [`SelectionError`] when nothing can be done.
     pub fn find(&self, arguments: &[PathBuf]) -> Result<Selected, SelectionError> {
-        let lobe = self.lobe.map(Into::into);
-        let values = Values { lobe, ..self.view.values(self.document.values(self.texture.values())) };
-        let flags = Layer { origin: "command line".to_owned(), values };
         let mut configs = Configs::default();
         let output = match (&self.output, arguments.first()) {
             (Some(output), _) => output.clone(),
             (None, Some(first)) => {
                 let folder = if first.is_dir() { first.as_path() } else { first.parent().unwrap_or(Path::new("")) };
-                self.config(&mut configs, folder)?.and_then(|c| c.output_folder()).ok_or(SelectionError::NoOutput)?
+                let config = self.settings.config(&mut configs, folder)?;
+                config.and_then(|c| c.output_folder()).ok_or(SelectionError::NoOutput)?
             }
             (None, None) => return Err(SelectionError::NoOutput),
         };
-        let (inputs, errors) = inputs::find(arguments, &output);
+        let selected = self.settings.select(configs, arguments, &output)?;
+        for (_, resolved) in &selected.assets {
+            resolved.settings.target.check_available()?;
+        }
+        Ok(selected)
+    }
+}
+
+impl SettingOptions {
+    /// What flags say.
+    fn said(&self) -> Values {
+        let lobe = self.lobe.map(Into::into);
+        Values { lobe, ..self.view.values(self.document.values(self.texture.values())) }
+    }
+
+    /// Whether anything is said.
+    pub fn is_said(&self) -> bool {
+        self.config.is_some() || self.no_config || !self.said().said().is_empty()
+    }
+
+    /// The assets of `arguments` that go to `output`, and their settings.
+    ///
+    /// # Errors
+    /// [`SelectionError`] when nothing can be done.
+    pub fn find(&self, arguments: &[PathBuf], output: &Path) -> Result<Selected, SelectionError> {
+        self.select(Configs::default(), arguments, output)
+    }
+
+    fn select(&self, mut configs: Configs, arguments: &[PathBuf], output: &Path) -> Result<Selected, SelectionError> {
+        let flags = Layer { origin: "command line".to_owned(), values: self.said() };
+        let (inputs, errors) = inputs::find(arguments, output);
         let mut assets = Vec::with_capacity(inputs.len());
         for input in inputs {
             let folder = input.path.parent().unwrap_or(Path::new(""));
@@ -121,7 +156,6 @@ impl Selection {
             };
             layers.push(flags.clone());
             let resolved = resolve(&layers)?;
-            resolved.settings.target.check_available()?;
             assets.push((input, resolved));
         }
         let settings = resolve(&[flags]).map_or_else(|_| Settings::default(), |resolved| resolved.settings);

@@ -15,6 +15,8 @@ use crate::fixture::{Bake, bake, findings, roughcast, write_asset};
 
 const PYRAMID: &str = "/materials/0/extensions/ROUGHCAST_materials_roughness_pyramid";
 
+const LEVEL_1: &str = "/materials/0/extensions/ROUGHCAST_materials_roughness_pyramid, level 1";
+
 struct Fixture {
     code: Code,
     options: &'static [&'static str],
@@ -22,18 +24,26 @@ struct Fixture {
     file: &'static str,
     place: &'static str,
     with_source: bool,
+    is_deep: bool,
 }
 
 const fn fixture(code: Code, options: &'static [&'static str], place: &'static str, damage: fn(&Bake)) -> Fixture {
-    Fixture { code, options, damage, file: "ridges.gltf", place, with_source: false }
+    Fixture { code, options, damage, file: "ridges.gltf", place, with_source: false, is_deep: false }
 }
 
 const fn with_source(code: Code, file: &'static str, place: &'static str, damage: fn(&Bake)) -> Fixture {
-    Fixture { code, options: &[], damage, file, place, with_source: true }
+    Fixture { code, options: &[], damage, file, place, with_source: true, is_deep: false }
 }
 
 fn remove(value: &mut Value, key: &str) {
     value.as_object_mut().unwrap().remove(key);
+}
+
+fn scale_roughness(document: &mut Value, factor: f64) {
+    for member in ["roughnessMin", "roughnessMax"] {
+        let range = document.pointer_mut(PYRAMID).unwrap()[member].as_array_mut().unwrap();
+        range.iter_mut().for_each(|value| *value = json!(value.as_f64().unwrap() * factor));
+    }
 }
 
 /// The index of the texture that the normals are in.
@@ -99,6 +109,36 @@ const FIXTURES: &[Fixture] = &[
             });
         },
     ),
+    // Twice the roughness that the offsets have lost.
+    Fixture {
+        is_deep: true,
+        ..fixture(Code::Variance, &["--profile", "pyramid", "--model", "anisotropic"], LEVEL_1, |b| {
+            b.edit(|d| scale_roughness(d, 2.0));
+        })
+    },
+    Fixture {
+        is_deep: true,
+        ..fixture(Code::Variance, &["--profile", "pyramid", "--model", "isotropic"], LEVEL_1, |b| {
+            b.edit(|d| scale_roughness(d, 2.0));
+        })
+    },
+    // Offsets of another mean: level 1 is that of a texture of its own.
+    Fixture {
+        is_deep: true,
+        ..fixture(
+            Code::Variance,
+            &["--profile", "pyramid", "--model", "none", "--target", "float", "--gltf", "strict"],
+            LEVEL_1,
+            |b| {
+                let texture = b.texture("bumps.offset.ktx2");
+                let mut bytes = fs::read(&texture).unwrap();
+                let level = Ktx2::parse(&bytes).unwrap().levels()[1];
+                // Half floats: 0 becomes 1, and whatever else 1 and a little.
+                bytes[level.offset as usize..][..level.length as usize].fill(0x3C);
+                fs::write(texture, bytes).unwrap();
+            },
+        )
+    },
     Fixture {
         file: "old.normal.ktx2",
         ..fixture(Code::LeftOver, &[], "", |b| {
@@ -111,6 +151,15 @@ const FIXTURES: &[Fixture] = &[
     }),
     with_source(Code::Stale, "bumps.normal.ktx2", "key roughcast", |b| {
         fs::copy(b.source.join("surface.png"), b.source.join("bumps.png")).map(drop).unwrap();
+    }),
+    with_source(Code::OtherSettings, "bumps.normal.ktx2", "key roughcast", |b| {
+        fs::write(b.source.join("roughcast.toml"), "quality = 'best'").unwrap();
+    }),
+    with_source(Code::OtherSettings, "ridges.gltf", "", |b| {
+        fs::write(b.source.join("roughcast.toml"), "glb = true").unwrap();
+    }),
+    with_source(Code::NoOutput, "later.gltf", "", |b| {
+        fs::copy(b.source.join("ridges.gltf"), b.source.join("later.gltf")).map(drop).unwrap();
     }),
     Fixture {
         options: &["--no-provenance"],
@@ -128,7 +177,8 @@ fn each_damage_is_found_at_its_place() {
     for fixture in FIXTURES {
         let bake = bake(fixture.options);
         (fixture.damage)(&bake);
-        let (outcome, report) = if fixture.with_source { bake.check_source(&[]) } else { bake.check(&[]) };
+        let deep: &[&str] = if fixture.is_deep { &["--deep"] } else { &[] };
+        let (outcome, report) = if fixture.with_source { bake.check_source(deep) } else { bake.check(deep) };
         let expected = (fixture.code.to_string(), fixture.file.to_owned(), fixture.place.to_owned());
         assert!(findings(&report).contains(&expected), "{expected:?}: {report:#}");
         let is_note = fixture.code == Code::DualSource;

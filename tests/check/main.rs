@@ -1,7 +1,9 @@
 //! `check` and `inspect` on fresh bakes, whole and damaged, and their outputs against the schemas.
 
 mod clean;
+mod current;
 mod documents;
+mod fix;
 mod fixture;
 mod formats;
 mod inspect;

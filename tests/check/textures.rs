@@ -4,9 +4,10 @@ use std::fs;
 use std::sync::LazyLock;
 
 use roughcast::check::{Code, Findings, Scope, Usage, check_texture};
-use roughcast::texture::ktx2::{Key, Ktx2, Ktx2Writer, Provenance};
+use roughcast::texture::ktx2::{Key, Ktx2, Ktx2Writer, PROVENANCE_KEY, Provenance};
 use roughcast::texture::uastc::{Effort, Metric};
 use roughcast::texture::{Format, Texels, encode};
+use semver::Version;
 use serde_json::json;
 
 use crate::fixture::bake;
@@ -77,6 +78,15 @@ fn with_key(file: &[u8], key: &str, value: &str) -> Vec<u8> {
     write(Format::UastcRgb, 16, &levels, &[Key { key: key.into(), value: value.into() }])
 }
 
+/// Provenance of a roughness texture with a bound of 0.1.
+fn judged(lobe_errors: &[f32]) -> String {
+    json!({
+        "version": "0.1.0", "content": "roughness", "settings": { "maxError": 0.1 }, "lobeErrors": lobe_errors,
+        "sources": []
+    })
+    .to_string()
+}
+
 type Damage = fn() -> Vec<u8>;
 
 fn uastc(change: impl FnOnce(&mut Vec<u8>)) -> Vec<u8> {
@@ -135,6 +145,12 @@ pub const FIXTURES: &[(Code, &str, Damage)] = &[
     (Code::NotFinite, "level 0", || normals([0.5, f32::NAN, 1.0, 1.0], Format::Rgba16Float)),
     (Code::NoProvenance, "key roughcast", || with_key(&UASTC, "KTXwriter", "roughcast 0.1.0")),
     (Code::BadProvenance, "key roughcast", || uastc(|f| replace(f, b"{\"version\"", b"[\"version\""))),
+    (Code::NewerVersion, "key roughcast", || uastc(|f| replace(f, b"\"version\":\"0.1.0\"", b"\"version\":\"0.1.1\""))),
+    (Code::OldVersion, "key roughcast", || uastc(|f| replace(f, b"\"version\":\"0.1.0\"", b"\"version\":\"0.0.4\""))),
+    (Code::BadProvenance, "key roughcast", || {
+        uastc(|f| replace(f, b"\"version\":\"0.1.0\"", b"\"version\":\"0.1.x\""))
+    }),
+    (Code::LobeError, "key roughcast", || with_key(&UASTC, PROVENANCE_KEY, &judged(&[0.05, 0.11]))),
     (Code::OtherVersion, "key roughcast", || uastc(|f| replace(f, b"\"version\":\"0.1.0\"", b"\"version\":\"0.0.9\""))),
 ];
 
@@ -144,7 +160,8 @@ fn check(file: &[u8]) -> Vec<(Code, String)> {
 
 fn check_to(is_deep: bool, file: &[u8]) -> Vec<(Code, String)> {
     let mut findings = Findings::new("file.ktx2", "");
-    let scope = Scope { is_deep, ..Scope::default() };
+    let min_version = Version::new(0, 0, 5);
+    let scope = Scope { is_deep, min_version: Some(&min_version), ..Scope::default() };
     check_texture(file, Usage { by_basisu: true, normals: false }, &scope, &mut findings);
     findings.into_list().into_iter().map(|f| (f.code, f.place)).collect()
 }
@@ -187,6 +204,12 @@ fn what_is_not_of_texels_is_found_in_heads() {
             assert_eq!(check_to(false, &head), found, "{code}");
         }
     }
+}
+
+#[test]
+fn errors_within_the_bound_are_no_finding() {
+    let found = check(&with_key(&UASTC, PROVENANCE_KEY, &judged(&[0.05, 0.1])));
+    assert!(found.iter().all(|(code, _)| *code != Code::LobeError), "{found:?}");
 }
 
 /// Whatever is cut off, something is found and nothing panics.

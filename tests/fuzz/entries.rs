@@ -8,7 +8,7 @@ use std::io;
 use std::path::Path;
 
 use roughcast::bake::{Model, Profile, Settings, Source, bake};
-use roughcast::check::check_document;
+use roughcast::check::{Scope, check_document};
 use roughcast::config::{Config, resolve};
 use roughcast::gltf::document::Document;
 use roughcast::inspect::{extract, inspect_document, inspect_texture};
@@ -24,7 +24,7 @@ pub fn document(bytes: &[u8]) {
         Some("bin") => Ok(vec![0; 256]),
         _ => Err(io::Error::from(io::ErrorKind::NotFound)),
     };
-    let _ = check_document("fuzzed.gltf", bytes, &read, None);
+    let _ = check_document("fuzzed.gltf", bytes, &read, &Scope { is_deep: true, ..Scope::default() });
     let Ok(document) = Document::parse(bytes) else { return };
     let source = Source { stem: "fuzzed", document: &document, read: &read };
     let _ = inspect_document(&source);
