@@ -1,0 +1,3 @@
+export { EXTENSION, readExtension } from './extension.js';
+export { applyPyramid } from './material.js';
+export { RoughcastPlugin } from './plugin.js';

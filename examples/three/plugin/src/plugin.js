@@ -1,0 +1,49 @@
+import { EXTENSION, readExtension } from './extension.js';
+import { applyPyramid } from './material.js';
+
+/** Plugin of GLTFLoader. See index.d.ts. */
+export class RoughcastPlugin {
+  constructor(parser) {
+    this.parser = parser;
+    this.name = EXTENSION;
+  }
+
+  /** Null leaves the material to the loader. */
+  loadMaterial(index) {
+    const definition = this.parser.json.materials[index].extensions?.[EXTENSION];
+    return definition === undefined ? null : this.#load(index, definition);
+  }
+
+  async #load(index, definition) {
+    const material = await this.parser.loadMaterial(index);
+    let extension;
+    try {
+      extension = readExtension(definition);
+    } catch (error) {
+      console.warn(`materials[${index}]: ${error.message}; shown without it`);
+      return material;
+    }
+    const { roughness, ...rest } = extension;
+    const [offsetMap, roughnessMap] = await Promise.all([
+      this.#texture(extension.offset.texture),
+      roughness && this.#texture(roughness.texture),
+    ]);
+    if (!material.isMeshStandardMaterial || !offsetMap || (roughness && !roughnessMap)) {
+      const reason = material.isMeshStandardMaterial ? 'a texture cannot be loaded' : `${material.type} is not lit`;
+      console.warn(`materials[${index}]: ${EXTENSION}: ${reason}; shown without it`);
+      return material;
+    }
+    return applyPyramid(material, {
+      ...rest,
+      offset: { ...extension.offset, map: offsetMap },
+      roughness: roughness && { ...roughness, map: roughnessMap },
+    });
+  }
+
+  /** The texture of a textureInfo, with its texture coordinates and transform. */
+  async #texture(info) {
+    // assignTexture changes the info of a transform's texCoord; it clones textures whose mapping is not the default.
+    const params = {};
+    return this.parser.assignTexture(params, 'map', info);
+  }
+}

@@ -1,0 +1,125 @@
+// What the patch puts into three.js' standard and physical fragment shader. The offset map has the normal map's slot and
+// the roughness map the bump map's, so three.js itself gives both their texture coordinates and transforms.
+
+/** Before everything: switches for the rest, and uniforms. */
+export const declarations = ({ model, frame }) => /* glsl */ `
+#define ROUGHCAST_FRAME_${frame === 'mainDirection' ? 'MAIN' : frame.toUpperCase()}
+${model === 'covarianceFactor' ? '#define ROUGHCAST_FACTOR' : ''}
+${model === 'standardDeviation' ? '#define ROUGHCAST_DEVIATION' : ''}
+#if defined( ROUGHCAST_FACTOR ) && ! defined( USE_ANISOTROPY )
+  // An ellipse needs the anisotropic lobe; without anisotropy of its own the material's part of it is a circle.
+  #define USE_ANISOTROPY
+#endif
+uniform vec2 roughcastOffsetMin;
+uniform vec2 roughcastOffsetMax;
+uniform vec3 roughcastRoughnessMin;
+uniform vec3 roughcastRoughnessMax;
+uniform float roughcastCorrection;
+#ifdef ROUGHCAST_FRAME_NATURAL
+  varying vec3 vRoughcastPosition;
+#endif
+#ifdef ROUGHCAST_FRAME_MAIN
+  varying vec4 vRoughcastMain;
+#endif
+`;
+
+/** Before everything in the vertex shader. */
+export const vertexDeclarations = ({ frame }) =>
+  ({
+    unit: '',
+    natural: 'varying vec3 vRoughcastPosition;\n',
+    mainDirection: 'varying vec4 vRoughcastMain;\nuniform vec3 roughcastMain;\n',
+  })[frame];
+
+/** After `#include <begin_vertex>`. */
+export const vertexBody = ({ frame }) =>
+  ({
+    unit: '',
+    natural: /* glsl */ `
+  vRoughcastPosition = position;`,
+    mainDirection: /* glsl */ `
+  mat3 roughcastToView = mat3( modelViewMatrix );
+  #ifdef USE_INSTANCING
+    roughcastToView *= mat3( instanceMatrix );
+  #endif
+  // w: whether the node mirrors the mesh, and with it e1.
+  vRoughcastMain = vec4( roughcastToView * roughcastMain, sign( determinant( roughcastToView ) ) );`,
+  })[frame];
+
+/** In the place of `#include <normal_fragment_maps>`: n' = n - f_u e1 - f_v e2. */
+export const normal = /* glsl */ `
+  vec3 roughcastE1, roughcastE2;
+  // What slopes of the map are multiplied by. normalScale carries the sign of B, too: three.js turns it where a mesh has
+  // no tangents and B, taken from derivatives, points down the image.
+  vec2 roughcastScale = normalScale;
+  {
+    roughcastE1 = normalize( tbn[ 0 ] );
+    roughcastE2 = normalize( tbn[ 1 ] );
+    #ifdef ROUGHCAST_FRAME_MAIN
+      // e1 = m x n, e2 = n x e1: the part of m along the surface. Where n is along m, there is none.
+      vec3 alongSurface = vRoughcastMain.xyz - dot( vRoughcastMain.xyz, normal ) * normal;
+      if ( length( alongSurface ) > 1e-4 * length( vRoughcastMain.xyz ) ) {
+        roughcastE2 = normalize( alongSurface );
+        roughcastE1 = vRoughcastMain.w * cross( roughcastE2, normal );
+        #ifdef DOUBLE_SIDED
+          // Seen from behind, the normal is turned already, and e1 with it.
+          roughcastE2 *= faceDirection;
+        #endif
+        roughcastScale = abs( normalScale );
+      }
+    #endif
+    #ifdef ROUGHCAST_FRAME_NATURAL
+      // |p_u| and |p_v|: units of the mesh per repeat.
+      vec3 px = dFdx( vRoughcastPosition ), py = dFdy( vRoughcastPosition );
+      vec2 tx = dFdx( vNormalMapUv ), ty = dFdy( vNormalMapUv );
+      float det = tx.x * ty.y - ty.x * tx.y;
+      vec2 stretch = vec2( length( px * ty.y - py * tx.y ), length( py * tx.x - px * ty.x ) );
+      roughcastScale *= abs( det ) / max( stretch, vec2( 1e-20 ) );
+    #endif
+    vec2 f = roughcastScale * mix( roughcastOffsetMin, roughcastOffsetMax, texture2D( normalMap, vNormalMapUv ).rg );
+    normal = normalize( normal - f.x * roughcastE1 - f.y * roughcastE2 );
+  }
+`;
+
+/** After `#include <lights_physical_fragment>`: A' = A + 2 c K. */
+export const fold = /* glsl */ `
+  #if defined( ROUGHCAST_FACTOR ) || defined( ROUGHCAST_DEVIATION )
+  {
+    // The sampler has filtered D or lambda_1.
+    vec3 d = mix( roughcastRoughnessMin, roughcastRoughnessMax, texture2D( bumpMap, vBumpMapUv ).rgb );
+    #ifdef ROUGHCAST_FACTOR
+      // K = D D^T with D = [[d1, d2], [0, d3]].
+      vec3 k = vec3( d.x * d.x + d.y * d.y, d.y * d.z, d.z * d.z );
+    #else
+      vec3 k = vec3( d.x * d.x, 0.0, d.x * d.x );
+    #endif
+    k *= roughcastScale.xxy * roughcastScale.xyy;
+    #if defined( USE_ANISOTROPY )
+      // The material's own lobe, in the frame of K.
+      float across = pow2( pow2( material.roughness ) ), along = pow2( material.alphaT );
+      vec2 axis = vec2( dot( material.anisotropyT, roughcastE1 ), dot( material.anisotropyT, roughcastE2 ) );
+      axis /= max( length( axis ), 1e-6 );
+      vec3 a = vec3( across, 0.0, across ) + ( along - across ) * axis.xxy * axis.xyy;
+      a += 2.0 * roughcastCorrection * k;
+      // Eigenvalues and the axis of the larger one.
+      float mean = 0.5 * ( a.x + a.z ), difference = 0.5 * ( a.x - a.z ), radius = length( vec2( difference, a.y ) );
+      float major = min( mean + radius, 1.0 ), minor = clamp( mean - radius, across, 1.0 );
+      vec2 e = difference > 0.0 ? vec2( radius + difference, a.y ) : vec2( a.y, radius - difference );
+      float size = length( e );
+      e = size > 1e-9 ? e / size : axis;
+      material.alphaT = sqrt( major );
+      float alphaB = sqrt( minor );
+      material.roughness = sqrt( alphaB );
+      // The strength that KHR_materials_anisotropy would have.
+      material.anisotropy = sqrt( saturate( ( material.alphaT - alphaB ) / max( 1.0 - alphaB, 1e-6 ) ) );
+      vec3 t = e.x * roughcastE1 + e.y * roughcastE2;
+      material.anisotropyT = normalize( t - dot( t, normal ) * normal );
+      material.anisotropyB = cross( normal, material.anisotropyT );
+    #else
+      // Two scales of slopes make an ellipse of a circle; the lobe is round, so it takes the mean.
+      float squared = pow2( pow2( material.roughness ) ) + roughcastCorrection * ( k.x + k.z );
+      material.roughness = sqrt( sqrt( min( squared, 1.0 ) ) );
+    #endif
+  }
+  #endif
+`;

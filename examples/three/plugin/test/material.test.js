@@ -1,0 +1,70 @@
+import assert from 'node:assert/strict';
+import test from 'node:test';
+import { MeshBasicMaterial, MeshPhysicalMaterial, MeshStandardMaterial, ShaderLib, Texture } from 'three';
+import { applyPyramid } from '../src/index.js';
+
+const pyramid = (changes = {}) => ({
+  offset: { map: new Texture(), min: [-1, -1], max: [1, 1] },
+  roughness: { model: 'covarianceFactor', map: new Texture(), min: [0, 0, 0], max: [1, 1, 1] },
+  correctionFactor: 0.7,
+  frame: 'unit',
+  mainDirection: null,
+  ...changes,
+});
+
+/** What three.js hands to onBeforeCompile. */
+const program = () => {
+  const { vertexShader, fragmentShader } = ShaderLib.physical;
+  return { uniforms: {}, vertexShader, fragmentShader };
+};
+
+const compiled = (material) => {
+  const made = program();
+  material.onBeforeCompile(made);
+  return made;
+};
+
+test('the maps take their slots and the ranges become uniforms', () => {
+  const data = pyramid();
+  const material = applyPyramid(new MeshStandardMaterial(), data);
+  assert.equal(material.normalMap, data.offset.map);
+  assert.equal(material.bumpMap, data.roughness.map);
+  const { uniforms, fragmentShader } = compiled(material);
+  assert.equal(uniforms.roughcastCorrection.value, 0.7);
+  assert.deepEqual(uniforms.roughcastOffsetMin.value.toArray(), [-1, -1]);
+  assert.match(fragmentShader, /define ROUGHCAST_FACTOR/);
+  assert.doesNotMatch(fragmentShader, /#include <normal_fragment_maps>/);
+});
+
+test('the first clone and its clones shade alike', () => {
+  const material = applyPyramid(new MeshPhysicalMaterial({ anisotropy: 0.5 }), pyramid());
+  const first = material.clone();
+  first.normalScale.y = -1;
+  const second = first.clone();
+  assert.equal(second.normalScale.y, -1);
+  for (const copy of [first, second]) {
+    assert.deepEqual(compiled(copy).fragmentShader, compiled(material).fragmentShader);
+    assert.equal(copy.customProgramCacheKey(), material.customProgramCacheKey());
+  }
+});
+
+test('variants do not share programs', () => {
+  const lambda1 = { model: 'standardDeviation', map: new Texture(), min: [0], max: [1] };
+  const variants = [pyramid(), pyramid({ roughness: lambda1 }), pyramid({ roughness: null }), pyramid({ frame: 'natural' })];
+  const keys = variants.map((variant) => applyPyramid(new MeshStandardMaterial(), variant).customProgramCacheKey());
+  assert.equal(new Set([...keys, new MeshStandardMaterial().customProgramCacheKey()]).size, 5);
+});
+
+test("a patch of someone else's is kept", () => {
+  const material = new MeshStandardMaterial();
+  material.onBeforeCompile = (made) => (made.fragmentShader = `// theirs\n${made.fragmentShader}`);
+  applyPyramid(material, pyramid());
+  assert.match(compiled(material).fragmentShader, /\/\/ theirs/);
+  assert.match(compiled(material.clone()).fragmentShader, /\/\/ theirs/);
+});
+
+test('what cannot be patched says so', () => {
+  assert.throws(() => applyPyramid(new MeshBasicMaterial(), pyramid()), /found MeshBasicMaterial/);
+  const material = applyPyramid(new MeshStandardMaterial(), pyramid());
+  assert.throws(() => material.onBeforeCompile({ ...program(), fragmentShader: '' }), /this version of three.js/);
+});

@@ -1,0 +1,48 @@
+import assert from 'node:assert/strict';
+import test from 'node:test';
+import { MeshBasicMaterial, MeshStandardMaterial, Texture } from 'three';
+import { EXTENSION, RoughcastPlugin } from '../src/index.js';
+
+const definition = {
+  offsetTexture: { index: 0 },
+  offsetMin: [-1, -1],
+  offsetMax: [1, 1],
+  correctionFactor: 1,
+  frame: 'unit',
+};
+
+/** As much of GLTFParser as the plugin asks. */
+const parser = (extensions, { material = new MeshStandardMaterial(), texture = new Texture() } = {}) => ({
+  json: { materials: [{ extensions }] },
+  loadMaterial: async () => material,
+  assignTexture: async () => texture,
+});
+
+const load = async (t, ...of) => {
+  const warn = t.mock.method(console, 'warn', () => {});
+  const material = await new RoughcastPlugin(parser(...of)).loadMaterial(0);
+  return { material, warnings: warn.mock.calls.map((call) => call.arguments[0]) };
+};
+
+test('a material without the extension is left to the loader', async (t) => {
+  assert.equal((await load(t, undefined)).material, null);
+  assert.equal((await load(t, {})).material, null);
+  assert.equal(new RoughcastPlugin(parser({})).name, EXTENSION);
+});
+
+test('a material with it is patched', async (t) => {
+  const { material, warnings } = await load(t, { [EXTENSION]: definition });
+  assert.ok(material.normalMap);
+  assert.deepEqual(warnings, []);
+});
+
+test('what cannot be used is told and shown without', async (t) => {
+  const broken = await load(t, { [EXTENSION]: { ...definition, frame: 'world' } });
+  assert.equal(broken.material.normalMap, null);
+  assert.match(broken.warnings[0], /materials\[0\].*frame/);
+  const untextured = await load(t, { [EXTENSION]: definition }, { texture: null });
+  assert.equal(untextured.material.normalMap, null);
+  assert.match(untextured.warnings[0], /cannot be loaded/);
+  const unlit = await load(t, { [EXTENSION]: definition }, { material: new MeshBasicMaterial() });
+  assert.match(unlit.warnings[0], /is not lit/);
+});
