@@ -6,6 +6,8 @@ const PLACES = {
   vertex: '#include <begin_vertex>',
   normal: '#include <normal_fragment_maps>',
   lobe: '#include <lights_physical_fragment>',
+  functions: '#include <lights_physical_pars_fragment>',
+  reflection: '#include <lights_fragment_maps>',
 };
 
 /**
@@ -39,9 +41,10 @@ export function applyPyramid(material, pyramid) {
     Object.assign(program.uniforms, uniforms);
     program.vertexShader =
       shader.vertexDeclarations(variant) + after(program.vertexShader, PLACES.vertex, shader.vertexBody(variant));
-    program.fragmentShader =
-      shader.declarations(variant) +
-      after(replaced(program.fragmentShader, PLACES.normal, shader.normal), PLACES.lobe, shader.fold);
+    let fragment = replaced(program.fragmentShader, PLACES.normal, shader.normal);
+    fragment = after(fragment, PLACES.functions, shader.surroundings);
+    fragment = after(fragment, PLACES.lobe, shader.fold);
+    program.fragmentShader = shader.declarations(variant) + replaced(fragment, PLACES.reflection, shader.reflection);
   };
   material.customProgramCacheKey = () => `roughcast ${variant.model} ${variant.frame} ${key}`;
   // GLTFLoader clones materials for meshes without tangents, and Material.copy leaves hooks behind.

@@ -81,6 +81,43 @@ export const normal = /* glsl */ `
   }
 `;
 
+/** After `#include <lights_physical_pars_fragment>`: the surroundings, reflected by an ellipse. */
+export const surroundings = /* glsl */ `
+#if defined( ROUGHCAST_FACTOR ) && defined( USE_ENVMAP )
+  // Facets along the longer axis, each as rough as the shorter one, as often as GGX has them and as much of each as the eye
+  // sees (B. Walter et al., 2007, eq. 41). three.js' own one look-up along a bent normal is up to 1.7 times too bright.
+  vec3 roughcastRadiance( vec3 view, vec3 n, vec3 t, vec3 b, float alphaT, float roughness ) {
+    const int TAPS = 8;
+    float alphaB = pow2( roughness ), spread = sqrt( max( pow2( alphaT ) - pow2( alphaB ), 0.0 ) );
+    float seen = saturate( dot( n, view ) );
+    vec3 sum = vec3( 0.0 );
+    float weights = 0.0;
+    for ( int i = 0; i < TAPS; i ++ ) {
+      // Quantile of the marginal of GGX slopes.
+      float x = ( 2.0 * float( i ) + 1.0 ) / float( TAPS ) - 1.0;
+      vec3 facet = normalize( n + spread * x * inversesqrt( 1.0 - x * x ) * t );
+      vec3 light = reflect( - view, facet );
+      float lit = dot( n, light ), facing = dot( facet, view );
+      if ( lit <= 0.0 || facing <= 0.0 ) continue;
+      float weight = V_GGX_SmithCorrelated_Anisotropic( alphaT, alphaB, dot( t, view ), dot( b, view ), dot( t, light ), dot( b, light ), seen, lit );
+      weight *= lit * facing / dot( n, facet );
+      sum += weight * getIBLRadiance( view, facet, roughness );
+      weights += weight;
+    }
+    return weights > 0.0 ? sum / weights : getIBLRadiance( view, n, roughness );
+  }
+#endif
+`;
+
+/** Around `#include <lights_fragment_maps>`: three.js' look-up becomes ours. */
+export const reflection = /* glsl */ `
+#if defined( ROUGHCAST_FACTOR ) && defined( USE_ENVMAP )
+  #define getIBLAnisotropyRadiance( view, n, roughness, b, strength ) roughcastRadiance( view, n, material.anisotropyT, b, material.alphaT, roughness )
+#endif
+#include <lights_fragment_maps>
+#undef getIBLAnisotropyRadiance
+`;
+
 /** After `#include <lights_physical_fragment>`: A' = A + 2 c K. */
 export const fold = /* glsl */ `
   #if defined( ROUGHCAST_FACTOR ) || defined( ROUGHCAST_DEVIATION )

@@ -1,0 +1,80 @@
+// In the browser: draws variants and the truth, and tells their errors.
+import * as THREE from 'three';
+import { Stage } from '/page/stage.js';
+import { flicker, relativeL1, ssim } from '/looks/errors.js';
+
+const BAKED = ['original', 'portable', 'pyramid'];
+const LIGHT = { azimuth: 150, elevation: 40, intensity: 3 };
+const CAMERA = { azimuth: 0, elevation: 35 };
+/** Degrees that the camera turns from frame to frame of a sequence. */
+const STEP = 0.15;
+
+const renderer = new THREE.WebGLRenderer();
+renderer.setClearAlpha(0);
+const stage = new Stage(renderer);
+
+const read = (target) => {
+  const { width, height } = target;
+  const pixels = new Float32Array(4 * width * height);
+  renderer.readRenderTargetPixels(target, 0, 0, width, height, pixels);
+  return pixels;
+};
+
+/** Every variant and the truth from one place. Black where edges of the subject alias: bumps are what is judged. */
+function pictures(size, samples, view) {
+  const target = new THREE.WebGLRenderTarget(size, size, { type: THREE.FloatType });
+  stage.resize(size, size);
+  stage.look(view);
+  const drawn = BAKED.map((name) => {
+    stage.draw(name, target);
+    return read(target);
+  });
+  target.dispose();
+  stage.accumulator.reset(size, size);
+  stage.accumulate(samples);
+  const truth = read(stage.accumulator.target).map((value) => value / samples);
+  for (let i = 0; i < truth.length; i += 4) {
+    if (truth[i + 3] < 0.999) [truth, ...drawn].forEach((picture) => picture.fill(0, i, i + 3));
+  }
+  return { drawn, truth };
+}
+
+/** Fetches variants: URLs by name. */
+window.load = async (urls) => {
+  await stage.load(urls);
+  stage.light(LIGHT);
+};
+
+/** Errors of each variant at a distance: [[relative L1, SSIM], ...]. */
+window.errors = ({ kind, distance, size, samples }) => {
+  stage.show(kind);
+  const { drawn, truth } = pictures(size, samples, { ...CAMERA, distance });
+  return drawn.map((picture) => [relativeL1(picture, truth), ssim(picture, truth, size)]);
+};
+
+/** Flicker of each variant while the camera turns. */
+window.flicker = ({ kind, distance, size, samples, frames }) => {
+  stage.show(kind);
+  const all = Array.from({ length: frames }, (_, t) => pictures(size, samples, { ...CAMERA, azimuth: t * STEP, distance }));
+  return BAKED.map((_, i) => flicker(all.map(({ drawn }) => drawn[i]), all.map(({ truth }) => truth)));
+};
+
+/** Variants and truth side by side, as displayed: a PNG's data URL. */
+window.sheet = ({ kind, distance, size, samples }) => {
+  stage.show(kind);
+  const { drawn, truth } = pictures(size, samples, { ...CAMERA, distance });
+  const canvas = Object.assign(document.createElement('canvas'), { width: 4 * size, height: size });
+  const context = canvas.getContext('2d');
+  [...drawn, truth].forEach((picture, n) => {
+    const image = context.createImageData(size, size);
+    for (let y = 0; y < size; y++) {
+      for (let i = 0; i < 4 * size; i++) {
+        const value = picture[4 * size * (size - 1 - y) + i];
+        image.data[4 * size * y + i] = i % 4 === 3 ? 255 : 255 * (value / (1 + value)) ** (1 / 2.2);
+      }
+    }
+    context.putImageData(image, n * size, 0);
+  });
+  return canvas.toDataURL();
+};
+window.ready = true;
