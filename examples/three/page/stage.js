@@ -71,7 +71,10 @@ export class Stage {
     this.#scene.environmentIntensity = intensity;
   }
 
+  /** The shorter side sees 30 degrees. */
   resize(width, height) {
+    const half = Math.tan(THREE.MathUtils.degToRad(15)) * Math.max(1, height / width);
+    this.camera.fov = THREE.MathUtils.radToDeg(2 * Math.atan(half));
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
   }

@@ -1,0 +1,63 @@
+// usage: npm run view -- [<baked.gltf> [--original <asset.gltf>]]
+// Serves the page with an asset on this machine until Ctrl-C. Without an asset: the fixture, baked for the occasion.
+import { mkdirSync, mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
+import os from 'node:os';
+import path from 'node:path';
+import process from 'node:process';
+import { fileURLToPath } from 'node:url';
+import { parseArgs } from 'node:util';
+import { serve } from './server.js';
+import { missing, repository, roughcast } from './test/roughcast.js';
+
+const EXTENSION = 'ROUGHCAST_materials_roughness_pyramid';
+const here = path.dirname(fileURLToPath(import.meta.url));
+const folder = mkdtempSync(path.join(os.tmpdir(), 'roughcast-view-'));
+process.on('exit', () => rmSync(folder, { recursive: true, force: true }));
+for (const signal of ['SIGINT', 'SIGTERM']) process.on(signal, () => process.exit(0));
+
+/** JSON of a .gltf or .glb file. */
+function document(file) {
+  const bytes = readFileSync(file);
+  const isBinary = bytes.toString('latin1', 0, 4) === 'glTF';
+  return JSON.parse(isBinary ? bytes.toString('utf8', 20, 20 + bytes.readUInt32LE(12)) : bytes.toString('utf8'));
+}
+
+/** Which variant a baked file is. */
+const profile = (file) => (document(file).extensionsUsed?.includes(EXTENSION) ? 'pyramid' : 'portable');
+
+function fixture() {
+  if (missing) throw new Error(missing);
+  const source = path.join(repository, 'fixtures/brushed');
+  for (const name of ['portable', 'pyramid']) roughcast('bake', source, '-o', path.join(folder, name), '--profile', name, '--quiet');
+  const baked = (name) => path.join(folder, name, 'brushed.gltf');
+  return { original: path.join(source, 'brushed.gltf'), portable: baked('portable'), pyramid: baked('pyramid') };
+}
+
+/** Files of the variants that there are. */
+function variants() {
+  const { positionals, values } = parseArgs({ allowPositionals: true, options: { original: { type: 'string' } } });
+  if (positionals.length === 0) return fixture();
+  const all = Object.fromEntries(positionals.map((file) => [profile(file), path.resolve(file)]));
+  return values.original ? { original: path.resolve(values.original), ...all } : all;
+}
+
+try {
+  const files = variants();
+  // Each asset's folder by itself: two may have files of one name.
+  const folders = Object.fromEntries(Object.entries(files).map(([name, file]) => [`asset-${name}`, path.dirname(file)]));
+  const urls = Object.entries(files).map(([name, file]) => [name, `/asset-${name}/${encodeURIComponent(path.basename(file))}`]);
+  for (const file of Object.values(files)) statSync(file);
+  mkdirSync(path.join(folder, 'view'));
+  writeFileSync(path.join(folder, 'view', 'variants.json'), JSON.stringify({ variants: Object.fromEntries(urls) }));
+  const server = await serve({
+    ...folders,
+    view: path.join(folder, 'view'),
+    page: path.join(here, 'page'),
+    plugin: path.join(here, 'plugin'),
+    three: path.join(here, 'node_modules/three'),
+  });
+  console.log(`${server.url}/page/index.html`);
+} catch (error) {
+  console.error(`view: ${error.message}`);
+  process.exit(1);
+}
