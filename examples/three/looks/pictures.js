@@ -3,7 +3,7 @@ import * as THREE from 'three';
 import { Stage } from '/page/stage.js';
 import { flicker, relativeL1, ssim } from '/looks/errors.js';
 
-const BAKED = ['original', 'portable', 'pyramid'];
+const DRAWN = ['original', 'portable', 'reflected', 'pyramid'];
 const LIGHT = { azimuth: 150, elevation: 40, intensity: 3 };
 const CAMERA = { azimuth: 0, elevation: 35 };
 /** Degrees that the camera turns from frame to frame of a sequence. */
@@ -25,7 +25,7 @@ function pictures(size, samples, view) {
   const target = new THREE.WebGLRenderTarget(size, size, { type: THREE.FloatType });
   stage.resize(size, size);
   stage.look(view);
-  const drawn = BAKED.map((name) => {
+  const drawn = DRAWN.map((name) => {
     stage.draw(name, target);
     return read(target);
   });
@@ -56,14 +56,14 @@ window.errors = ({ kind, distance, size, samples }) => {
 window.flicker = ({ kind, distance, size, samples, frames }) => {
   stage.show(kind);
   const all = Array.from({ length: frames }, (_, t) => pictures(size, samples, { ...CAMERA, azimuth: t * STEP, distance }));
-  return BAKED.map((_, i) => flicker(all.map(({ drawn }) => drawn[i]), all.map(({ truth }) => truth)));
+  return DRAWN.map((_, i) => flicker(all.map(({ drawn }) => drawn[i]), all.map(({ truth }) => truth)));
 };
 
 /** Variants and truth side by side, as displayed: a PNG's data URL. */
 window.sheet = ({ kind, distance, size, samples }) => {
   stage.show(kind);
   const { drawn, truth } = pictures(size, samples, { ...CAMERA, distance });
-  const canvas = Object.assign(document.createElement('canvas'), { width: 4 * size, height: size });
+  const canvas = Object.assign(document.createElement('canvas'), { width: (DRAWN.length + 1) * size, height: size });
   const context = canvas.getContext('2d');
   [...drawn, truth].forEach((picture, n) => {
     const image = context.createImageData(size, size);

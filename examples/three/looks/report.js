@@ -2,7 +2,7 @@
 import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import os from 'node:os';
 import path from 'node:path';
-import { DISTANCES, KINDS, forEach, materials } from './run.js';
+import { DISTANCES, KINDS, NAMES, forEach, materials } from './run.js';
 
 const VIEW = { size: 128, samples: 256 };
 const SEQUENCE = { size: 96, samples: 64, frames: 12, distance: 12 };
@@ -13,14 +13,14 @@ const folder = mkdtempSync(path.join(os.tmpdir(), 'roughcast-looks-'));
 const row = (cells) => console.log(`| ${cells.join(' | ')} |`);
 const flickers = [];
 try {
-  row(['material', 'subject', 'error', ...DISTANCES, 'mean', 'closer']);
+  row(['material', 'subject', 'variant', ...DISTANCES, 'mean', 'closer']);
   row(Array(5 + DISTANCES.length).fill('---'));
   await forEach(folder, materials(folder), async (name, page) => {
     for (const kind of KINDS) {
       const errors = [];
       for (const distance of DISTANCES) errors.push(await page.evaluate((o) => window.errors(o), { ...VIEW, kind, distance }));
       const mean = (i, which) => errors.reduce((sum, variants) => sum + variants[i][which], 0) / errors.length;
-      for (const [i, variant] of ['plain', 'portable', 'pyramid'].entries()) {
+      for (const [i, variant] of NAMES.entries()) {
         const cells = errors.map((variants) => variants[i].map((e) => e.toFixed(2)).join(' / '));
         const means = [0, 1].map((which) => mean(i, which).toFixed(2)).join(' / ');
         row([name, kind, variant, ...cells, means, i === 0 ? '' : `${(mean(0, 0) / mean(i, 0)).toFixed(1)}x`]);
@@ -34,8 +34,8 @@ try {
     }
   });
   console.log();
-  row(['material', 'subject', 'plain', 'portable', 'pyramid']);
-  row(Array(5).fill('---'));
+  row(['material', 'subject', ...NAMES]);
+  row(Array(2 + NAMES.length).fill('---'));
   flickers.forEach(row);
 } finally {
   rmSync(folder, { recursive: true, force: true });

@@ -5,6 +5,8 @@ import { launch, open } from '../browser.js';
 import { serve } from '../server.js';
 import { example, repository, roughcast } from '../test/roughcast.js';
 
+/** Names of what is drawn: `reflected` is portable with the reflections of examples/three/plugin. */
+export const NAMES = ['plain', 'portable', 'reflected', 'pyramid'];
 export const KINDS = ['plane', 'sphere'];
 /** In units of a sphere of radius 1; the plane's side is 4. */
 export const DISTANCES = [3, 5, 8, 13, 21, 34];
@@ -62,7 +64,8 @@ export async function forEach(folder, chosen, use) {
       const page = await open(browser, `${server.url}/looks/looks.html`);
       await page.waitForFunction('window.ready');
       const baked = (profile) => `/baked/${name}/${profile}/${name}.gltf`;
-      const urls = { original: `/source-${name}/${name}.gltf`, portable: baked('portable'), pyramid: baked('pyramid') };
+      const [portable, pyramid] = [baked('portable'), baked('pyramid')];
+      const urls = { original: `/source-${name}/${name}.gltf`, portable, reflected: portable, pyramid };
       await page.evaluate((u) => window.load(u), urls);
       await use(name, page);
       await page.context().close();

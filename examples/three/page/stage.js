@@ -27,14 +27,15 @@ export class Stage {
     this.environment('room');
   }
 
-  /** Loads the variants that have a URL. */
+  /** Loads the variants that have a URL. `reflected` is portable with the plugin's reflections. */
   async load(urls) {
     const ktx2 = new KTX2Loader().setTranscoderPath('/three/examples/jsm/libs/basis/').detectSupport(this.renderer);
-    const loader = new GLTFLoader().setKTX2Loader(ktx2).register((parser) => new RoughcastPlugin(parser));
-    const load = async ([name, url]) => [name, (await loader.loadAsync(url)).scene];
+    const load = async ([name, url]) => {
+      const plugin = (parser) => new RoughcastPlugin(parser, { reflections: name === 'reflected' });
+      return [name, (await new GLTFLoader().setKTX2Loader(ktx2).register(plugin).loadAsync(url)).scene];
+    };
     this.#assets = new Map(await Promise.all(Object.entries(urls).map(load)));
     ktx2.dispose();
-    return this;
   }
 
   /** Names of what can be drawn. The truth needs the original. */

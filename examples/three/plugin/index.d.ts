@@ -55,9 +55,22 @@ export function readExtension(definition: unknown): PyramidExtension;
  */
 export function applyPyramid<M extends MeshStandardMaterial | MeshPhysicalMaterial>(material: M, pyramid: Pyramid): M;
 
+/**
+ * Makes an anisotropic material, a portable bake for one, reflect the environment along its ellipse with 8 look-ups in the
+ * place of three.js' one, and returns it. Clones are patched, too.
+ *
+ * @throws TypeError for materials of other kinds.
+ */
+export function applyReflections<M extends MeshPhysicalMaterial>(material: M): M;
+
+export interface RoughcastPluginOptions {
+  /** Whether materials with KHR_materials_anisotropy, too, get {@link applyReflections}. Off by default. */
+  reflections?: boolean;
+}
+
 /** `loader.register((parser) => new RoughcastPlugin(parser))` */
 export class RoughcastPlugin implements GLTFLoaderPlugin {
-  constructor(parser: GLTFParser);
+  constructor(parser: GLTFParser, options?: RoughcastPluginOptions);
   readonly name: typeof EXTENSION;
   /** Null for materials without the extension. What cannot be used is told on the console and shown without it. */
   loadMaterial(index: number): Promise<Material> | null;

@@ -18,15 +18,17 @@ test('bakes are closer to the truth than plain mips', { skip: missing || browser
       return all.map((variants) => variants.map(([l1]) => l1));
     };
     const [plane, sphere] = [await errors('plane'), await errors('sphere')];
-    for (const [i, [plain, portable, pyramid]] of plane.entries()) {
-      assert.ok(i === 0 || (portable < plain && pyramid < plain), `plane at ${DISTANCES[i]}: ${plane[i]}`);
-    }
     const total = (all, i) => all.reduce((sum, variants) => sum + variants[i], 0);
-    for (const i of [1, 2]) assert.ok(total(plane, 0) > 1.5 * total(plane, i), `plane: ${plane}`);
-    // three.js' own reflections of stretched lobes are too bright on spheres, so that holds for the plugin's only.
-    assert.ok(total(sphere, 0) > 1.5 * total(sphere, 2), `sphere: ${sphere}`);
-    const [plain, , pyramid] = await page.evaluate((o) => window.flicker(o), { kind: 'plane', distance: 12, size: 48, samples: 64, frames: 6 });
-    assert.ok(pyramid < plain, `flicker: ${pyramid} of ${plain}`);
+    for (const [i, [plain, portable, reflected, pyramid]] of plane.entries()) {
+      assert.ok(i === 0 || Math.max(portable, reflected, pyramid) < plain, `plane at ${DISTANCES[i]}: ${plane[i]}`);
+    }
+    for (const [i, [plain, , reflected, pyramid]] of sphere.entries()) {
+      // Not portable alone: three.js' own reflections of stretched lobes are too bright there.
+      assert.ok(Math.max(reflected, pyramid) < plain, `sphere at ${DISTANCES[i]}: ${sphere[i]}`);
+    }
+    for (const all of [plane, sphere]) assert.ok(total(all, 0) > 1.5 * Math.max(total(all, 2), total(all, 3)), `${all}`);
+    const [plain, , reflected, pyramid] = await page.evaluate((o) => window.flicker(o), { kind: 'plane', distance: 12, size: 48, samples: 64, frames: 6 });
+    assert.ok(Math.max(reflected, pyramid) < plain, `flicker: ${reflected}, ${pyramid} of ${plain}`);
     assert.deepEqual(page.problems, []);
   });
 });

@@ -1,3 +1,3 @@
 export { EXTENSION, readExtension } from './extension.js';
-export { applyPyramid } from './material.js';
+export { applyPyramid, applyReflections } from './material.js';
 export { RoughcastPlugin } from './plugin.js';

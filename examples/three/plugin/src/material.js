@@ -34,30 +34,50 @@ export function applyPyramid(material, pyramid) {
   material.normalScale.set(1, 1);
   material.bumpMap = roughness?.map ?? null;
 
+  const edit = (program) => {
+    Object.assign(program.uniforms, uniforms);
+    program.vertexShader =
+      shader.vertexDeclarations(variant) + after(program.vertexShader, PLACES.vertex, shader.vertexBody(variant));
+    const fragment = replaced(program.fragmentShader, PLACES.normal, shader.normal);
+    program.fragmentShader = shader.declarations(variant) + reflecting(after(fragment, PLACES.lobe, shader.fold));
+  };
+  return patch(material, `roughcast ${variant.model} ${variant.frame}`, edit, (copy) => {
+    const scale = copy.normalScale.clone();
+    applyPyramid(copy, pyramid).normalScale.copy(scale);
+  });
+}
+
+/** Makes `material` reflect the surroundings along its own ellipse. See index.d.ts. */
+export function applyReflections(material) {
+  if (!material.isMeshStandardMaterial) {
+    throw new TypeError(`applyReflections: expected a MeshPhysicalMaterial, found ${material.type}`);
+  }
+  const edit = (program) => (program.fragmentShader = reflecting(program.fragmentShader));
+  return patch(material, 'roughcast reflections', edit, applyReflections);
+}
+
+/** `edit` changes each program, `again` patches a clone. */
+function patch(material, name, edit, again) {
   const { onBeforeCompile, customProgramCacheKey, clone } = material;
   const key = customProgramCacheKey.call(material);
   material.onBeforeCompile = function (program, renderer) {
     onBeforeCompile.call(this, program, renderer);
-    Object.assign(program.uniforms, uniforms);
-    program.vertexShader =
-      shader.vertexDeclarations(variant) + after(program.vertexShader, PLACES.vertex, shader.vertexBody(variant));
-    let fragment = replaced(program.fragmentShader, PLACES.normal, shader.normal);
-    fragment = after(fragment, PLACES.functions, shader.surroundings);
-    fragment = after(fragment, PLACES.lobe, shader.fold);
-    program.fragmentShader = shader.declarations(variant) + replaced(fragment, PLACES.reflection, shader.reflection);
+    edit(program);
   };
-  material.customProgramCacheKey = () => `roughcast ${variant.model} ${variant.frame} ${key}`;
+  material.customProgramCacheKey = () => `${name} ${key}`;
   // GLTFLoader clones materials for meshes without tangents, and Material.copy leaves hooks behind.
   material.clone = function () {
     const copy = clone.call(this);
-    copy.onBeforeCompile = onBeforeCompile;
-    copy.customProgramCacheKey = customProgramCacheKey;
-    const scale = copy.normalScale.clone();
-    applyPyramid(copy, pyramid).normalScale.copy(scale);
+    Object.assign(copy, { onBeforeCompile, customProgramCacheKey });
+    again(copy);
     return copy;
   };
   material.needsUpdate = true;
   return material;
+}
+
+function reflecting(fragment) {
+  return replaced(after(fragment, PLACES.functions, shader.surroundings), PLACES.reflection, shader.reflection);
 }
 
 function vector3(values) {

@@ -1,17 +1,19 @@
 import { EXTENSION, readExtension } from './extension.js';
-import { applyPyramid } from './material.js';
+import { applyPyramid, applyReflections } from './material.js';
 
 /** Plugin of GLTFLoader. See index.d.ts. */
 export class RoughcastPlugin {
-  constructor(parser) {
+  constructor(parser, { reflections = false } = {}) {
     this.parser = parser;
+    this.reflections = reflections;
     this.name = EXTENSION;
   }
 
   /** Null leaves the material to the loader. */
   loadMaterial(index) {
-    const definition = this.parser.json.materials[index].extensions?.[EXTENSION];
-    return definition === undefined ? null : this.#load(index, definition);
+    const { [EXTENSION]: definition, KHR_materials_anisotropy: anisotropy } = this.parser.json.materials[index].extensions ?? {};
+    if (definition !== undefined) return this.#load(index, definition);
+    return this.reflections && anisotropy ? this.parser.loadMaterial(index).then(reflecting) : null;
   }
 
   async #load(index, definition) {
@@ -46,4 +48,8 @@ export class RoughcastPlugin {
     const params = {};
     return this.parser.assignTexture(params, 'map', info);
   }
+}
+
+function reflecting(material) {
+  return material.isMeshStandardMaterial ? applyReflections(material) : material;
 }

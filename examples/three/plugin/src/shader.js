@@ -83,7 +83,7 @@ export const normal = /* glsl */ `
 
 /** After `#include <lights_physical_pars_fragment>`: the surroundings, reflected by an ellipse. */
 export const surroundings = /* glsl */ `
-#if defined( ROUGHCAST_FACTOR ) && defined( USE_ENVMAP )
+#if defined( USE_ANISOTROPY ) && defined( USE_ENVMAP )
   // Facets along the longer axis, each as rough as the shorter one, as often as GGX has them and as much of each as the eye
   // sees (B. Walter et al., 2007, eq. 41). three.js' own one look-up along a bent normal is up to 1.7 times too bright.
   vec3 roughcastRadiance( vec3 view, vec3 n, vec3 t, vec3 b, float alphaT, float roughness ) {
@@ -111,7 +111,7 @@ export const surroundings = /* glsl */ `
 
 /** Around `#include <lights_fragment_maps>`: three.js' look-up becomes ours. */
 export const reflection = /* glsl */ `
-#if defined( ROUGHCAST_FACTOR ) && defined( USE_ENVMAP )
+#if defined( USE_ANISOTROPY ) && defined( USE_ENVMAP )
   #define getIBLAnisotropyRadiance( view, n, roughness, b, strength ) roughcastRadiance( view, n, material.anisotropyT, b, material.alphaT, roughness )
 #endif
 #include <lights_fragment_maps>

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 import { MeshBasicMaterial, MeshPhysicalMaterial, MeshStandardMaterial, ShaderLib, Texture } from 'three';
-import { applyPyramid } from '../src/index.js';
+import { applyPyramid, applyReflections } from '../src/index.js';
 
 const pyramid = (changes = {}) => ({
   offset: { map: new Texture(), min: [-1, -1], max: [1, 1] },
@@ -61,6 +61,15 @@ test("a patch of someone else's is kept", () => {
   applyPyramid(material, pyramid());
   assert.match(compiled(material).fragmentShader, /\/\/ theirs/);
   assert.match(compiled(material.clone()).fragmentShader, /\/\/ theirs/);
+});
+
+test('reflections are patched by themselves', () => {
+  const material = applyReflections(new MeshPhysicalMaterial({ anisotropy: 1 }));
+  for (const shown of [material, material.clone()]) {
+    assert.match(compiled(shown).fragmentShader, /roughcastRadiance/);
+    assert.doesNotMatch(compiled(shown).fragmentShader, /roughcastOffset/);
+  }
+  assert.throws(() => applyReflections(new MeshBasicMaterial()), /found MeshBasicMaterial/);
 });
 
 test('what cannot be patched says so', () => {

@@ -18,9 +18,9 @@ const parser = (extensions, { material = new MeshStandardMaterial(), texture = n
   assignTexture: async () => texture,
 });
 
-const load = async (t, ...of) => {
+const load = async (t, extensions, given, options) => {
   const warn = t.mock.method(console, 'warn', () => {});
-  const material = await new RoughcastPlugin(parser(...of)).loadMaterial(0);
+  const material = await new RoughcastPlugin(parser(extensions, given), options).loadMaterial(0);
   return { material, warnings: warn.mock.calls.map((call) => call.arguments[0]) };
 };
 
@@ -45,4 +45,14 @@ test('what cannot be used is told and shown without', async (t) => {
   assert.match(untextured.warnings[0], /cannot be loaded/);
   const unlit = await load(t, { [EXTENSION]: definition }, { material: new MeshBasicMaterial() });
   assert.match(unlit.warnings[0], /is not lit/);
+});
+
+test('anisotropic materials reflect along their ellipse where that is asked for', async (t) => {
+  const anisotropic = { KHR_materials_anisotropy: {} };
+  assert.equal((await load(t, anisotropic)).material, null);
+  const { material } = await load(t, anisotropic, {}, { reflections: true });
+  assert.match(material.clone().customProgramCacheKey(), /reflections/);
+  assert.equal((await load(t, {}, {}, { reflections: true })).material, null);
+  const unlit = new MeshBasicMaterial();
+  assert.equal((await load(t, anisotropic, { material: unlit }, { reflections: true })).material, unlit);
 });
