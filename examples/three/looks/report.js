@@ -2,7 +2,7 @@
 import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import os from 'node:os';
 import path from 'node:path';
-import { DISTANCES, KINDS, NAMES, forEach, materials } from './run.js';
+import { DISTANCES, KINDS, NAMES, costs, forEach, materials } from './run.js';
 
 const VIEW = { size: 128, samples: 256 };
 const SEQUENCE = { size: 96, samples: 64, frames: 12, distance: 12 };
@@ -37,6 +37,10 @@ try {
   row(['material', 'subject', ...NAMES]);
   row(Array(2 + NAMES.length).fill('---'));
   flickers.forEach(row);
+  console.log();
+  row(['shading', 'operations', 'fetches']);
+  row(Array(3).fill('---'));
+  (await costs()).forEach(row);
 } finally {
   rmSync(folder, { recursive: true, force: true });
 }

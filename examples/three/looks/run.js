@@ -75,3 +75,19 @@ export async function forEach(folder, chosen, use) {
     await server.close();
   }
 }
+
+/** What shading costs: [name, operations, fetches] of each way. */
+export async function costs() {
+  const modules = ['three', '@babylonjs'].map((name) => [name, path.join(example, 'node_modules', name)]);
+  const own = ['looks', 'plugin'].map((name) => [name, path.join(example, name)]);
+  const server = await serve(Object.fromEntries([...modules, ...own]));
+  const browser = await launch();
+  try {
+    const page = await open(browser, `${server.url}/looks/cost.html`);
+    await page.waitForFunction('window.ready');
+    return await page.evaluate(() => window.costs());
+  } finally {
+    await browser.close();
+    await server.close();
+  }
+}

@@ -1,0 +1,34 @@
+import assert from 'node:assert/strict';
+import test from 'node:test';
+import { missing } from '../browser.js';
+import { costs } from '../looks/run.js';
+import { count, forSpirv } from '../looks/spirv.js';
+
+/** A module of instructions [opcode, ...operands]. */
+const spirv = (...instructions) =>
+  Uint32Array.from([0x07230203, 0x10000, 0, 99, 0, ...instructions.flatMap(([op, ...rest]) => [((rest.length + 1) << 16) | op, ...rest])]);
+
+test('functions count where they are called', () => {
+  const [fetch, add, load] = [[87, 1, 30, 2, 3], [129, 1, 31, 2, 3], [61, 1, 32, 2]];
+  const helper = [[54, 1, 20, 0, 2], fetch, add, [56]];
+  const unused = [[54, 1, 21, 0, 2], fetch, [56]];
+  const main = [[54, 1, 10, 0, 2], add, load, [57, 1, 40, 20], [57, 1, 41, 20], [56]];
+  assert.deepEqual(count(spirv([15, 4, 10, 0], ...helper, ...unused, ...main)), { operations: 3, fetches: 2 });
+});
+
+test('uniforms and varyings find their places', () => {
+  const made = forSpirv('#version 300 es\nuniform sampler2D map;\nuniform highp vec3 a, b;\nvarying vec2 uv;\n');
+  assert.equal(
+    made,
+    '#version 450\nlayout(binding = 0) uniform sampler2D map;\nlayout(binding = 1) uniform Block2 { highp vec3 a, b; };\nlayout(location = 4) in vec2 uv;\n',
+  );
+});
+
+test('the pyramid costs what it reads', { skip: missing }, async () => {
+  const [plain, portable, reflected, lambda1, d] = await costs();
+  assert.deepEqual([portable, lambda1].map(([, , fetches]) => fetches - plain[2]), [1, 1]);
+  // In its loop, and after it where no look-up counts.
+  assert.equal(reflected[2], portable[2] + 1);
+  assert.equal(d[2], lambda1[2] + 1);
+  for (const dearer of [portable, reflected, lambda1, d]) assert.ok(dearer[1] > plain[1], `${dearer}`);
+});
