@@ -33,12 +33,15 @@ function fixture() {
   return { original: path.join(source, 'brushed.gltf'), portable: baked('portable'), pyramid: baked('pyramid') };
 }
 
+/** As the caller meant it: npm runs scripts in the folder of package.json. */
+const resolve = (file) => path.resolve(process.env.INIT_CWD ?? '.', file);
+
 /** Files of the variants that there are. */
 function variants() {
   const { positionals, values } = parseArgs({ allowPositionals: true, options: { original: { type: 'string' } } });
   if (positionals.length === 0) return fixture();
-  const all = Object.fromEntries(positionals.map((file) => [profile(file), path.resolve(file)]));
-  return values.original ? { original: path.resolve(values.original), ...all } : all;
+  const all = Object.fromEntries(positionals.map((file) => [profile(resolve(file)), resolve(file)]));
+  return values.original ? { original: resolve(values.original), ...all } : all;
 }
 
 try {

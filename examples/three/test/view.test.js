@@ -96,7 +96,11 @@ test('it fits a phone, light and dark', options, async (t) => {
 test("a user's asset is shown", options, async (t) => {
   const folder = temporary(t);
   roughcast('bake', path.join(repository, 'fixtures/heights'), '-o', folder, '--profile', 'pyramid', '--quiet');
+  // Beside it is what nobody asked for.
   const { url } = await view(t, path.join(folder, 'heights.gltf'));
+  for (const other of ['/asset-pyramid/../', '/asset-original/heights.gltf', '/package.json']) {
+    assert.equal((await fetch(url.replace('/page/index.html', other))).status, 404);
+  }
   const browser = await launch();
   t.after(() => browser.close());
   const page = await ready(browser, url, { viewport: { width: 500, height: 300 } });

@@ -85,7 +85,7 @@ export const normal = /* glsl */ `
 export const surroundings = /* glsl */ `
 #if defined( USE_ANISOTROPY ) && defined( USE_ENVMAP )
   // Facets along the longer axis, each as rough as the shorter one, as often as GGX has them and as much of each as the eye
-  // sees (B. Walter et al., 2007, eq. 41). three.js' own one look-up along a bent normal is up to 1.7 times too bright.
+  // sees (B. Walter et al., 2007, eq. 41). three.js' own one look-up along a bent normal is far too bright on spheres.
   vec3 roughcastRadiance( vec3 view, vec3 n, vec3 t, vec3 b, float alphaT, float roughness ) {
     const int TAPS = 8;
     float alphaB = pow2( roughness ), spread = sqrt( max( pow2( alphaT ) - pow2( alphaB ), 0.0 ) );
