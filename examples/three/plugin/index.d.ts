@@ -57,7 +57,7 @@ export function applyPyramid<M extends MeshStandardMaterial | MeshPhysicalMateri
 
 /**
  * Makes an anisotropic material, a portable bake for one, reflect the environment along its ellipse with 8 look-ups in the
- * place of three.js' one, and returns it. Clones are patched, too.
+ * place of three.js' one, and lights about axes that stand on its normal; returns it. Clones are patched, too.
  *
  * @throws TypeError for materials of other kinds.
  */

@@ -52,7 +52,7 @@ export function applyReflections(material) {
   if (!material.isMeshStandardMaterial) {
     throw new TypeError(`applyReflections: expected a MeshPhysicalMaterial, found ${material.type}`);
   }
-  const edit = (program) => (program.fragmentShader = reflecting(program.fragmentShader));
+  const edit = (program) => (program.fragmentShader = reflecting(after(program.fragmentShader, PLACES.lobe, shader.axes)));
   return patch(material, 'roughcast reflections', edit, applyReflections);
 }
 

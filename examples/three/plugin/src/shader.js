@@ -109,6 +109,15 @@ export const surroundings = /* glsl */ `
 #endif
 `;
 
+/** After `#include <lights_physical_fragment>` of a material without a pyramid: axes of the lobe that stand on its normal. */
+export const axes = /* glsl */ `
+#ifdef USE_ANISOTROPY
+  // three.js leaves them in the surface, where lobes about tilted normals are not normalised: too bright.
+  material.anisotropyT = normalize( material.anisotropyT - dot( material.anisotropyT, normal ) * normal );
+  material.anisotropyB = cross( normal, material.anisotropyT );
+#endif
+`;
+
 /** Around `#include <lights_fragment_maps>`: three.js' look-up becomes ours. */
 export const reflection = /* glsl */ `
 #if defined( USE_ANISOTROPY ) && defined( USE_ENVMAP )
