@@ -23,5 +23,6 @@ pub mod plan;
 pub mod pyramid;
 pub mod render;
 pub mod roughness;
+mod simd;
 pub mod symmetric;
 pub mod texture;

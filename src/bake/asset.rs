@@ -172,7 +172,7 @@ impl<'a> Assembly<'a> {
             .par_iter()
             .zip(&keys)
             .map(|(JobTexture { chain, .. }, keys)| {
-                let png = || chain.fallback.as_ref().map(|rgba| encode_png(rgba, chain.width, chain.height));
+                let png = || chain.fallback.as_ref().map(|rgba| encode_png(rgba, chain.width, chain.height, effort));
                 rayon::join(|| chain.to_ktx2(keys, effort), png)
             })
             .collect();

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use crate::bump::Wrap;
-use crate::lobe::{Anisotropy, Roughness};
+use crate::lobe::{Anisotropy, Roughness, SquaredAlpha};
 use crate::map::Rgba;
 use crate::pyramid::{Linear, Rows};
 
@@ -58,6 +58,10 @@ impl BaseRows<'_> {
         self.strength > 0.0
     }
 
+    fn roughness(&self, green: f32) -> Roughness {
+        Roughness((green * self.roughness_factor).clamp(0.0, 1.0))
+    }
+
     /// Whether red and blue of the roughness texture are the same everywhere.
     pub fn is_plain(&self) -> bool {
         let Some(rows) = &self.roughness else { return true };
@@ -88,6 +92,13 @@ impl Rows for BaseRows<'_> {
         if let Some(rows) = &self.roughness {
             rows.row(y, &mut surface);
         }
+        if self.strength == 0.0 {
+            for (texel, [red, green, blue, _]) in out.iter_mut().zip(surface) {
+                let SquaredAlpha(a) = SquaredAlpha::isotropic(self.roughness(green).into());
+                *texel = [a.uu, a.uv, a.vv, red, blue];
+            }
+            return;
+        }
         // The texel that glTF defines for a material without an anisotropy texture.
         let mut direction = vec![[1.0, 0.5, 1.0, 1.0]; out.len()];
         if let Some(rows) = &self.direction {
@@ -95,7 +106,7 @@ impl Rows for BaseRows<'_> {
         }
         for ((texel, [red, green, blue, _]), axis) in out.iter_mut().zip(surface).zip(direction) {
             let lobe = Anisotropy {
-                roughness: Roughness((green * self.roughness_factor).clamp(0.0, 1.0)),
+                roughness: self.roughness(green),
                 strength: (axis[2] * self.strength).clamp(0.0, 1.0),
                 direction: rotated([2.0 * axis[0] - 1.0, 2.0 * axis[1] - 1.0], self.rotation),
             };

@@ -7,7 +7,7 @@ use super::bumps::Bumps;
 use super::chain::{Chain, Encoding, encode_chain};
 use super::lobes::{Lobes, own_lobe};
 use super::settings::{Model, Settings};
-use crate::lobe::{Anisotropy, OrientedLobe, Roughness, SquaredAlpha, isotropic_distance};
+use crate::lobe::{Alpha, Anisotropy, Roughness, SquaredAlpha, isotropic_distance};
 use crate::pyramid::Pyramid;
 use crate::symmetric::Symmetric2;
 use crate::texture::EncodeError;
@@ -63,7 +63,7 @@ impl<'a> Fold<'a> {
     pub fn texels_above_one(&self, model: Model) -> u64 {
         let is_too_wide = |lobe: SquaredAlpha| match model {
             Model::Anisotropic => lobe.exceeds_one(),
-            _ => lobe.closest_isotropic().0 > 1.0,
+            _ => lobe.circle_exceeds_one(),
         };
         let levels = self.sizes().into_iter().enumerate();
         let in_level = |(level, (width, height)): (usize, (u32, u32))| -> u64 {
@@ -144,14 +144,23 @@ impl<'a> Fold<'a> {
     pub fn roughness_rows(&self, model: Model) -> impl Fn(usize, u32, &mut [[f32; 4]]) + Sync {
         let axis = self.reference();
         move |level, y, out| {
+            if model == Model::Anisotropic {
+                self.row(level, y, out.len(), |x, _, full, [red, blue]| {
+                    out[x] = [red, Anisotropy::of(full, axis).roughness.0, blue, 1.0];
+                });
+                return;
+            }
+            let mut determinants = vec![0.0; out.len()];
             self.row(level, y, out.len(), |x, _, full, [red, blue]| {
-                let roughness = if model == Model::Anisotropic {
-                    Anisotropy::of(full, axis).roughness
-                } else {
-                    Roughness(Roughness::from(full.closest_isotropic()).0.min(1.0))
-                };
-                out[x] = [red, roughness.0, blue, 1.0];
+                determinants[x] = full.0.determinant();
+                out[x] = [red, 0.0, blue, 1.0];
             });
+            // Roots side by side: one by one they take as long as all the rest.
+            for determinant in &mut determinants {
+                let alpha = Alpha(determinant.sqrt().sqrt());
+                *determinant = Roughness::from(alpha).0.min(1.0);
+            }
+            out.iter_mut().zip(determinants).for_each(|(texel, roughness)| texel[1] = roughness);
         }
     }
 
@@ -191,11 +200,11 @@ impl<'a> Fold<'a> {
         mut visit: impl FnMut(usize, SquaredAlpha, SquaredAlpha, [f32; 2]),
     ) {
         let mut base = vec![BaseTexel::default(); width];
-        let mut lobes = vec![OrientedLobe::default(); width];
+        let mut alphas = vec![SquaredAlpha::default(); width];
         self.base.row(level, y, &mut base);
-        self.lobes.row(level, y, &mut lobes);
-        for (x, (texel, lobe)) in base.iter().zip(&lobes).enumerate() {
-            visit(x, own_lobe(texel), lobe.squared_alpha, [texel[3], texel[4]]);
+        self.lobes.squared_alphas(&base, level, y, &mut alphas);
+        for (x, (texel, alpha)) in base.iter().zip(&alphas).enumerate() {
+            visit(x, own_lobe(texel), *alpha, [texel[3], texel[4]]);
         }
     }
 }

@@ -57,15 +57,27 @@ impl<'a> Lobes<'a> {
         }
     }
 
-    /// Writes the offsets that a normal map should hold to `out`: where the lobes of row `y` of `level` point, before
-    /// scaling.
-    pub fn offsets(&self, level: usize, y: u32, out: &mut [Offset]) {
+    /// Their squared alphas alone, where the material's own lobes of that row are known: `own`.
+    pub fn squared_alphas(&self, own: &[BaseTexel], level: usize, y: u32, out: &mut [SquaredAlpha]) {
+        // Bumps that are not resampled do not vary within a texel.
+        if level == 0 && self.finest.bumps.is_source() {
+            out.iter_mut().zip(own).for_each(|(a, texel)| *a = own_lobe(texel));
+            return;
+        }
+        let mut lobes = vec![OrientedLobe::default(); out.len()];
+        self.row(level, y, &mut lobes);
+        out.iter_mut().zip(lobes).for_each(|(a, lobe)| *a = lobe.squared_alpha);
+    }
+
+    /// Writes the offsets (f_u, f_v) that a normal map should hold to `out`: where the lobes of row `y` of `level` point,
+    /// before scaling.
+    pub fn offsets(&self, level: usize, y: u32, out: &mut [[f32; 2]]) {
         let scale = 1.0 / self.finest.slope_scale;
         let mut lobes = vec![OrientedLobe::default(); out.len()];
         self.row(level, y, &mut lobes);
         for (offset, lobe) in out.iter_mut().zip(lobes) {
             let Offset { u, v } = lobe.offset();
-            *offset = Offset { u: u * scale, v: v * scale };
+            *offset = [u * scale, v * scale];
         }
     }
 

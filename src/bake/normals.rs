@@ -1,34 +1,54 @@
 //! Normal mips: at every level the unit normals of where the texels point.
 
+use rayon::prelude::*;
+
 use super::bumps::Bumps;
 use super::chain::{Chain, Encoding, encode_chain};
 use super::lobes::Lobes;
 use super::relief::Relief;
 use crate::bump::{Offset, normal_from_offset};
-use crate::pyramid::{Area, Level, Moments, Rows};
+use crate::pyramid::{Area, Level, Moments, Rows, build};
 use crate::texture::EncodeError;
 
 /// Where the texels of a normal texture point, level by level.
 pub struct Normals<'a> {
     finest: Area<&'a Relief>,
-    coarser: Vec<Level<Offset>>,
+    /// Offsets (f_u, f_v).
+    coarser: Vec<Level<[f32; 2]>>,
+}
+
+/// Offsets without their covariances, which are 3/5 of the memory of moments.
+struct Means<R>(R);
+
+impl<R: Rows<Texel = Moments>> Rows for Means<R> {
+    type Texel = [f32; 2];
+
+    fn width(&self) -> u32 {
+        self.0.width()
+    }
+
+    fn height(&self) -> u32 {
+        self.0.height()
+    }
+
+    fn row(&self, y: u32, out: &mut [[f32; 2]]) {
+        let mut moments = vec![Moments::default(); out.len()];
+        self.0.row(y, &mut moments);
+        out.iter_mut().zip(moments).for_each(|(mean, m)| *mean = [m.mean.u, m.mean.v]);
+    }
 }
 
 impl<'a> Normals<'a> {
     /// Texels of `bumps` point where `lobes` on the same grid do, or without them where their mean slope does.
     pub fn new(bumps: &Bumps<'a>, lobes: Option<&Lobes<'_>>) -> Self {
+        let Some(lobes) = lobes else {
+            return Self { finest: bumps.rows, coarser: build(&Means(bumps.rows)) };
+        };
         let level = |(level, &(width, height)): (usize, &(u32, u32))| {
-            let mut texels = vec![Offset::default(); width as usize * height as usize];
-            let mut means = vec![Moments::default(); if lobes.is_none() { width as usize } else { 0 }];
-            for (y, row) in (0..).zip(texels.chunks_exact_mut(width as usize)) {
-                match lobes {
-                    Some(lobes) => lobes.offsets(level, y, row),
-                    None => {
-                        bumps.moments().row(level, y, &mut means);
-                        row.iter_mut().zip(&means).for_each(|(offset, m)| *offset = m.mean);
-                    }
-                }
-            }
+            let mut texels = vec![[0.0; 2]; width as usize * height as usize];
+            texels.par_chunks_exact_mut(width as usize).enumerate().for_each(|(y, row)| {
+                lobes.offsets(level, y as u32, row);
+            });
             Level { width, height, texels }
         };
         let coarser = bumps.sizes().iter().enumerate().skip(1).map(level).collect();
@@ -56,7 +76,8 @@ impl<'a> Normals<'a> {
             }
             Some(coarser) => {
                 let Level { width, texels, .. } = &self.coarser[coarser];
-                out.iter_mut().zip(texels[y as usize * *width as usize..].iter().copied()).for_each(write);
+                let offsets = texels[y as usize * *width as usize..].iter().map(|&[u, v]| Offset { u, v });
+                out.iter_mut().zip(offsets).for_each(write);
             }
         }
     }

@@ -176,6 +176,8 @@ fn bake(args: &Args, settings: &Settings) -> Result<Written, MapCommandError> {
     let bytes = read(&args.image)?;
     let image = decoded(&args.image, &bytes, args.layer.clone(), settings, decode)?;
     let mut sources = vec![digest(&args.image, &bytes)];
+    let is_jpeg = notes::is_jpeg(&bytes);
+    drop(bytes);
     let failed = |error| MapCommandError::Map { path: args.image.clone(), error };
     let relief = if args.height {
         let slope = args.height_scale * image.width as f32;
@@ -202,7 +204,9 @@ fn bake(args: &Args, settings: &Settings) -> Result<Written, MapCommandError> {
         }
     };
     let mut baked = bake_map(&relief, own.as_ref(), settings)?;
-    if notes::is_jpeg(&bytes) {
+    // What is decoded is no longer needed: as much as the baked levels, and more.
+    drop((relief, own));
+    if is_jpeg {
         baked.notes.push(notes::JPEG.to_owned());
     }
     let mut files = Vec::new();

@@ -6,11 +6,16 @@
 //! converges faster (J. Kent, D. Tyler, Y. Vardi, "A curious likelihood identity for the multivariate t-distribution",
 //! 1994). Unlike moments it has no tails to lose: one steep texel of many hardly moves the lobe.
 
+#![expect(clippy::needless_range_loop, reason = "loops over lanes and channels read several arrays at one index")]
+
 use std::sync::LazyLock;
+
+use fearless_simd::{Simd, prelude::*};
 
 use super::SquaredAlpha;
 use super::oriented::{LEAST_COSINE, OrientedLobe, dot, frame};
-use crate::pyramid::Merge;
+use crate::pyramid::{MAX_PARTS, Merge, load, store};
+use crate::simd::{LANES, Real, Wide};
 use crate::symmetric::Symmetric2;
 
 /// Half-vectors that stand for a lobe: [`RADII`] by 4 directions.
@@ -18,12 +23,10 @@ const POINTS: usize = 12;
 /// Radii, in alphas, within which 1/6, 1/2 and 5/6 of a GGX lobe lie (r^2 = p / (1 - p)). Any such symmetric choice
 /// gives back the lobe itself when it is merged alone.
 const RADII: [f32; 3] = [0.447_213_6, 1.0, 2.236_068];
-/// Lobes merged at once: 3 x 3 under a texel of an odd level.
-const PARTS: usize = 9;
-/// Sums are kept for this many points side by side, whatever the machine's vectors hold: the same bits everywhere.
-const LANES: usize = 8;
-/// Points of all parts, in full lanes.
-const CAPACITY: usize = (PARTS * POINTS).next_multiple_of(LANES);
+/// Points of all parts.
+const CAPACITY: usize = MAX_PARTS * POINTS;
+/// Sums are kept for every eighth point and then added, which rounds less than one sum does.
+const STRIDE: usize = 8;
 /// EM steps. Twice as many change the lobe error of `../shared/data` by less than 0.001.
 const STEPS: usize = 6;
 /// Spread of the normals over the lobe, as squared slopes, below which widening is linear in it and its shape plays no
@@ -31,7 +34,7 @@ const STEPS: usize = 6;
 const SMOOTH: f32 = 0.01;
 
 /// Unit directions times radii, turned a little from part to part so that no direction is preferred.
-static PATTERNS: LazyLock<[[[f32; 2]; POINTS]; PARTS]> = LazyLock::new(|| {
+static PATTERNS: LazyLock<[[[f32; 2]; POINTS]; MAX_PARTS]> = LazyLock::new(|| {
     std::array::from_fn(|part| {
         std::array::from_fn(|point| {
             let (ring, spoke) = (point / 4, point % 4);
@@ -45,9 +48,9 @@ static PATTERNS: LazyLock<[[[f32; 2]; POINTS]; PARTS]> = LazyLock::new(|| {
 
 impl Merge for OrientedLobe {
     fn merge(weights: &[f32], parts: &[Self]) -> Self {
-        if parts.len() > PARTS {
+        if parts.len() > MAX_PARTS {
             let total = |weights: &[f32]| weights.iter().sum::<f32>().max(f32::MIN_POSITIVE);
-            let groups = weights.chunks(PARTS).zip(parts.chunks(PARTS));
+            let groups = weights.chunks(MAX_PARTS).zip(parts.chunks(MAX_PARTS));
             let merged: Vec<(f32, Self)> = groups
                 .map(|(weights, parts)| {
                     let total = total(weights);
@@ -58,135 +61,260 @@ impl Merge for OrientedLobe {
             let (weights, parts): (Vec<f32>, Vec<Self>) = merged.into_iter().unzip();
             return Self::merge(&weights, &parts);
         }
-        let mut sum = [0.0; 3];
-        for (w, part) in weights.iter().zip(parts) {
-            sum = [0, 1, 2].map(|i| sum[i] + w * part.normal[i]);
+        let mut values = [Parts::default(); MAX_PARTS];
+        values.iter_mut().zip(parts).for_each(|(value, part)| *value = Parts::of(part.values()));
+        Self::from_values(merged(weights, &values[..parts.len()]).values())
+    }
+
+    #[inline(always)]
+    fn merge_lanes<S: Simd>(simd: S, weights: &[[f32; LANES]], part: impl Fn(usize, usize) -> Self) -> [Self; LANES] {
+        let zero = Wide::splat(simd, 0.0);
+        let mut wide = [zero; MAX_PARTS];
+        let mut parts = [Parts::of([zero; 6]); MAX_PARTS];
+        let values = load(simd, weights.len(), |tap, lane| part(tap, lane).values());
+        for (tap, weights) in weights.iter().enumerate() {
+            wide[tap] = Wide::simd_from(simd, *weights);
+            parts[tap] = Parts::of(values[tap]);
         }
-        let length = dot(sum, sum).sqrt();
-        if length == 0.0 {
-            return parts.first().copied().unwrap_or_default();
+        let merged = store(merged(&wide[..weights.len()], &parts[..weights.len()]).values());
+        let mut lobes = [Self::default(); LANES];
+        for lane in 0..LANES {
+            lobes[lane] = Self::from_values(merged[lane]);
         }
-        let about = frame(sum.map(|c| c / length));
-        let start = Start::of(weights, parts, about);
-        let Slopes { mean, a } =
-            if start.is_smooth { start.slopes } else { Points::of(weights, parts, about).likeliest(start.slopes) };
-        tilted(about, mean, a)
+        lobes
+    }
+}
+
+impl OrientedLobe {
+    #[inline(always)]
+    fn values(&self) -> [f32; 6] {
+        let ([x, y, z], Symmetric2 { uu, uv, vv }) = (self.normal, self.squared_alpha.0);
+        [x, y, z, uu, uv, vv]
+    }
+
+    #[inline(always)]
+    fn from_values([x, y, z, uu, uv, vv]: [f32; 6]) -> Self {
+        Self { normal: [x, y, z], squared_alpha: SquaredAlpha(Symmetric2::new(uu, uv, vv)) }
+    }
+}
+
+/// Lobes, one in each lane.
+#[derive(Clone, Copy, Default)]
+struct Parts<F> {
+    normal: [F; 3],
+    a: Matrix<F>,
+}
+
+/// Symmetric matrices, one in each lane.
+#[derive(Clone, Copy, Default)]
+struct Matrix<F> {
+    uu: F,
+    uv: F,
+    vv: F,
+}
+
+impl<F: Real> Matrix<F> {
+    /// p^T A q.
+    #[inline(always)]
+    fn between(self, p: [F; 2], q: [F; 2]) -> F {
+        p[0] * q[0] * self.uu + (p[0] * q[1] + p[1] * q[0]) * self.uv + p[1] * q[1] * self.vv
+    }
+}
+
+impl<F: Real> Parts<F> {
+    #[inline(always)]
+    fn of([x, y, z, uu, uv, vv]: [F; 6]) -> Self {
+        Self { normal: [x, y, z], a: Matrix { uu, uv, vv } }
+    }
+
+    #[inline(always)]
+    fn values(self) -> [F; 6] {
+        let ([x, y, z], Matrix { uu, uv, vv }) = (self.normal, self.a);
+        [x, y, z, uu, uv, vv]
+    }
+
+    #[inline(always)]
+    fn or(self, other: Self, mask: F::Mask) -> Self {
+        let (mut values, other) = (self.values(), other.values());
+        for i in 0..6 {
+            values[i] = values[i].or(other[i], mask);
+        }
+        Self::of(values)
+    }
+}
+
+/// The merged lobe in each lane; at least one and at most [`MAX_PARTS`] parts.
+#[inline(always)]
+fn merged<F: Real>(weights: &[F], parts: &[Parts<F>]) -> Parts<F> {
+    let zero = weights[0].like(0.0);
+    let mut sum = [zero; 3];
+    for (w, part) in weights.iter().zip(parts) {
+        add(&mut sum, *w, part.normal);
+    }
+    let length = dot(sum, sum).sqrt();
+    let about = frame([sum[0] / length, sum[1] / length, sum[2] / length]);
+    let start = Start::of(weights, parts, about);
+    let mut slopes = start.slopes;
+    if !F::all(start.is_smooth) {
+        slopes = slopes.or(Points::of(weights, parts, about).likeliest(slopes), start.is_smooth);
+    }
+    // Normals that cancel have no frame.
+    parts[0].or(tilted(about, slopes), length.is_zero())
+}
+
+/// `sum` + `weight` * `vector`.
+#[inline(always)]
+fn add<F: Real>(sum: &mut [F; 3], weight: F, vector: [F; 3]) {
+    for i in 0..3 {
+        sum[i] = sum[i] + weight * vector[i];
     }
 }
 
 /// A lobe as slopes about some normal.
 #[derive(Clone, Copy)]
-struct Slopes {
-    mean: [f32; 2],
-    a: Symmetric2,
+struct Slopes<F> {
+    mean: [F; 2],
+    a: Matrix<F>,
+}
+
+impl<F: Real> Slopes<F> {
+    #[inline(always)]
+    fn or(self, other: Self, mask: F::Mask) -> Self {
+        let mean = [self.mean[0].or(other.mean[0], mask), self.mean[1].or(other.mean[1], mask)];
+        let (own, other) = (self.a, other.a);
+        let a = Matrix { uu: own.uu.or(other.uu, mask), uv: own.uv.or(other.uv, mask), vv: own.vv.or(other.vv, mask) };
+        Self { mean, a }
+    }
 }
 
 /// What moments tell: where EM starts, and where it need not start.
-struct Start {
-    slopes: Slopes,
-    is_smooth: bool,
+struct Start<F: Real> {
+    slopes: Slopes<F>,
+    is_smooth: F::Mask,
 }
 
-impl Start {
-    fn of(weights: &[f32], parts: &[OrientedLobe], [t, b, n]: [[f32; 3]; 3]) -> Self {
-        let slope = |part: &OrientedLobe| {
-            let z = dot(part.normal, n).max(LEAST_COSINE);
-            [dot(part.normal, t) / z, dot(part.normal, b) / z]
-        };
-        let mut mean = [0.0; 2];
-        let (mut least, mut largest) = (f32::INFINITY, 0.0_f32);
-        for (w, part) in weights.iter().zip(parts) {
-            let [x, y] = slope(part);
-            mean = [mean[0] + w * x, mean[1] + w * y];
-            let eigen = part.squared_alpha.0.eigen();
-            (least, largest) = (least.min(eigen.minor), largest.max(eigen.major));
+impl<F: Real> Start<F> {
+    #[inline(always)]
+    fn of(weights: &[F], parts: &[Parts<F>], [t, b, n]: [[F; 3]; 3]) -> Self {
+        let zero = weights[0].like(0.0);
+        let half = zero.like(0.5);
+        let mut slopes = [[zero; 2]; MAX_PARTS];
+        let mut mean = [zero; 2];
+        let (mut least, mut largest) = (zero.like(f32::INFINITY), zero);
+        for ((w, part), slope) in weights.iter().zip(parts).zip(&mut slopes) {
+            let z = dot(part.normal, n).max(zero.like(LEAST_COSINE));
+            let (x, y) = (dot(part.normal, t) / z, dot(part.normal, b) / z);
+            *slope = [x, y];
+            mean = [mean[0] + *w * x, mean[1] + *w * y];
+            // Eigenvalues, as `Symmetric2::eigen` has them.
+            let Matrix { uu, uv, vv } = part.a;
+            let (half_sum, half_difference) = (half * (uu + vv), half * (uu - vv));
+            let radius = (half_difference * half_difference + uv * uv).sqrt();
+            least = least.min((half_sum - radius).max(zero));
+            largest = largest.max(half_sum + radius);
         }
-        let (mut own, mut spread) = (Symmetric2::ZERO, Symmetric2::ZERO);
-        for (w, part) in weights.iter().zip(parts) {
-            let [x, y] = slope(part);
-            own = own + *w * part.squared_alpha.0;
-            spread = spread + *w * Symmetric2::outer([x - mean[0], y - mean[1]]);
+        let (mut own, mut spread) = ([zero; 3], [zero; 3]);
+        for ((w, part), [x, y]) in weights.iter().zip(parts).zip(slopes) {
+            let (x, y) = (x - mean[0], y - mean[1]);
+            add(&mut own, *w, [part.a.uu, part.a.uv, part.a.vv]);
+            add(&mut spread, *w, [x * x, x * y, y * y]);
         }
         // Parts of unlike widths merge to one that fits both only through EM.
-        let is_smooth = spread.trace() <= SMOOTH * least && (largest <= 1.2 * least || spread.trace() == 0.0);
+        let trace = spread[0] + spread[2];
+        let alike = largest.at_most(zero.like(1.2) * least) | trace.is_zero();
+        let is_smooth = trace.at_most(zero.like(SMOOTH) * least) & alike;
         // EM comes to the same lobe from wherever it starts, soonest from what a heavy-tailed spread would want.
-        let widening = if is_smooth { 2.0 } else { 0.5 };
-        Self { slopes: Slopes { mean, a: own + widening * spread }, is_smooth }
+        add(&mut own, zero.like(2.0).or(half, is_smooth), spread);
+        let [uu, uv, vv] = own;
+        Self { slopes: Slopes { mean, a: Matrix { uu, uv, vv } }, is_smooth }
     }
 }
 
-/// Slopes of half-vectors about the mean normal, each with its share.
-struct Points {
-    x: [f32; CAPACITY],
-    y: [f32; CAPACITY],
-    weight: [f32; CAPACITY],
-    lanes: usize,
+/// Slopes of half-vectors about the mean normal, each with twice its share.
+struct Points<F> {
+    all: [[F; 3]; CAPACITY],
+    count: usize,
 }
 
-impl Points {
-    fn of(weights: &[f32], parts: &[OrientedLobe], about: [[f32; 3]; 3]) -> Self {
-        let mut points = Self { x: [0.0; CAPACITY], y: [0.0; CAPACITY], weight: [0.0; CAPACITY], lanes: 0 };
-        let patterns: &[[[f32; 2]; POINTS]; PARTS] = &PATTERNS;
-        for (index, ((w, part), pattern)) in weights.iter().zip(parts).zip(patterns).enumerate() {
+impl<F: Real> Points<F> {
+    #[inline(always)]
+    fn of(weights: &[F], parts: &[Parts<F>], about: [[F; 3]; 3]) -> Self {
+        let zero = weights[0].like(0.0);
+        let (one, least, least_cosine) = (zero.like(1.0), zero.like(MIN_SQUARED_ALPHA), zero.like(LEAST_COSINE));
+        let mut all = [[zero; 3]; CAPACITY];
+        let patterns: &[[[f32; 2]; POINTS]; MAX_PARTS] = &PATTERNS;
+        let targets = all.as_chunks_mut::<POINTS>().0;
+        for (((w, part), pattern), points) in weights.iter().zip(parts).zip(patterns).zip(targets) {
             // The part's axes, scaled by its lobe (A = L L^T, L lower triangular), in the common frame.
-            let own = frame(part.normal).map(|axis| about.map(|common| dot(axis, common)));
-            let Symmetric2 { uu, uv, vv } = part.squared_alpha.0;
-            let l11 = uu.max(MIN_SQUARED_ALPHA).sqrt();
+            let [t, b, n] = frame(part.normal);
+            let Matrix { uu, uv, vv } = part.a;
+            let l11 = uu.max(least).sqrt();
             let l21 = uv / l11;
-            let l22 = (vv - l21 * l21).max(MIN_SQUARED_ALPHA).sqrt();
-            let along = [0, 1, 2].map(|i| l11 * own[0][i] + l21 * own[1][i]);
-            let across = [0, 1, 2].map(|i| l22 * own[1][i]);
-            let share = w / POINTS as f32;
-            let from = index * POINTS;
-            let targets = points.x[from..].iter_mut().zip(&mut points.y[from..]).zip(&mut points.weight[from..]);
-            for ([cos, sin], ((x, y), weight)) in pattern.iter().zip(targets) {
-                let h = [0, 1, 2].map(|i| cos * along[i] + sin * across[i] + own[2][i]);
-                let scale = 1.0 / h[2].max(LEAST_COSINE);
-                (*x, *y, *weight) = (h[0] * scale, h[1] * scale, share);
+            let l22 = (vv - l21 * l21).max(least).sqrt();
+            let (mut along, mut across, mut up) = ([zero; 3], [zero; 3], [zero; 3]);
+            for i in 0..3 {
+                let across_i = dot(b, about[i]);
+                along[i] = l11 * dot(t, about[i]) + l21 * across_i;
+                across[i] = l22 * across_i;
+                up[i] = dot(n, about[i]);
+            }
+            let share = *w / zero.like(POINTS as f32) * zero.like(2.0);
+            for (&[cos, sin], point) in pattern.iter().zip(points) {
+                let (cos, sin) = (zero.like(cos), zero.like(sin));
+                let mut h = up;
+                for i in 0..3 {
+                    h[i] = cos * along[i] + sin * across[i] + up[i];
+                }
+                let scale = one / h[2].max(least_cosine);
+                *point = [h[0] * scale, h[1] * scale, share];
             }
         }
-        points.lanes = (parts.len() * POINTS).div_ceil(LANES);
-        points
+        Self { all, count: parts.len() * POINTS }
     }
 
-    fn likeliest(&self, start: Slopes) -> Slopes {
+    #[inline(always)]
+    fn likeliest(&self, start: Slopes<F>) -> Slopes<F> {
         let Slopes { mut mean, mut a } = start;
         for _ in 0..STEPS {
             let [weight, x, y, xx, xy, yy] = self.sums(mean, a);
             let (dx, dy) = (x / weight, y / weight);
-            a = Symmetric2::new(
-                2.0 * (xx / weight - dx * dx),
-                2.0 * (xy / weight - dx * dy),
-                2.0 * (yy / weight - dy * dy),
-            );
+            let two = weight.like(2.0);
+            a = Matrix {
+                uu: two * (xx / weight - dx * dx),
+                uv: two * (xy / weight - dx * dy),
+                vv: two * (yy / weight - dy * dy),
+            };
             mean = [mean[0] + dx, mean[1] + dy];
         }
         Slopes { mean, a }
     }
 
     /// Sums over the points of w, w x, w y, w x^2, w x y and w y^2 about `mean`, with w the EM weights.
-    #[inline]
-    fn sums(&self, mean: [f32; 2], a: Symmetric2) -> [f32; 6] {
-        let scale = 1.0 / a.determinant().max(MIN_SQUARED_ALPHA * MIN_SQUARED_ALPHA);
-        let (inverse_uu, inverse_uv, inverse_vv) = (a.vv * scale, -2.0 * a.uv * scale, a.uu * scale);
-        let mut sums = [[0.0_f32; LANES]; 6];
-        let (xs, ys, weights) =
-            (self.x.as_chunks::<LANES>().0, self.y.as_chunks::<LANES>().0, self.weight.as_chunks::<LANES>().0);
-        for ((xs, ys), weights) in xs.iter().zip(ys).zip(weights).take(self.lanes) {
-            for lane in 0..LANES {
-                let (x, y) = (xs[lane] - mean[0], ys[lane] - mean[1]);
+    #[inline(always)]
+    fn sums(&self, mean: [F; 2], a: Matrix<F>) -> [F; 6] {
+        let zero = mean[0].like(0.0);
+        let one = zero.like(1.0);
+        let determinant = (a.uu * a.vv - a.uv * a.uv).max(zero);
+        let scale = one / determinant.max(zero.like(MIN_SQUARED_ALPHA * MIN_SQUARED_ALPHA));
+        let (inverse_uu, inverse_uv, inverse_vv) = (a.vv * scale, zero.like(-2.0) * a.uv * scale, a.uu * scale);
+        let mut sums = [zero; 6];
+        for first in 0..STRIDE {
+            let mut every = [zero; 6];
+            for &[x, y, share] in self.all[first..self.count].iter().step_by(STRIDE) {
+                let (x, y) = (x - mean[0], y - mean[1]);
                 let q = inverse_uu * x * x + inverse_uv * x * y + inverse_vv * y * y;
-                let w = weights[lane] * 2.0 / (1.0 + q);
+                let w = share / (one + q);
                 let (wx, wy) = (w * x, w * y);
-                sums[0][lane] += w;
-                sums[1][lane] += wx;
-                sums[2][lane] += wy;
-                sums[3][lane] += wx * x;
-                sums[4][lane] += wx * y;
-                sums[5][lane] += wy * y;
+                let terms = [w, wx, wy, wx * x, wx * y, wy * y];
+                for i in 0..6 {
+                    every[i] = every[i] + terms[i];
+                }
+            }
+            for i in 0..6 {
+                sums[i] = sums[i] + every[i];
             }
         }
-        sums.map(|lanes| lanes.iter().sum())
+        sums
     }
 }
 
@@ -195,16 +323,20 @@ const MIN_SQUARED_ALPHA: f32 = 1e-6;
 
 /// The lobe whose slopes about the frame's normal are `a` about `mean`, in the frame of its own normal. To first order in
 /// the lobe's width: exact in its centre.
-fn tilted(about: [[f32; 3]; 3], mean: [f32; 2], a: Symmetric2) -> OrientedLobe {
+#[inline(always)]
+fn tilted<F: Real>(about: [[F; 3]; 3], Slopes { mean, a }: Slopes<F>) -> Parts<F> {
     let [t, b, n] = about;
-    let length = (1.0 + mean[0] * mean[0] + mean[1] * mean[1]).sqrt();
-    let normal = [0, 1, 2].map(|i| (n[i] + mean[0] * t[i] + mean[1] * b[i]) / length);
+    let length = (mean[0].like(1.0) + mean[0] * mean[0] + mean[1] * mean[1]).sqrt();
+    let mut normal = n;
+    for i in 0..3 {
+        normal[i] = (n[i] + mean[0] * t[i] + mean[1] * b[i]) / length;
+    }
     let [own_t, own_b, _] = frame(normal);
     // Derivatives of slopes about the new normal by slopes about the old one.
-    let j = [own_t, own_b].map(|own| [dot(own, t) / length, dot(own, b) / length]);
-    let along = |p: [f32; 2], q: [f32; 2]| p[0] * q[0] * a.uu + (p[0] * q[1] + p[1] * q[0]) * a.uv + p[1] * q[1] * a.vv;
-    let squared_alpha = SquaredAlpha(Symmetric2::new(along(j[0], j[0]), along(j[0], j[1]), along(j[1], j[1])));
-    OrientedLobe { normal, squared_alpha }
+    let p = [dot(own_t, t) / length, dot(own_t, b) / length];
+    let q = [dot(own_b, t) / length, dot(own_b, b) / length];
+    let a = Matrix { uu: a.between(p, p), uv: a.between(p, q), vv: a.between(q, q) };
+    Parts { normal, a }
 }
 
 #[cfg(test)]
@@ -245,9 +377,10 @@ mod tests {
         // EM itself, without the short cut for smooth parts.
         let part = lobe([0.5, 0.2], [0.09, 0.02, 0.04]);
         let about = frame(part.normal);
-        let points = Points::of(&[0.25; 4], &[part; 4], about);
-        let Slopes { mean, a } = points.likeliest(Slopes { mean: [0.0; 2], a: Symmetric2::diagonal(0.2, 0.2) });
-        assert_alike(tilted(about, mean, a), part, 0.01);
+        let points = Points::of(&[0.25; 4], &[Parts::of(part.values()); 4], about);
+        let wide = Matrix { uu: 0.2, uv: 0.0, vv: 0.2 };
+        let slopes = points.likeliest(Slopes { mean: [0.0; 2], a: wide });
+        assert_alike(OrientedLobe::from_values(tilted(about, slopes).values()), part, 0.01);
     }
 
     /// Bumps far smaller than the lobe add their covariance, twice.

@@ -62,6 +62,11 @@ impl SquaredAlpha {
         Alpha(self.0.determinant().sqrt().sqrt())
     }
 
+    /// Whether [`Self::closest_isotropic`] is above 1, without its roots: those of 1 + 3 ulp round to 1.
+    pub fn circle_exceeds_one(self) -> bool {
+        self.0.determinant() > 1.0 + 3.0 * f32::EPSILON
+    }
+
     /// Ratio of the larger alpha to the smaller one, at least 1; infinite when only the smaller one is 0.
     pub fn axis_ratio(self) -> f32 {
         let e = self.0.eigen();

@@ -2,6 +2,7 @@
 
 use super::SquaredAlpha;
 use crate::bump::{Offset, normal_from_offset};
+use crate::simd::Real;
 
 /// A lobe about a unit normal: what one texel of a level reflects.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -29,15 +30,18 @@ impl OrientedLobe {
 pub(super) const LEAST_COSINE: f32 = 0.05;
 
 /// The orthonormal frame of a unit normal: T made perpendicular to it, then B = N x T, as glTF's engines do.
-pub(super) fn frame(n: [f32; 3]) -> [[f32; 3]; 3] {
+#[inline(always)]
+pub(super) fn frame<F: Real>(n: [F; 3]) -> [[F; 3]; 3] {
+    let one = n[0].like(1.0);
     // Not 0: normals lean less than 90 degrees.
-    let scale = 1.0 / (1.0 - n[0] * n[0]).max(f32::MIN_POSITIVE).sqrt();
-    let t = [(1.0 - n[0] * n[0]) * scale, -n[0] * n[1] * scale, -n[0] * n[2] * scale];
+    let scale = one / (one - n[0] * n[0]).max(n[0].like(f32::MIN_POSITIVE)).sqrt();
+    let minus_x = n[0].like(0.0) - n[0];
+    let t = [(one - n[0] * n[0]) * scale, minus_x * n[1] * scale, minus_x * n[2] * scale];
     [t, [n[1] * t[2] - n[2] * t[1], n[2] * t[0] - n[0] * t[2], n[0] * t[1] - n[1] * t[0]], n]
 }
 
-#[inline]
-pub(super) fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
+#[inline(always)]
+pub(super) fn dot<F: Real>(a: [F; 3], b: [F; 3]) -> F {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 

@@ -206,3 +206,13 @@ fn normal_quantile(p: f64) -> f64 {
     }
     low
 }
+
+/// The comparison without roots is that of the rooted value, to the last bit around 1.
+#[test]
+fn circles_exceed_one_where_their_alpha_does() {
+    for step in -64..64 {
+        let determinant = f32::from_bits((1.0_f32.to_bits() as i32 + step) as u32);
+        let lobe = SquaredAlpha(Symmetric2::diagonal(determinant, 1.0));
+        assert_eq!(lobe.circle_exceeds_one(), lobe.closest_isotropic().0 > 1.0, "{determinant}");
+    }
+}

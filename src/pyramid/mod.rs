@@ -8,6 +8,7 @@ mod reduce;
 mod resample;
 mod shaped;
 
+pub(crate) use merge::{MAX_PARTS, load, store};
 pub use merge::{Merge, Moments};
 pub use reduce::{Level, build, level_size, level_sizes};
 pub(crate) use resample::neighbours;

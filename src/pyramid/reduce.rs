@@ -1,8 +1,11 @@
 //! The next coarser level: area-weighted boxes of 2 taps for even sizes, 3 for odd ones (polyphase boxes).
 
+use fearless_simd::{Level as InstructionSet, Simd, dispatch};
 use rayon::prelude::*;
 
-use super::{Merge, Rows};
+use super::Rows;
+use super::merge::{MAX_PARTS, Merge};
+use crate::simd::LANES;
 
 /// Texels under one coarser texel along one axis: at most 3.
 const MAX_TAPS: usize = 3;
@@ -53,49 +56,94 @@ pub fn level_sizes(width: u32, height: u32) -> Vec<(u32, u32)> {
 
 /// Levels 1 and coarser over `source`, which is level 0; empty for a source of 1 x 1.
 pub fn build<R: Rows>(source: &R) -> Vec<Level<R::Texel>> {
-    let mut levels: Vec<Level<R::Texel>> = Vec::new();
-    for (width, height) in level_sizes(source.width(), source.height()).into_iter().skip(1) {
-        let level = match levels.last() {
-            None => reduce(source, width, height),
-            Some(finer) => reduce(finer, width, height),
+    let sizes = level_sizes(source.width(), source.height());
+    let mut levels: Vec<Level<R::Texel>> = Vec::with_capacity(sizes.len());
+    while levels.len() + 1 < sizes.len() {
+        let coarser = &sizes[levels.len() + 1..];
+        let next = match levels.last() {
+            None => reduce(source, coarser),
+            Some(finer) => reduce(finer, coarser),
         };
-        levels.push(level);
+        levels.extend(next);
     }
     levels
 }
 
-fn reduce<R: Rows>(finer: &R, width: u32, height: u32) -> Level<R::Texel> {
+/// The first levels of `sizes` over `finer`: as many as bands of rows have to themselves, at least one. A band's levels
+/// are made while those before are in the cache: one pass over memory for all of them.
+fn reduce<R: Rows>(finer: &R, sizes: &[(u32, u32)]) -> Vec<Level<R::Texel>> {
+    let fused = (finer.height().trailing_zeros().min(BAND_LEVELS) as usize).clamp(1, sizes.len());
+    let mut levels: Vec<Level<R::Texel>> = sizes[..fused]
+        .iter()
+        .map(|&(width, height)| Level {
+            width,
+            height,
+            texels: vec![R::Texel::default(); width as usize * height as usize],
+        })
+        .collect();
+    let bands = levels[fused - 1].height as usize;
+    let mut parts: Vec<Vec<&mut [R::Texel]>> = (0..bands).map(|_| Vec::with_capacity(fused)).collect();
+    for level in &mut levels {
+        let rows = level.height as usize / bands;
+        let chunks = level.texels.chunks_exact_mut(rows * level.width as usize);
+        parts.iter_mut().zip(chunks).for_each(|(part, chunk)| part.push(chunk));
+    }
     let fine_width = finer.width() as usize;
-    let mut texels = vec![R::Texel::default(); width as usize * height as usize];
-    texels.par_chunks_mut(width as usize).enumerate().for_each_init(
+    let simd = InstructionSet::new();
+    parts.into_par_iter().enumerate().for_each_init(
         || vec![R::Texel::default(); fine_width * MAX_TAPS],
-        |rows, (y, out)| {
-            let down = Taps::new(finer.height(), y as u32);
-            for (tap, row) in rows.chunks_exact_mut(fine_width).enumerate().take(down.count) {
-                finer.row(down.first + tap as u32, row);
+        |rows, (band, mut levels)| {
+            let (first, coarser) = levels.split_at_mut(1);
+            let first = &mut *first[0];
+            let height = first.len() / sizes[0].0 as usize;
+            for (y, out) in first.chunks_exact_mut(sizes[0].0 as usize).enumerate() {
+                let down = Taps::new(finer.height(), (band * height + y) as u32);
+                for (tap, row) in rows.chunks_exact_mut(fine_width).enumerate().take(down.count) {
+                    finer.row(down.first + tap as u32, row);
+                }
+                reduce_row(simd, rows, fine_width, &down, out);
             }
-            reduce_row(rows, fine_width, &down, out);
+            // Only even heights are fused beyond the first level.
+            let down = Taps::new(2, 0);
+            let mut above: &[R::Texel] = first;
+            for (level, texels) in coarser.iter_mut().enumerate() {
+                let (fine, coarse) = (sizes[level].0 as usize, sizes[level + 1].0 as usize);
+                for (rows, out) in above.chunks_exact(2 * fine).zip(texels.chunks_exact_mut(coarse)) {
+                    reduce_row(simd, rows, fine, &down, out);
+                }
+                above = texels;
+            }
         },
     );
-    Level { width, height, texels }
+    levels
 }
 
+/// Levels that a band makes at most: 32 rows of level 0, whose level 1 and 2 fit into 1 MB for 4096 columns of lobes.
+const BAND_LEVELS: u32 = 5;
+
 /// `rows` holds the finer rows under this row, one after another; `out` the coarser texels.
-fn reduce_row<T: Merge>(rows: &[T], fine_width: usize, down: &Taps, out: &mut [T]) {
-    let mut weights = [0.0; MAX_TAPS * MAX_TAPS];
-    let mut parts = [T::default(); MAX_TAPS * MAX_TAPS];
-    for (x, texel) in out.iter_mut().enumerate() {
-        let across = Taps::new(fine_width as u32, x as u32);
-        let mut count = 0;
-        for tap_y in 0..down.count {
-            let row = &rows[tap_y * fine_width..][..fine_width];
-            for tap_x in 0..across.count {
-                weights[count] = down.weights[tap_y] * across.weights[tap_x];
-                parts[count] = row[across.first as usize + tap_x];
-                count += 1;
-            }
+fn reduce_row<T: Merge>(simd: InstructionSet, rows: &[T], fine_width: usize, down: &Taps, out: &mut [T]) {
+    dispatch!(simd, simd => reduce_lanes(simd, rows, fine_width, down, out));
+}
+
+#[inline(always)]
+fn reduce_lanes<S: Simd, T: Merge>(simd: S, rows: &[T], fine_width: usize, down: &Taps, out: &mut [T]) {
+    let rows: [&[T]; MAX_TAPS] = std::array::from_fn(|tap| match tap < down.count {
+        true => &rows[tap * fine_width..][..fine_width],
+        false => &[],
+    });
+    for (group, out) in out.chunks_mut(LANES).enumerate() {
+        // Beyond the last texel it is merged again.
+        let across: [Taps; LANES] =
+            std::array::from_fn(|lane| Taps::new(fine_width as u32, (group * LANES + lane.min(out.len() - 1)) as u32));
+        let taps = across[0].count;
+        let mut weights = [[0.0; LANES]; MAX_PARTS];
+        for (index, weights) in weights.iter_mut().enumerate().take(down.count * taps) {
+            *weights = std::array::from_fn(|lane| down.weights[index / taps] * across[lane].weights[index % taps]);
         }
-        *texel = T::merge(&weights[..count], &parts[..count]);
+        let part = |tap: usize, lane: usize| rows[tap / taps][across[lane].first as usize + tap % taps];
+        let merged = T::merge_lanes(simd, &weights[..down.count * taps], part);
+        out.copy_from_slice(&merged[..out.len()]);
     }
 }
 
@@ -119,5 +167,82 @@ impl Taps {
                 Self { first: 2 * i, count: 3, weights: [(m - i as f32) / n, m / n, (i as f32 + 1.0) / n] }
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bump::Offset;
+    use crate::lobe::{OrientedLobe, SquaredAlpha};
+    use crate::pyramid::{Moments, ShapedMoments};
+    use crate::symmetric::Symmetric2;
+
+    /// What this machine can do, and less.
+    fn instruction_sets() -> Vec<InstructionSet> {
+        let all = InstructionSet::new();
+        #[cfg(target_arch = "x86_64")]
+        let sets = [
+            all.as_sse2().map(InstructionSet::Sse2),
+            all.as_sse4_2().map(InstructionSet::Sse4_2),
+            all.as_avx2().map(InstructionSet::Avx2),
+            all.as_avx512().map(InstructionSet::Avx512),
+        ];
+        #[cfg(not(target_arch = "x86_64"))]
+        let sets = [Some(all)];
+        sets.into_iter().flatten().collect()
+    }
+
+    fn assert_lanes_are_single_texels<T: Merge + PartialEq + std::fmt::Debug>(texel: impl Fn(u32) -> T) {
+        for (fine_width, fine_height) in [(1, 2), (2, 3), (5, 1), (16, 2), (19, 3), (37, 3), (64, 2)] {
+            let rows: Vec<T> = (0..fine_width * fine_height).map(&texel).collect();
+            let down = Taps::new(fine_height, 0);
+            let width = level_size(fine_width);
+            let expected: Vec<T> = (0..width)
+                .map(|x| {
+                    let across = Taps::new(fine_width, x);
+                    let (mut weights, mut parts) = (Vec::new(), Vec::new());
+                    for y in 0..down.count {
+                        for x in 0..across.count {
+                            weights.push(down.weights[y] * across.weights[x]);
+                            parts.push(rows[y * fine_width as usize + across.first as usize + x]);
+                        }
+                    }
+                    T::merge(&weights, &parts)
+                })
+                .collect();
+            for set in instruction_sets() {
+                let mut out = vec![T::default(); width as usize];
+                reduce_row(set, &rows, fine_width as usize, &down, &mut out);
+                assert_eq!(out, expected, "{fine_width} x {fine_height}, {set:?}");
+            }
+        }
+    }
+
+    /// In [0, 1).
+    fn random(seed: u32) -> f32 {
+        (seed.wrapping_mul(0x9e37_79b9) ^ 0x5bd1_e995).wrapping_mul(0x85eb_ca6b) as f32 / 4_294_967_808.0
+    }
+
+    fn moments(seed: u32) -> Moments {
+        let [a, b, c, u, v] = [0, 1, 2, 3, 4].map(|i| random(5 * seed + i));
+        let covariance = Symmetric2::outer([a, b]) + Symmetric2::diagonal(0.1 * c, 0.01);
+        Moments { mean: Offset { u: 2.0 * u - 1.0, v: v * v }, covariance }
+    }
+
+    #[test]
+    fn vectors_hold_the_bits_of_single_texels() {
+        assert_lanes_are_single_texels(moments);
+        assert_lanes_are_single_texels(|seed| ShapedMoments::normal(moments(seed)));
+        assert_lanes_are_single_texels(|seed| [random(seed), random(seed + 1)]);
+        // Smooth neighbours, which need no EM, beside rough ones.
+        assert_lanes_are_single_texels(|seed| {
+            let Moments { mean, covariance } = moments(if seed % 16 < 8 { seed } else { 3 });
+            OrientedLobe::new(mean, SquaredAlpha(covariance))
+        });
+        assert_lanes_are_single_texels(|seed| match seed % 2 {
+            0 => OrientedLobe::default(),
+            _ => OrientedLobe::new(moments(seed).mean, SquaredAlpha::default()),
+        });
     }
 }

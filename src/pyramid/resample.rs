@@ -17,6 +17,11 @@ impl<R: Rows> Area<R> {
     pub fn new(source: R, width: u32, height: u32) -> Self {
         Self { source, width, height }
     }
+
+    /// Whether the grid is that of the source, whose texels come back as they are.
+    pub fn is_source(&self) -> bool {
+        (self.width, self.height) == (self.source.width(), self.source.height())
+    }
 }
 
 impl<R: Rows> Rows for Area<R> {
@@ -31,7 +36,7 @@ impl<R: Rows> Rows for Area<R> {
     }
 
     fn row(&self, y: u32, out: &mut [R::Texel]) {
-        if (self.width, self.height) == (self.source.width(), self.source.height()) {
+        if self.is_source() {
             return self.source.row(y, out);
         }
         let fine_width = self.source.width() as usize;

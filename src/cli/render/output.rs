@@ -8,6 +8,7 @@ use crate::bake::{encode_png, write_file};
 use crate::inspect::encode_exr;
 use crate::map::{Image, Samples};
 use crate::render::{Panel, Picture, Sheet, Tone};
+use crate::texture::uastc::Effort;
 
 /// A picture and how it is shown.
 pub struct Shown {
@@ -68,7 +69,7 @@ impl<'a> Folder<'a> {
     fn write_sheet(&self, stem: &str, sheet: Option<Sheet>) -> Result<String, RenderError> {
         let path = self.args.output.join(format!("{stem}.png"));
         let encoded = match sheet {
-            Some(sheet) => encode_png(&sheet.rgba, sheet.width, sheet.height),
+            Some(sheet) => encode_png(&sheet.rgba, sheet.width, sheet.height, Effort::Best),
             None => Err("more pixels than a file can hold".to_owned()),
         };
         self.write_file(path, encoded)

@@ -68,13 +68,12 @@ impl Ktx2Writer<'_> {
 
         // "Mip Padding": levels are stored smallest first, each aligned to lcm(block bytes, 4) unless supercompressed.
         let alignment = if supercompressed { 1 } else { format.block_bytes().max(4) };
-        let mut data = Vec::new();
         let data_offset = kvd_offset + key_values.len();
         let mut index = Vec::with_capacity(levels.len());
+        let mut end = data_offset;
         for (level, stored) in levels.iter().zip(&stored).rev() {
-            let offset = (data_offset + data.len()).next_multiple_of(alignment);
-            data.resize(offset - data_offset, 0);
-            data.extend_from_slice(stored);
+            let offset = end.next_multiple_of(alignment);
+            end = offset + stored.len();
             index.push(LevelIndex {
                 byte_offset: offset as u64,
                 byte_length: stored.len() as u64,
@@ -101,14 +100,18 @@ impl Ktx2Writer<'_> {
                 sgd_byte_length: 0,
             },
         };
-        let mut file = Vec::with_capacity(data_offset + data.len());
+        let mut file = Vec::with_capacity(end);
         file.extend_from_slice(&header.as_bytes());
         for level in index.iter().rev() {
             file.extend_from_slice(&level.as_bytes());
         }
         file.extend_from_slice(&descriptor);
         file.extend_from_slice(&key_values);
-        file.extend_from_slice(&data);
+        // Freed one by one: a level of 16384^2 has 268 MB.
+        for (stored, level) in stored.into_iter().rev().zip(&index) {
+            file.resize(level.byte_offset as usize, 0);
+            file.extend_from_slice(&stored);
+        }
         file
     }
 }

@@ -1,5 +1,7 @@
 //! A block of one given mode, fitted to its texels.
 
+use fearless_simd::Simd;
+
 use super::line::{Line, fit};
 use super::moments::{ALL, Lane, Moments, moments, part, principal_axis, scatter_along};
 use super::pack::Block;
@@ -47,6 +49,7 @@ fn empty(mode: &'static Mode) -> Block {
 
 impl Block {
     /// Takes over a line whose channel `k` is channel `channels[k]` of the block.
+    #[inline(always)]
     pub(super) fn place<const N: usize>(
         &mut self,
         line: &Line<N>,
@@ -69,7 +72,9 @@ impl Block {
 }
 
 /// A block of one line through the first `N` channels; `BITS` are the weight bits of `mode`, here and below.
-pub(super) fn one_line<const N: usize, const BITS: u32>(
+#[inline(always)]
+pub(super) fn one_line<I: Simd, const N: usize, const BITS: u32>(
+    simd: I,
     texels: &[Lane; N],
     all: &Moments<N>,
     axis: &[f32; N],
@@ -77,14 +82,21 @@ pub(super) fn one_line<const N: usize, const BITS: u32>(
     mode: &'static Mode,
     rounds: usize,
 ) -> Block {
-    let mut block = empty(mode);
-    let line = fit::<N, BITS>(texels, &ALL, all, axis, scale, mode.range, rounds);
-    block.place(&line, std::array::from_fn(|c| c), 0, 0, 0xffff);
-    block
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            let mut block = empty(mode);
+            let line = fit::<N, BITS>(texels, &ALL, all, axis, scale, mode.range, rounds);
+            block.place(&line, std::array::from_fn(|c| c), 0, 0, 0xffff);
+            block
+        },
+    )
 }
 
 /// A block whose channel `selector` has a line of its own beside that of the other channels.
-pub(super) fn two_planes<const N: usize, const BITS: u32>(
+#[inline(always)]
+pub(super) fn two_planes<I: Simd, const N: usize, const BITS: u32>(
+    simd: I,
     texels: &[Lane; N],
     all: &Moments<N>,
     selector: usize,
@@ -92,35 +104,41 @@ pub(super) fn two_planes<const N: usize, const BITS: u32>(
     mode: &'static Mode,
     rounds: usize,
 ) -> Block {
-    let mut block = empty(mode);
-    block.selector = selector;
-    let alone = fit::<1, BITS>(
-        &[texels[selector]],
-        &ALL,
-        &part(all, [selector]),
-        &[1.0],
-        &[scale[selector]],
-        mode.range,
-        rounds,
-    );
-    block.place(&alone, [selector], 0, 1, 0xffff);
-    if N == 2 {
-        let channels = [1 - selector];
-        let line = together::<N, 1, BITS>(texels, all, channels, scale, mode, rounds);
-        block.place(&line, channels, 0, 0, 0xffff);
-    } else if N == 3 {
-        let channels = rest(selector);
-        let line = together::<N, 2, BITS>(texels, all, channels, scale, mode, rounds);
-        block.place(&line, channels, 0, 0, 0xffff);
-    } else {
-        let channels = [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]][selector];
-        let line = together::<N, 3, BITS>(texels, all, channels, scale, mode, rounds);
-        block.place(&line, channels, 0, 0, 0xffff);
-    }
-    block
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            let mut block = empty(mode);
+            block.selector = selector;
+            let alone = fit::<1, BITS>(
+                &[texels[selector]],
+                &ALL,
+                &part(all, [selector]),
+                &[1.0],
+                &[scale[selector]],
+                mode.range,
+                rounds,
+            );
+            block.place(&alone, [selector], 0, 1, 0xffff);
+            if N == 2 {
+                let channels = [1 - selector];
+                let line = together::<N, 1, BITS>(texels, all, channels, scale, mode, rounds);
+                block.place(&line, channels, 0, 0, 0xffff);
+            } else if N == 3 {
+                let channels = rest(selector);
+                let line = together::<N, 2, BITS>(texels, all, channels, scale, mode, rounds);
+                block.place(&line, channels, 0, 0, 0xffff);
+            } else {
+                let channels = [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]][selector];
+                let line = together::<N, 3, BITS>(texels, all, channels, scale, mode, rounds);
+                block.place(&line, channels, 0, 0, 0xffff);
+            }
+            block
+        },
+    )
 }
 
 /// The line of the plane that holds all channels but one.
+#[inline(always)]
 fn together<const N: usize, const M: usize, const BITS: u32>(
     texels: &[Lane; N],
     all: &Moments<N>,
@@ -145,6 +163,7 @@ pub(super) struct Split<const N: usize, const S: usize> {
 
 impl<const N: usize> Split<N, 2> {
     /// Split by one of the two-subset patterns.
+    #[inline(always)]
     pub fn in_two(texels: &[Lane; N], pattern: usize) -> Self {
         Self::new(texels, pattern, &SUBSETS[pattern])
     }
@@ -152,12 +171,14 @@ impl<const N: usize> Split<N, 2> {
 
 impl<const N: usize> Split<N, 3> {
     /// Split by each of the three-subset patterns.
+    #[inline(always)]
     pub fn in_three(texels: &[Lane; N]) -> [Self; THIRDS.len()] {
         std::array::from_fn(|pattern| Self::new(texels, pattern, &THREE_SUBSETS[pattern]))
     }
 }
 
 impl<const N: usize, const S: usize> Split<N, S> {
+    #[inline(always)]
     fn new(texels: &[Lane; N], pattern: usize, masks: &'static [Lane; S]) -> Self {
         let moments = masks.each_ref().map(|mask| moments(texels, mask));
         let axes = moments.each_ref().map(|m| principal_axis(&m.scatter));
@@ -165,6 +186,7 @@ impl<const N: usize, const S: usize> Split<N, S> {
     }
 
     /// Scatter off the axes of the subsets, which stays as error, and scatter along them.
+    #[inline(always)]
     pub fn scatter(&self) -> (f32, f32) {
         let [mut off, mut along] = [0.0; 2];
         for (m, axis) in self.moments.iter().zip(&self.axes) {
@@ -178,19 +200,26 @@ impl<const N: usize, const S: usize> Split<N, S> {
 }
 
 /// A block of a line for each subset.
-pub(super) fn split_lines<const N: usize, const S: usize, const BITS: u32>(
+#[inline(always)]
+pub(super) fn split_lines<I: Simd, const N: usize, const S: usize, const BITS: u32>(
+    simd: I,
     texels: &[Lane; N],
     split: &Split<N, S>,
     scale: &[f32; N],
     mode: &'static Mode,
     rounds: usize,
 ) -> Block {
-    let mut block = empty(mode);
-    block.pattern = split.pattern;
-    for (subset, mask) in split.masks.iter().enumerate() {
-        let (m, axis) = (&split.moments[subset], &split.axes[subset]);
-        let line = fit::<N, BITS>(texels, mask, m, axis, scale, mode.range, rounds);
-        block.place(&line, std::array::from_fn(|c| c), subset, 0, block.members(subset));
-    }
-    block
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            let mut block = empty(mode);
+            block.pattern = split.pattern;
+            for (subset, mask) in split.masks.iter().enumerate() {
+                let (m, axis) = (&split.moments[subset], &split.axes[subset]);
+                let line = fit::<N, BITS>(texels, mask, m, axis, scale, mode.range, rounds);
+                block.place(&line, std::array::from_fn(|c| c), subset, 0, block.members(subset));
+            }
+            block
+        },
+    )
 }

@@ -8,10 +8,13 @@
 
 #![expect(clippy::needless_range_loop, reason = "lane loops read several arrays at one index")]
 
+use fearless_simd::{Select, Simd, SimdBase, prelude::*};
+
 use super::line::{ROUND, decode, quantise, ramp};
 use super::moments::{Lane, sum};
 use super::pack::Block;
 use super::tables::Range;
+use crate::simd::{LANES, Real, Wide};
 
 /// Unit normals of a block, in units of [`UNIT`].
 pub(super) type Normals = [Lane; 3];
@@ -29,6 +32,7 @@ pub(super) const SHORT: f32 = 0.4;
 pub(super) const LONG: f32 = 0.1;
 
 /// The normals that `texels` stand for.
+#[inline(always)]
 pub(super) fn normals(texels: &[Lane; 3]) -> Normals {
     let mut normals = [[0.0; 16]; 3];
     for i in 0..16 {
@@ -40,14 +44,14 @@ pub(super) fn normals(texels: &[Lane; 3]) -> Normals {
     normals
 }
 
-/// The vectors that all weights give between two endpoints.
-struct Palette<const P: usize> {
+/// The vectors that all weights give between two endpoints, of which there are 32 at most.
+struct Palette {
     /// As decoded.
-    vectors: [[f32; P]; 3],
+    vectors: [[f32; 32]; 3],
     /// Mean of the directions as read and as rebuilt.
-    directions: [[f32; P]; 3],
+    directions: [[f32; 32]; 3],
     /// Part of the error that does not depend on the normal.
-    loss: [f32; P],
+    loss: [f32; 32],
 }
 
 /// Endpoints per channel of one subset: low, high.
@@ -84,61 +88,62 @@ impl<const P: usize, const BITS: u32> Subset<'_, P, BITS> {
     }
 
     #[inline(always)]
-    fn palette(&self, ends: &Ends) -> Palette<P> {
-        let mut vectors = [[0.0; P]; 3];
-        for c in 0..3 {
-            let [low, high] = ends[c].map(f32::from);
-            let shift = self.shift(c);
-            for e in 0..P {
-                let weight = ramp::<BITS>((e as u32 >> shift & Self::LAST) as i32) as f32;
-                vectors[c][e] = decode(low, high - low, weight) - UNIT;
+    fn palette<S: Simd>(&self, simd: S, ends: &Ends) -> Palette {
+        let mut palette = Palette { vectors: [[0.0; 32]; 3], directions: [[0.0; 32]; 3], loss: [0.0; 32] };
+        for first in (0..P).step_by(LANES) {
+            let mut vector = [Wide::splat(simd, 0.0); 3];
+            for c in 0..3 {
+                let [low, high] = ends[c].map(f32::from);
+                let shift = self.shift(c);
+                let mut weights = [0.0; LANES];
+                for j in 0..LANES {
+                    weights[j] = ramp::<BITS>(((first + j) as u32 >> shift & Self::LAST) as i32) as f32;
+                }
+                let (low, step) = (Wide::splat(simd, low), Wide::splat(simd, high - low));
+                vector[c] = decode(low, step, Wide::simd_from(simd, weights)) - UNIT;
+                palette.vectors[c][first..first + LANES].copy_from_slice(&*vector[c]);
             }
-        }
-        let mut palette = Palette { vectors, directions: [[0.0; P]; 3], loss: [0.0; P] };
-        for e in 0..P {
-            let [x, y, z] = [vectors[0][e], vectors[1][e], vectors[2][e]];
+            let [x, y, z] = vector;
             let flat = x * x + y * y;
-            let length = (flat + z * z).sqrt();
-            let scale = UNIT / length;
-            let rest = UNIT * UNIT - flat;
-            let rebuilt = (if rest > 0.0 { rest } else { 0.0 }).sqrt();
-            let mut loss = (if length < UNIT { SHORT } else { LONG }) * (length - UNIT) * (length - UNIT);
+            let length = Real::sqrt(flat + z * z);
+            let scale = Wide::splat(simd, UNIT) / length;
+            let rebuilt = Real::sqrt(Real::max(Wide::splat(simd, UNIT * UNIT) - flat, Wide::splat(simd, 0.0)));
+            let stay = length.simd_lt(UNIT).select(Wide::splat(simd, SHORT), Wide::splat(simd, LONG));
+            let mut loss = stay * (length - UNIT) * (length - UNIT);
             // (1 - r) |u - n|^2 + r |v - n|^2 = |w - n|^2 + r (1 - r) |u - v|^2 with w = (1 - r) u + r v.
             for (c, (read, rebuilt)) in [(x, x), (y, y), (z, rebuilt)].into_iter().enumerate() {
                 let u = read * scale;
-                palette.directions[c][e] = (1.0 - REBUILT) * u + REBUILT * rebuilt;
-                loss += REBUILT * (1.0 - REBUILT) * (u - rebuilt) * (u - rebuilt);
+                let direction = u * (1.0 - REBUILT) + rebuilt * REBUILT;
+                palette.directions[c][first..first + LANES].copy_from_slice(&*direction);
+                loss += (u - rebuilt) * (REBUILT * (1.0 - REBUILT)) * (u - rebuilt);
             }
-            palette.loss[e] = loss;
+            palette.loss[first..first + LANES].copy_from_slice(&*loss);
         }
         palette
     }
 
     /// The nearest entry of every texel.
     #[inline(always)]
-    fn choose(&self, ends: &Ends) -> Fit {
-        let palette = self.palette(ends);
+    fn choose<S: Simd>(&self, simd: S, ends: &Ends) -> Fit {
+        let palette = self.palette(simd, ends);
         let (mut entries, mut errors) = ([0; 16], [0.0; 16]);
-        // Four texels at a time, so that least errors stay in registers: four times as fast.
-        for k in 0..4 {
-            let lane = |c: usize| -> [f32; 4] { std::array::from_fn(|j| self.normals[c][4 * k + j]) };
-            let [x, y, z] = [lane(0), lane(1), lane(2)];
-            let mut least = [f32::INFINITY; 4];
-            let mut at = [0.0; 4];
+        // Eight texels at a time, so that least errors stay in registers.
+        for k in 0..16 / LANES {
+            let [x, y, z] = self.normals.each_ref().map(|n| n.as_chunks::<LANES>().0[k]);
+            let (x, y, z) = (Wide::simd_from(simd, x), Wide::simd_from(simd, y), Wide::simd_from(simd, z));
+            let (mut least, mut at) = (Wide::splat(simd, f32::INFINITY), Wide::splat(simd, 0.0));
             for e in 0..P {
                 let [u, v, w] = [palette.directions[0][e], palette.directions[1][e], palette.directions[2][e]];
-                let (loss, entry) = (palette.loss[e], e as f32);
-                for j in 0..4 {
-                    let (a, b, c) = (x[j] - u, y[j] - v, z[j] - w);
-                    let error = loss + a * a + b * b + c * c;
-                    let is_nearer = error < least[j];
-                    least[j] = if is_nearer { error } else { least[j] };
-                    at[j] = if is_nearer { entry } else { at[j] };
-                }
+                let (a, b, c) = (x - u, y - v, z - w);
+                let error = a * a + palette.loss[e] + b * b + c * c;
+                let is_nearer = error.simd_lt(least);
+                least = is_nearer.select(error, least);
+                at = is_nearer.select(Wide::splat(simd, e as f32), at);
             }
-            for j in 0..4 {
-                entries[4 * k + j] = (at[j] + ROUND).to_bits() & 31;
-                errors[4 * k + j] = least[j];
+            let (least, at): ([f32; LANES], [f32; LANES]) = (least.into(), at.into());
+            for j in 0..LANES {
+                entries[LANES * k + j] = (at[j] + ROUND).to_bits() & 31;
+                errors[LANES * k + j] = least[j];
             }
         }
         let vectors = palette.vectors.map(|v| entries.map(|e| v[e as usize % P]));
@@ -186,13 +191,13 @@ impl<const P: usize, const BITS: u32> Subset<'_, P, BITS> {
 
     /// Regression on `entries`, then in turns with choice as long as that helps; `ends` as they are without a round.
     #[inline(always)]
-    fn refine(&self, ends: &Ends, entries: &[u32; 16], rounds: usize) -> Fit {
+    fn refine<S: Simd>(&self, simd: S, ends: &Ends, entries: &[u32; 16], rounds: usize) -> Fit {
         if rounds == 0 {
-            return self.choose(ends);
+            return self.choose(simd, ends);
         }
-        let mut best = self.choose(&self.regress(self.normals, entries));
+        let mut best = self.choose(simd, &self.regress(self.normals, entries));
         for _ in 1..rounds {
-            let next = self.choose(&self.regress(&self.targets(&best), &best.entries));
+            let next = self.choose(simd, &self.regress(&self.targets(&best), &best.entries));
             if next.error >= best.error {
                 break;
             }
@@ -202,14 +207,15 @@ impl<const P: usize, const BITS: u32> Subset<'_, P, BITS> {
     }
 
     /// Moves single endpoints to neighbouring levels as long as that helps.
-    fn polish(&self, mut best: Fit, passes: usize) -> Fit {
+    #[inline(always)]
+    fn polish<S: Simd>(&self, simd: S, mut best: Fit, passes: usize) -> Fit {
         for _ in 0..passes {
             let before = best.error;
             for k in 0..12 {
                 let mut ends = best.ends;
                 let end = &mut ends[k / 4][k % 2];
                 *end = self.range.neighbour(*end, k % 4 < 2);
-                let next = self.choose(&ends);
+                let next = self.choose(simd, &ends);
                 if next.error < best.error {
                     best = next;
                 }
@@ -226,40 +232,53 @@ impl Block {
     /// Fits the block to `normals` by direction: endpoints by `rounds` of regression, which starts from the weights that
     /// the block has (0 leaves them), then by `passes` over single endpoints; and the best weights for them. The error
     /// becomes that of the directions.
-    pub(super) fn aim(&mut self, normals: &Normals, rounds: usize, passes: usize) {
+    #[inline(always)]
+    pub(super) fn aim<S: Simd>(&mut self, simd: S, normals: &Normals, rounds: usize, passes: usize) {
         match (self.mode.planes, self.mode.weight_bits) {
-            (2, _) => self.aim_in::<16, 2>(normals, rounds, passes),
-            (_, 2) => self.aim_in::<4, 2>(normals, rounds, passes),
-            (_, 3) => self.aim_in::<8, 3>(normals, rounds, passes),
-            (_, 4) => self.aim_in::<16, 4>(normals, rounds, passes),
-            _ => self.aim_in::<32, 5>(normals, rounds, passes),
+            (2, _) => self.aim_in::<_, 16, 2>(simd, normals, rounds, passes),
+            (_, 2) => self.aim_in::<_, 4, 2>(simd, normals, rounds, passes),
+            (_, 3) => self.aim_in::<_, 8, 3>(simd, normals, rounds, passes),
+            (_, 4) => self.aim_in::<_, 16, 4>(simd, normals, rounds, passes),
+            _ => self.aim_in::<_, 32, 5>(simd, normals, rounds, passes),
         }
     }
 
-    fn aim_in<const P: usize, const BITS: u32>(&mut self, normals: &Normals, rounds: usize, passes: usize) {
-        self.error = 0.0;
-        let alone = (self.mode.planes == 2).then_some(self.selector);
-        let mut entries = [0; 16];
-        for i in 0..16 {
-            entries[i] = u32::from(self.weights[0][i]);
-            if alone.is_some() {
-                entries[i] |= u32::from(self.weights[1][i]) << BITS;
-            }
-        }
-        for subset in 0..self.mode.subsets {
-            let members = self.members(subset);
-            let mask = std::array::from_fn(|i| f32::from(members >> i & 1));
-            let part = Subset::<P, BITS> { range: self.mode.range, alone, normals, mask };
-            let ends = [0, 1, 2].map(|c| self.endpoints[subset][c]);
-            let fit = part.polish(part.refine(&ends, &entries, rounds), passes);
-            self.error += fit.error;
-            self.endpoints[subset][..3].copy_from_slice(&fit.ends);
-            for i in 0..16 {
-                if members >> i & 1 == 1 {
-                    self.weights[0][i] = (fit.entries[i] & ((1 << BITS) - 1)) as u8;
-                    self.weights[1][i] = (fit.entries[i] >> BITS) as u8;
+    #[inline(always)]
+    fn aim_in<S: Simd, const P: usize, const BITS: u32>(
+        &mut self,
+        simd: S,
+        normals: &Normals,
+        rounds: usize,
+        passes: usize,
+    ) {
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                self.error = 0.0;
+                let alone = (self.mode.planes == 2).then_some(self.selector);
+                let mut entries = [0; 16];
+                for i in 0..16 {
+                    entries[i] = u32::from(self.weights[0][i]);
+                    if alone.is_some() {
+                        entries[i] |= u32::from(self.weights[1][i]) << BITS;
+                    }
                 }
-            }
-        }
+                for subset in 0..self.mode.subsets {
+                    let members = self.members(subset);
+                    let mask = std::array::from_fn(|i| f32::from(members >> i & 1));
+                    let part = Subset::<P, BITS> { range: self.mode.range, alone, normals, mask };
+                    let ends = [0, 1, 2].map(|c| self.endpoints[subset][c]);
+                    let fit = part.polish(simd, part.refine(simd, &ends, &entries, rounds), passes);
+                    self.error += fit.error;
+                    self.endpoints[subset][..3].copy_from_slice(&fit.ends);
+                    for i in 0..16 {
+                        if members >> i & 1 == 1 {
+                            self.weights[0][i] = (fit.entries[i] & ((1 << BITS) - 1)) as u8;
+                            self.weights[1][i] = (fit.entries[i] >> BITS) as u8;
+                        }
+                    }
+                }
+            },
+        );
     }
 }

@@ -8,6 +8,7 @@
 
 use super::moments::{Lane, Moments, sum};
 use super::tables::Range;
+use crate::simd::Real;
 
 /// 1.5 * 2^23: adding and subtracting it rounds a number of less than 2^22 to the nearest integer,
 /// and the low bits of the sum are that integer. (`round` takes a call on baseline x86-64.)
@@ -49,10 +50,11 @@ pub(super) fn ramp<const BITS: u32>(index: i32) -> i32 {
 /// A decoded level: `astc` interpolation of 8-bit endpoints at a weight of 0..=64, that is
 /// floor((257 (64 low + (high - low) weight) + 32) / 2^14), in exact `f32` steps.
 #[inline(always)]
-pub(super) fn decode(low: f32, step: f32, weight: f32) -> f32 {
-    let v = ((low * 64.0 + step * weight) * 257.0 + 32.0) * (1.0 / 16384.0);
+pub(super) fn decode<F: Real>(low: F, step: F, weight: F) -> F {
+    let like = |value| low.like(value);
+    let v = ((low * like(64.0) + step * weight) * like(257.0) + like(32.0)) * like(1.0 / 16384.0);
     // v is a multiple of 2^-14: shifting by 1/2 - 2^-15 makes rounding a floor without ties.
-    (v - (0.5 - 1.0 / 32768.0) + ROUND) - ROUND
+    (v - like(0.5 - 1.0 / 32768.0) + like(ROUND)) - like(ROUND)
 }
 
 /// Nearest weight indices of `texels` on the line from `low` to `high`.

@@ -23,6 +23,7 @@ mod tables;
 #[cfg(test)]
 mod tests;
 
+use fearless_simd::{Level, Simd, dispatch};
 use hints::{Hints, solid_etc1};
 use pack::{Block, pack_solid};
 use rayon::prelude::*;
@@ -72,14 +73,17 @@ pub fn encode_level(texels: &[u8], width: u32, height: u32, metric: Metric, effo
     let (width, height) = (width as usize, height as usize);
     let row_bytes = width.div_ceil(4) * BLOCK_BYTES;
     let mut blocks = vec![0; row_bytes * height.div_ceil(4)];
+    let instructions = Level::new();
     blocks.par_chunks_exact_mut(row_bytes).enumerate().for_each(|(row, out)| {
         let lines: [&[u8]; 4] = std::array::from_fn(|y| {
             let at = (row * 4 + y).min(height - 1) * width * 4;
             &texels[at..at + width * 4]
         });
-        for (column, out) in out.as_chunks_mut::<BLOCK_BYTES>().0.iter_mut().enumerate() {
-            *out = encode_block(&gather(&lines, column * 4), metric, effort);
-        }
+        dispatch!(instructions, simd => {
+            for (column, out) in out.as_chunks_mut::<BLOCK_BYTES>().0.iter_mut().enumerate() {
+                *out = encode_with(simd, &gather(&lines, column * 4), metric, effort);
+            }
+        });
     });
     blocks
 }
@@ -94,23 +98,32 @@ fn gather(lines: &[&[u8]; 4], left: usize) -> [[u8; 4]; 16] {
 
 /// Encodes one block of 4x4 RGBA8 texels, row 0 first.
 pub fn encode_block(texels: &[[u8; 4]; 16], metric: Metric, effort: Effort) -> [u8; BLOCK_BYTES] {
+    dispatch!(Level::new(), simd => encode_with(simd, texels, metric, effort))
+}
+
+/// The encoder's loops over sixteen texels are compiled for every instruction set; their order of operations, and so
+/// the bytes, are the same.
+#[inline(always)]
+fn encode_with<S: Simd>(simd: S, texels: &[[u8; 4]; 16], metric: Metric, effort: Effort) -> [u8; BLOCK_BYTES] {
     let opaque = match metric {
         Metric::Rgb | Metric::Surface | Metric::Direction => true,
         Metric::Rgba => texels.iter().all(|t| t[3] == 255),
     };
     if opaque {
         let texels = texels.map(|[r, g, b, _]| [r, g, b, 255]);
-        solid(&texels).unwrap_or_else(|| {
-            let block = search(&texels, metric, true, effort);
-            let hints = Hints::of(&texels, block.mode);
-            block.pack(&hints)
-        })
+        if let Some(block) = solid(&texels) {
+            return block;
+        }
+        let block = search(simd, &texels, metric, true, effort);
+        let hints = Hints::of(&texels, block.mode);
+        block.pack(&hints)
     } else {
-        solid(texels).unwrap_or_else(|| {
-            let block = search(texels, metric, false, effort);
-            let hints = Hints::of(texels, block.mode);
-            block.pack(&hints)
-        })
+        if let Some(block) = solid(texels) {
+            return block;
+        }
+        let block = search(simd, texels, metric, false, effort);
+        let hints = Hints::of(texels, block.mode);
+        block.pack(&hints)
     }
 }
 
@@ -118,7 +131,8 @@ fn solid(texels: &[[u8; 4]; 16]) -> Option<[u8; BLOCK_BYTES]> {
     texels.iter().all(|t| *t == texels[0]).then(|| pack_solid(texels[0], solid_etc1(texels[0])))
 }
 
-fn search(texels: &[[u8; 4]; 16], metric: Metric, opaque: bool, effort: Effort) -> Block {
+#[inline(always)]
+fn search<S: Simd>(simd: S, texels: &[[u8; 4]; 16], metric: Metric, opaque: bool, effort: Effort) -> Block {
     // Shifts of whole texels, because loads of single bytes do not vectorise.
     let channel = |c: usize| {
         let mut lane = [0.0; 16];
@@ -132,13 +146,13 @@ fn search(texels: &[[u8; 4]; 16], metric: Metric, opaque: bool, effort: Effort) 
     let scale: [f32; 3] = if metric == Metric::Surface { [0.25, 1.0, 0.25] } else { [1.0; 3] };
     let scaled = || std::array::from_fn(|c| rgb[c].map(|level| level * scale[c]));
     match (metric, opaque, effort) {
-        (Metric::Direction, _, Effort::Fast) => normals::fast(&rgb),
-        (Metric::Direction, _, Effort::Best) => normals::best(&rgb),
-        (_, true, Effort::Fast) => search::fast_rgb(&scaled(), &scale),
-        (_, true, Effort::Best) => search::best_rgb(&scaled(), &scale),
+        (Metric::Direction, _, Effort::Fast) => normals::fast(simd, &rgb),
+        (Metric::Direction, _, Effort::Best) => normals::best(simd, &rgb),
+        (_, true, Effort::Fast) => search::fast_rgb(simd, &scaled(), &scale),
+        (_, true, Effort::Best) => search::best_rgb(simd, &scaled(), &scale),
         (_, false, effort) => {
             let [r, g, b] = rgb;
-            search::rgba(&[r, g, b, channel(3)], effort == Effort::Best)
+            search::rgba(simd, &[r, g, b, channel(3)], effort == Effort::Best)
         }
     }
 }

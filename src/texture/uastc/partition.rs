@@ -5,19 +5,19 @@
 use super::moments::{Lane, Moments, principal_axis, scatter_along};
 use super::tables::PATTERNS;
 
-/// Patterns by fours in the ranking's inner loop, with room for two that do not exist.
-const GROUPS: usize = 8;
+/// Patterns by eights in the ranking's inner loop, with room for two that do not exist.
+const GROUPS: usize = 4;
 
 /// 1 where a texel belongs to subset 1 of a pattern, per group of patterns and texel.
-static MEMBERS: [[[f32; 4]; 16]; GROUPS] = members();
+static MEMBERS: [[[f32; 8]; 16]; GROUPS] = members();
 
-const fn members() -> [[[f32; 4]; 16]; GROUPS] {
-    let mut members = [[[0.0; 4]; 16]; GROUPS];
+const fn members() -> [[[f32; 8]; 16]; GROUPS] {
+    let mut members = [[[0.0; 8]; 16]; GROUPS];
     let mut pattern = 0;
     while pattern < PATTERNS.len() {
         let mut i = 0;
         while i < 16 {
-            members[pattern / 4][i][pattern % 4] = (PATTERNS[pattern] >> i & 1) as f32;
+            members[pattern / 8][i][pattern % 8] = (PATTERNS[pattern] >> i & 1) as f32;
             i += 1;
         }
         pattern += 1;
@@ -85,7 +85,7 @@ fn place<const N: usize>(texels: &[Lane; N], all: &Moments<N>, axis: &[f32; N]) 
 
 /// Error to expect of every pattern for texels at (u, v), whose mean is 0.
 #[inline(always)]
-fn expected_errors(u: &Lane, v: &Lane) -> [[f32; 4]; GROUPS] {
+fn expected_errors(u: &Lane, v: &Lane) -> [[f32; 8]; GROUPS] {
     let mut features = [[0.0; 5]; 16];
     let mut total = [0.0; 5];
     for i in 0..16 {
@@ -94,20 +94,20 @@ fn expected_errors(u: &Lane, v: &Lane) -> [[f32; 4]; GROUPS] {
             total[f] += features[i][f];
         }
     }
-    let mut errors = [[0.0; 4]; GROUPS];
+    let mut errors = [[0.0; 8]; GROUPS];
     for (members, errors) in MEMBERS.iter().zip(&mut errors) {
         // Count, sums and products over subset 1; subset 0 is the rest.
-        let mut count = [0.0; 4];
-        let mut sums = [[0.0; 4]; 5];
+        let mut count = [0.0; 8];
+        let mut sums = [[0.0; 8]; 5];
         for i in 0..16 {
-            for j in 0..4 {
+            for j in 0..8 {
                 count[j] += members[i][j];
                 for f in 0..5 {
                     sums[f][j] += members[i][j] * features[i][f];
                 }
             }
         }
-        for j in 0..4 {
+        for j in 0..8 {
             let one = sums.map(|s| s[j]);
             let mut zero = total;
             for f in 0..5 {

@@ -3,6 +3,8 @@
 //! Regression finds the best endpoints before they are quantised; the best quantised ones lie near
 //! by. On normal maps this lowers the angular error by 4 to 7 %, at a tenth of the time.
 
+use fearless_simd::Simd;
+
 use super::candidate::{SUBSETS, rest};
 use super::line::{Line, settle};
 use super::moments::{ALL, Lane};
@@ -11,15 +13,19 @@ use super::tables::Range;
 
 impl Block {
     /// Polishes the endpoints of an opaque block.
-    pub(super) fn polish(&mut self, texels: &[Lane; 3], scale: &[f32; 3], passes: usize) {
-        match self.mode.weight_bits {
-            2 => self.polish_lines::<2>(texels, scale, passes),
-            3 => self.polish_lines::<3>(texels, scale, passes),
-            4 => self.polish_lines::<4>(texels, scale, passes),
-            _ => self.polish_lines::<5>(texels, scale, passes),
-        }
+    pub(super) fn polish<S: Simd>(&mut self, simd: S, texels: &[Lane; 3], scale: &[f32; 3], passes: usize) {
+        simd.vectorize(
+            #[inline(always)]
+            || match self.mode.weight_bits {
+                2 => self.polish_lines::<2>(texels, scale, passes),
+                3 => self.polish_lines::<3>(texels, scale, passes),
+                4 => self.polish_lines::<4>(texels, scale, passes),
+                _ => self.polish_lines::<5>(texels, scale, passes),
+            },
+        );
     }
 
+    #[inline(always)]
     fn polish_lines<const BITS: u32>(&mut self, texels: &[Lane; 3], scale: &[f32; 3], passes: usize) {
         self.error = 0.0;
         if self.mode.planes == 2 {
@@ -36,6 +42,7 @@ impl Block {
         }
     }
 
+    #[inline(always)]
     fn polish_line<const N: usize, const BITS: u32>(
         &mut self,
         (texels, scale): (&[Lane; 3], &[f32; 3]),
@@ -52,6 +59,7 @@ impl Block {
 }
 
 /// Moves single endpoints of a fitted line to neighbouring levels as long as that helps.
+#[inline(always)]
 fn polish<const N: usize, const BITS: u32>(
     texels: &[Lane; N],
     subset: &Lane,

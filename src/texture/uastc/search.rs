@@ -4,6 +4,8 @@
 //! that pay; `fast_rgb` first estimates errors from the moments of the colours and fits only what
 //! can win: on 83,000 blocks of eighteen real maps the gates below cost 0.03 dB.
 
+use fearless_simd::Simd;
+
 use super::candidate::{Split, one_line, rest, split_lines, two_planes};
 use super::moments::{ALL, Lane, Moments, moments, principal_axis, scatter_along};
 use super::pack::Block;
@@ -27,41 +29,43 @@ impl Winner {
 }
 
 /// The best block found for opaque `texels`, whose channels have `scale` per level.
-pub(super) fn best_rgb(texels: &[Lane; 3], scale: &[f32; 3]) -> Block {
+#[inline(always)]
+pub(super) fn best_rgb<S: Simd>(simd: S, texels: &[Lane; 3], scale: &[f32; 3]) -> Block {
     let all = moments(texels, &ALL);
     let axis = principal_axis(&all.scatter);
-    let mut winner = Winner(one_line::<3, 4>(texels, &all, &axis, scale, &MODE_0, ROUNDS));
+    let mut winner = Winner(one_line::<_, 3, 4>(simd, texels, &all, &axis, scale, &MODE_0, ROUNDS));
     // Many weights serve long lines, exact endpoints short ones.
     let along = scatter_along(&all.scatter, &axis);
     if along > 400.0 {
-        winner.offer(one_line::<3, 5>(texels, &all, &axis, scale, &MODE_18, ROUNDS));
+        winner.offer(one_line::<_, 3, 5>(simd, texels, &all, &axis, scale, &MODE_18, ROUNDS));
     }
     if along < 3000.0 {
-        winner.offer(one_line::<3, 3>(texels, &all, &axis, scale, &MODE_5, ROUNDS));
+        winner.offer(one_line::<_, 3, 3>(simd, texels, &all, &axis, scale, &MODE_5, ROUNDS));
     }
     if along < 200.0 {
-        winner.offer(one_line::<3, 2>(texels, &all, &axis, scale, &MODE_1, ROUNDS));
+        winner.offer(one_line::<_, 3, 2>(simd, texels, &all, &axis, scale, &MODE_1, ROUNDS));
     }
     for selector in 0..3 {
-        winner.offer(two_planes::<3, 2>(texels, &all, selector, scale, &MODE_6, ROUNDS));
+        winner.offer(two_planes::<_, 3, 2>(simd, texels, &all, selector, scale, &MODE_6, ROUNDS));
     }
     for pattern in likely_patterns::<3, 2>(texels, &all, &axis) {
         let split = Split::in_two(texels, pattern);
         if split.scatter().0 > winner.0.error {
             continue;
         }
-        winner.offer(split_lines::<3, 2, 2>(texels, &split, scale, &MODE_4, ROUNDS));
+        winner.offer(split_lines::<_, 3, 2, 2>(simd, texels, &split, scale, &MODE_4, ROUNDS));
         // Sixteen levels an endpoint are too coarse for less.
         if winner.0.error > 150.0 {
-            winner.offer(split_lines::<3, 2, 3>(texels, &split, scale, &MODE_2, ROUNDS));
+            winner.offer(split_lines::<_, 3, 2, 3>(simd, texels, &split, scale, &MODE_2, ROUNDS));
         }
     }
-    winner.0.polish(texels, scale, 2);
+    winner.0.polish(simd, texels, scale, 2);
     winner.0
 }
 
 /// A quickly found block for opaque `texels`, whose channels have `scale` per level.
-pub(super) fn fast_rgb(texels: &[Lane; 3], scale: &[f32; 3]) -> Block {
+#[inline(always)]
+pub(super) fn fast_rgb<S: Simd>(simd: S, texels: &[Lane; 3], scale: &[f32; 3]) -> Block {
     /// Estimates are right within a factor of 2 for 90 % of blocks.
     const DOUBT: f32 = 2.0;
     /// Below this error of a block (1 per texel and channel) a second subset hardly ever wins.
@@ -77,15 +81,15 @@ pub(super) fn fast_rgb(texels: &[Lane; 3], scale: &[f32; 3]) -> Block {
     let line = || {
         if along < 300.0 {
             // Short lines gain more from exact endpoints than from sixteen weights,
-            one_line::<3, 3>(texels, &all, &axis, scale, &MODE_5, ROUNDS)
+            one_line::<_, 3, 3>(simd, texels, &all, &axis, scale, &MODE_5, ROUNDS)
         } else if along > 25000.0 && off < 0.02 * along {
             // and long ones more from 32 weights: 4 dB on a grey map.
-            one_line::<3, 5>(texels, &all, &axis, scale, &MODE_18, ROUNDS)
+            one_line::<_, 3, 5>(simd, texels, &all, &axis, scale, &MODE_18, ROUNDS)
         } else {
-            one_line::<3, 4>(texels, &all, &axis, scale, &MODE_0, ROUNDS)
+            one_line::<_, 3, 4>(simd, texels, &all, &axis, scale, &MODE_0, ROUNDS)
         }
     };
-    let planes = || two_planes::<3, 2>(texels, &all, selector, scale, &MODE_6, ROUNDS);
+    let planes = || two_planes::<_, 3, 2>(simd, texels, &all, selector, scale, &MODE_6, ROUNDS);
     let mut winner = if planes_estimate < line_estimate {
         let mut winner = Winner(planes());
         if line_estimate < DOUBT * planes_estimate {
@@ -104,13 +108,14 @@ pub(super) fn fast_rgb(texels: &[Lane; 3], scale: &[f32; 3]) -> Block {
         let split = Split::in_two(texels, pattern);
         let (off, along) = split.scatter();
         if off + along / 12.0 < 1.4 * winner.0.error {
-            winner.offer(split_lines::<3, 2, 2>(texels, &split, scale, &MODE_4, ROUNDS));
+            winner.offer(split_lines::<_, 3, 2, 2>(simd, texels, &split, scale, &MODE_4, ROUNDS));
         }
     }
     winner.0
 }
 
 /// The channel that is best given a plane of its own, and the squared error to expect then.
+#[inline(always)]
 fn likely_planes(all: &Moments<3>) -> (usize, f32) {
     let mut least = (0, f32::INFINITY);
     for alone in 0..3 {
@@ -128,21 +133,22 @@ fn likely_planes(all: &Moments<3>) -> (usize, f32) {
 }
 
 /// A block with alpha.
-pub(super) fn rgba(texels: &[Lane; 4], thorough: bool) -> Block {
+#[inline(always)]
+pub(super) fn rgba<S: Simd>(simd: S, texels: &[Lane; 4], thorough: bool) -> Block {
     let rounds = if thorough { 4 } else { 2 };
     let all = moments(texels, &ALL);
     let axis = principal_axis(&all.scatter);
-    let mut winner = Winner(one_line::<4, 4>(texels, &all, &axis, &[1.0; 4], &MODE_10, rounds));
-    winner.offer(one_line::<4, 3>(texels, &all, &axis, &[1.0; 4], &MODE_12, rounds));
-    winner.offer(two_planes::<4, 2>(texels, &all, 3, &[1.0; 4], &MODE_11, rounds));
+    let mut winner = Winner(one_line::<_, 4, 4>(simd, texels, &all, &axis, &[1.0; 4], &MODE_10, rounds));
+    winner.offer(one_line::<_, 4, 3>(simd, texels, &all, &axis, &[1.0; 4], &MODE_12, rounds));
+    winner.offer(two_planes::<_, 4, 2>(simd, texels, &all, 3, &[1.0; 4], &MODE_11, rounds));
     if thorough {
-        winner.offer(one_line::<4, 2>(texels, &all, &axis, &[1.0; 4], &MODE_14, rounds));
+        winner.offer(one_line::<_, 4, 2>(simd, texels, &all, &axis, &[1.0; 4], &MODE_14, rounds));
         for selector in 0..3 {
-            winner.offer(two_planes::<4, 2>(texels, &all, selector, &[1.0; 4], &MODE_11, rounds));
+            winner.offer(two_planes::<_, 4, 2>(simd, texels, &all, selector, &[1.0; 4], &MODE_11, rounds));
         }
         for pattern in likely_patterns::<4, 4>(texels, &all, &axis) {
             let split = Split::in_two(texels, pattern);
-            winner.offer(split_lines::<4, 2, 2>(texels, &split, &[1.0; 4], &MODE_9, rounds));
+            winner.offer(split_lines::<_, 4, 2, 2>(simd, texels, &split, &[1.0; 4], &MODE_9, rounds));
         }
     }
     winner.0

@@ -10,6 +10,7 @@ use super::*;
 use basisu::uastc::bise::{astc_get_levels, unquant_astc_endpoint_val};
 use basisu::uastc::huff_modes::HUFF_MODES;
 use basisu::uastc::patterns::{ASTC_BC7_PATTERNS2, ASTC_BC7_PATTERNS3};
+use fearless_simd::{Level, Simd, dispatch};
 
 pub(super) fn lanes<const N: usize>(texels: &Texels) -> [Lane; N] {
     std::array::from_fn(|c| texels.map(|t| f32::from(t[c])))
@@ -17,40 +18,51 @@ pub(super) fn lanes<const N: usize>(texels: &Texels) -> [Lane; N] {
 
 /// One block of every mode with `N` channels.
 pub(super) fn every_mode<const N: usize>(texels: &Texels) -> Vec<(u8, Block)> {
+    dispatch!(Level::new(), simd => every_mode_with::<_, N>(simd, texels))
+}
+
+fn every_mode_with<S: Simd, const N: usize>(simd: S, texels: &Texels) -> Vec<(u8, Block)> {
     let lanes = lanes::<N>(texels);
     let all = moments(&lanes, &ALL);
     let axis = principal_axis(&all.scatter);
     let mut blocks = Vec::new();
     for rounds in [1, 3] {
         if N == 3 {
-            blocks.push((0, one_line::<N, 4>(&lanes, &all, &axis, &[1.0; N], &MODE_0, rounds)));
-            blocks.push((1, one_line::<N, 2>(&lanes, &all, &axis, &[1.0; N], &MODE_1, rounds)));
-            blocks.push((5, one_line::<N, 3>(&lanes, &all, &axis, &[1.0; N], &MODE_5, rounds)));
-            blocks.push((18, one_line::<N, 5>(&lanes, &all, &axis, &[1.0; N], &MODE_18, rounds)));
+            blocks.push((0, one_line::<_, N, 4>(simd, &lanes, &all, &axis, &[1.0; N], &MODE_0, rounds)));
+            blocks.push((1, one_line::<_, N, 2>(simd, &lanes, &all, &axis, &[1.0; N], &MODE_1, rounds)));
+            blocks.push((5, one_line::<_, N, 3>(simd, &lanes, &all, &axis, &[1.0; N], &MODE_5, rounds)));
+            blocks.push((18, one_line::<_, N, 5>(simd, &lanes, &all, &axis, &[1.0; N], &MODE_18, rounds)));
             for selector in 0..3 {
-                let block = two_planes::<N, 2>(&lanes, &all, selector, &[1.0; N], &MODE_6, rounds);
+                let block = two_planes::<_, N, 2>(simd, &lanes, &all, selector, &[1.0; N], &MODE_6, rounds);
                 blocks.push((6, block));
             }
             for pattern in 0..PATTERNS.len() {
                 let split = Split::in_two(&lanes, pattern);
-                blocks.push((2, split_lines::<N, 2, 3>(&lanes, &split, &[1.0; N], &MODE_2, rounds)));
-                blocks.push((4, split_lines::<N, 2, 2>(&lanes, &split, &[1.0; N], &MODE_4, rounds)));
+                blocks.push((2, split_lines::<_, N, 2, 3>(simd, &lanes, &split, &[1.0; N], &MODE_2, rounds)));
+                blocks.push((4, split_lines::<_, N, 2, 2>(simd, &lanes, &split, &[1.0; N], &MODE_4, rounds)));
             }
             for split in Split::in_three(&lanes) {
-                blocks.push((3, split_lines::<N, 3, 2>(&lanes, &split, &[1.0; N], &MODE_3, rounds)));
+                blocks.push((3, split_lines::<_, N, 3, 2>(simd, &lanes, &split, &[1.0; N], &MODE_3, rounds)));
             }
         } else {
-            blocks.push((10, one_line::<N, 4>(&lanes, &all, &axis, &[1.0; N], &MODE_10, rounds)));
-            blocks.push((12, one_line::<N, 3>(&lanes, &all, &axis, &[1.0; N], &MODE_12, rounds)));
-            blocks.push((14, one_line::<N, 2>(&lanes, &all, &axis, &[1.0; N], &MODE_14, rounds)));
+            blocks.push((10, one_line::<_, N, 4>(simd, &lanes, &all, &axis, &[1.0; N], &MODE_10, rounds)));
+            blocks.push((12, one_line::<_, N, 3>(simd, &lanes, &all, &axis, &[1.0; N], &MODE_12, rounds)));
+            blocks.push((14, one_line::<_, N, 2>(simd, &lanes, &all, &axis, &[1.0; N], &MODE_14, rounds)));
             for selector in 0..4 {
-                let block = two_planes::<N, 2>(&lanes, &all, selector, &[1.0; N], &MODE_11, rounds);
+                let block = two_planes::<_, N, 2>(simd, &lanes, &all, selector, &[1.0; N], &MODE_11, rounds);
                 blocks.push((11, block));
             }
             for pattern in 0..PATTERNS.len() {
                 blocks.push((
                     9,
-                    split_lines::<N, 2, 2>(&lanes, &Split::in_two(&lanes, pattern), &[1.0; N], &MODE_9, rounds),
+                    split_lines::<_, N, 2, 2>(
+                        simd,
+                        &lanes,
+                        &Split::in_two(&lanes, pattern),
+                        &[1.0; N],
+                        &MODE_9,
+                        rounds,
+                    ),
                 ));
             }
         }

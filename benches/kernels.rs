@@ -1,0 +1,105 @@
+//! From a normal map to its pyramid, beside a copy of as many bytes: `cargo bench --bench kernels`.
+//!
+//! Items are texels of level 0. The copies move what the kernels read and write, with the same threads.
+
+use divan::counter::{BytesCount, ItemsCount};
+use divan::{Bencher, black_box};
+use rayon::prelude::*;
+use roughcast::bump::NormalOffsets;
+use roughcast::lobe::{Alpha, OrientedLobe, SquaredAlpha};
+use roughcast::map::{DecodeOptions, Image, NormalLayout, NormalMap, Samples, decode};
+use roughcast::pyramid::{Level, Moments, Rows, Shaped, ShapedMoments, build, level_sizes};
+
+mod common;
+
+fn main() {
+    divan::main();
+}
+
+fn texels() -> usize {
+    common::size() * common::size()
+}
+
+/// Texels of all levels but the first.
+fn coarser() -> usize {
+    let size = common::size() as u32;
+    level_sizes(size, size)[1..].iter().map(|(width, height)| (width * height) as usize).sum()
+}
+
+fn normals() -> NormalMap {
+    let size = common::size();
+    let samples = Samples::U8(common::maps::normals(size));
+    let image = Image { width: size as u32, height: size as u32, channels: 3, samples };
+    NormalMap::new(image, NormalLayout::Auto, false).expect("three channels")
+}
+
+fn copy(bencher: Bencher, bytes: usize) {
+    let source = vec![1_u8; bytes];
+    bencher.counter(BytesCount::new(bytes)).bench(|| {
+        // As the kernels do: into memory that is new.
+        let mut target = vec![0_u8; bytes];
+        let pairs = target.par_chunks_mut(1 << 20).zip(source.par_chunks(1 << 20));
+        pairs.for_each(|(target, source)| target.copy_from_slice(source));
+        target
+    });
+}
+
+#[divan::bench(sample_count = 20)]
+fn copy_of_mean_and_covariance(bencher: Bencher) {
+    copy(bencher, 3 * texels() + coarser() * size_of::<Moments>());
+}
+
+#[divan::bench(sample_count = 20)]
+fn copy_of_shape(bencher: Bencher) {
+    copy(bencher, 3 * texels() + coarser() * size_of::<ShapedMoments>());
+}
+
+#[divan::bench(sample_count = 5)]
+fn png(bencher: Bencher) {
+    let size = common::size();
+    let file = common::asset::png(&common::maps::normals(size), size);
+    bencher.counter(ItemsCount::new(texels())).bench(|| decode(black_box(&file), &DecodeOptions::default()));
+}
+
+#[divan::bench(sample_count = 20)]
+fn offsets(bencher: Bencher) {
+    let map = normals();
+    let rows = NormalOffsets::new(&map);
+    bencher.counter(ItemsCount::new(texels())).bench(|| {
+        let row = |row: &mut Vec<Moments>, y| {
+            rows.row(y, row);
+            row[0].mean.u
+        };
+        let empty = || vec![Moments::default(); rows.width() as usize];
+        (0..rows.height()).into_par_iter().map_init(empty, row).sum::<f32>()
+    });
+}
+
+#[divan::bench(sample_count = 20)]
+fn mean_and_covariance(bencher: Bencher) {
+    let map = normals();
+    bencher.counter(ItemsCount::new(texels())).bench(|| build(&NormalOffsets::new(black_box(&map))));
+}
+
+#[divan::bench(sample_count = 10)]
+fn shape(bencher: Bencher) {
+    let map = normals();
+    bencher.counter(ItemsCount::new(texels())).bench(|| build(&Shaped(NormalOffsets::new(black_box(&map)))));
+}
+
+/// GGX lobes of alpha 0.2 merged by likelihood.
+#[divan::bench(sample_count = 5)]
+fn lobes(bencher: Bencher) {
+    let map = normals();
+    let rows = NormalOffsets::new(&map);
+    let (width, height) = (rows.width(), rows.height());
+    let mut offsets = vec![Moments::default(); width as usize];
+    let mut texels = Vec::new();
+    for y in 0..height {
+        rows.row(y, &mut offsets);
+        let own = SquaredAlpha::isotropic(Alpha(0.2));
+        texels.extend(offsets.iter().map(|m| OrientedLobe::new(m.mean, own)));
+    }
+    let level = Level { width, height, texels };
+    bencher.counter(ItemsCount::new(level.texels.len())).bench(|| build(black_box(&level)));
+}

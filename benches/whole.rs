@@ -1,0 +1,59 @@
+//! A document with one normal and one roughness map, baked in memory, beside decoding its images:
+//! `cargo bench --bench whole`. Items are texels of level 0 of one map.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::PathBuf;
+
+use divan::counter::ItemsCount;
+use divan::{Bencher, black_box};
+use roughcast::bake::{Form, Model, Settings, Source, bake};
+use roughcast::gltf::document::Document;
+use roughcast::map::{DecodeOptions, decode};
+
+mod common;
+
+fn main() {
+    divan::main();
+}
+
+/// The files of the asset.
+fn files() -> BTreeMap<PathBuf, Vec<u8>> {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    common::asset::write(folder.path(), common::size(), 1).expect("a folder that takes files");
+    let entries = fs::read_dir(folder.path()).expect("the folder").map(|entry| entry.expect("a file").path());
+    entries.map(|path| (PathBuf::from(path.file_name().expect("a name")), fs::read(&path).expect("a file"))).collect()
+}
+
+fn whole(bencher: Bencher, form: Form, model: Model) {
+    let files = files();
+    let document = Document::parse(&files[&PathBuf::from("asset.gltf")]).expect("a document");
+    let read = |path: &std::path::Path| Ok(files[path].clone());
+    let source = Source { document: &document, stem: "asset", read: &read };
+    let settings = Settings { form, model, ..Settings::default() };
+    let texels = common::size() * common::size();
+    bencher.counter(ItemsCount::new(texels)).bench(|| bake(black_box(&source), &settings, &|_| ()).map(drop));
+}
+
+/// The two PNGs, one after the other.
+#[divan::bench(sample_count = 5)]
+fn decoding_alone(bencher: Bencher) {
+    let files = files();
+    let texels = common::size() * common::size();
+    bencher.counter(ItemsCount::new(texels)).bench(|| {
+        let images = ["normal0.png", "surface0.png"].map(|name| &files[&PathBuf::from(name)]);
+        images.map(|file| decode(black_box(file), &DecodeOptions::default()).map(drop))
+    });
+}
+
+/// Two textures of full size, without PNGs.
+#[divan::bench(sample_count = 5)]
+fn two_textures(bencher: Bencher) {
+    whole(bencher, Form::Strict, Model::Isotropic);
+}
+
+/// As by default: the smallest model within the error bound, with PNGs.
+#[divan::bench(sample_count = 5)]
+fn by_default(bencher: Bencher) {
+    whole(bencher, Form::Fallback, Model::Auto);
+}

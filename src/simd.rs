@@ -1,0 +1,133 @@
+//! Arithmetic written once, for single numbers and for vectors of them.
+//!
+//! Kernels are generic over [`Real`] and put one texel into each lane, so that a vector holds the bits that single
+//! numbers would, whatever the machine has. Only what IEEE 754 rounds alike everywhere is offered: no fused
+//! multiplication, no approximate reciprocal. Crate `fearless_simd` is used here and in `pyramid` alone.
+
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Sub};
+
+use fearless_simd::{Select, Simd, SimdBase, SimdFloat, f32x8, mask32x8, prelude::*};
+
+/// Texels side by side in a vector.
+pub const LANES: usize = 8;
+
+/// Numbers of [`LANES`] texels.
+pub type Wide<S> = f32x8<S>;
+
+/// A number, or one for each lane of a vector.
+pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> {
+    /// A truth for each lane.
+    type Mask: Copy + BitAnd<Output = Self::Mask> + BitOr<Output = Self::Mask>;
+
+    /// `value` in as many lanes.
+    fn like(self, value: f32) -> Self;
+
+    /// The square root.
+    fn sqrt(self) -> Self;
+
+    /// The larger number.
+    fn max(self, other: Self) -> Self;
+
+    /// The smaller number.
+    fn min(self, other: Self) -> Self;
+
+    /// Where it is at most `other`.
+    fn at_most(self, other: Self) -> Self::Mask;
+
+    /// Where it is 0.
+    fn is_zero(self) -> Self::Mask;
+
+    /// It where `mask` holds, else `other`.
+    fn or(self, other: Self, mask: Self::Mask) -> Self;
+
+    /// Whether `mask` holds in all lanes.
+    fn all(mask: Self::Mask) -> bool;
+}
+
+impl Real for f32 {
+    type Mask = bool;
+
+    #[inline(always)]
+    fn like(self, value: f32) -> Self {
+        value
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        f32::sqrt(self)
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        f32::max(self, other)
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        f32::min(self, other)
+    }
+
+    #[inline(always)]
+    fn at_most(self, other: Self) -> bool {
+        self <= other
+    }
+
+    #[inline(always)]
+    fn is_zero(self) -> bool {
+        self == 0.0
+    }
+
+    #[inline(always)]
+    fn or(self, other: Self, mask: bool) -> Self {
+        if mask { self } else { other }
+    }
+
+    #[inline(always)]
+    fn all(mask: bool) -> bool {
+        mask
+    }
+}
+
+impl<S: Simd> Real for Wide<S> {
+    type Mask = mask32x8<S>;
+
+    #[inline(always)]
+    fn like(self, value: f32) -> Self {
+        Self::splat(self.simd, value)
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        SimdFloat::sqrt(self)
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        SimdBase::max(self, other)
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        SimdBase::min(self, other)
+    }
+
+    #[inline(always)]
+    fn at_most(self, other: Self) -> Self::Mask {
+        self.simd_le(other)
+    }
+
+    #[inline(always)]
+    fn is_zero(self) -> Self::Mask {
+        self.simd_eq(0.0)
+    }
+
+    #[inline(always)]
+    fn or(self, other: Self, mask: Self::Mask) -> Self {
+        mask.select(self, other)
+    }
+
+    #[inline(always)]
+    fn all(mask: Self::Mask) -> bool {
+        mask.all_true()
+    }
+}
