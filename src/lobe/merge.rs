@@ -6,8 +6,6 @@
 //! converges faster (J. Kent, D. Tyler, Y. Vardi, "A curious likelihood identity for the multivariate t-distribution",
 //! 1994). Unlike moments it has no tails to lose: one steep texel of many hardly moves the lobe.
 
-#![expect(clippy::needless_range_loop, reason = "loops over lanes and channels read several arrays at one index")]
-
 use std::sync::LazyLock;
 
 use fearless_simd::{Simd, prelude::*};

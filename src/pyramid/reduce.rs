@@ -72,7 +72,9 @@ pub fn build<R: Rows>(source: &R) -> Vec<Level<R::Texel>> {
 /// The first levels of `sizes` over `finer`: as many as bands of rows have to themselves, at least one. A band's levels
 /// are made while those before are in the cache: one pass over memory for all of them.
 fn reduce<R: Rows>(finer: &R, sizes: &[(u32, u32)]) -> Vec<Level<R::Texel>> {
-    let fused = (finer.height().trailing_zeros().min(BAND_LEVELS) as usize).clamp(1, sizes.len());
+    let even = finer.height().trailing_zeros().min(BAND_LEVELS);
+    let shared = (finer.height() / BANDS).checked_ilog2().unwrap_or(0);
+    let fused = (even.min(shared) as usize).clamp(1, sizes.len());
     let mut levels: Vec<Level<R::Texel>> = sizes[..fused]
         .iter()
         .map(|&(width, height)| Level {
@@ -120,6 +122,9 @@ fn reduce<R: Rows>(finer: &R, sizes: &[(u32, u32)]) -> Vec<Level<R::Texel>> {
 
 /// Levels that a band makes at most: 32 rows of level 0, whose level 1 and 2 fit into 1 MB for 4096 columns of lobes.
 const BAND_LEVELS: u32 = 5;
+
+/// Bands that there are at least, to be shared among threads.
+const BANDS: u32 = 64;
 
 /// `rows` holds the finer rows under this row, one after another; `out` the coarser texels.
 fn reduce_row<T: Merge>(simd: InstructionSet, rows: &[T], fine_width: usize, down: &Taps, out: &mut [T]) {

@@ -1,7 +1,5 @@
 //! Third and fourth moments: what tells a heavy-tailed or lopsided distribution of offsets from a normal one.
 
-#![expect(clippy::needless_range_loop, reason = "loops over lanes and channels read several arrays at one index")]
-
 use fearless_simd::{Simd, prelude::*};
 
 use super::merge::{MAX_PARTS, load, store};
