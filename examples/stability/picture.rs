@@ -4,6 +4,7 @@ use std::error::Error;
 use std::path::Path;
 
 use roughcast::bake::{encode_png, write_file};
+use roughcast::texture::uastc::Effort;
 
 const GAP: u32 = 8;
 
@@ -37,7 +38,7 @@ impl Canvas {
 
 /// Writes the canvas to a file of `folder`.
 pub fn write(folder: &Path, name: &str, canvas: Canvas) -> Result<(), Box<dyn Error>> {
-    write_file(&folder.join(name), &encode_png(&canvas.rgba, canvas.width, canvas.side)?)?;
+    write_file(&folder.join(name), &encode_png(&canvas.rgba, canvas.width, canvas.side, Effort::Best)?)?;
     println!("\n{name}");
     Ok(())
 }
