@@ -26,3 +26,4 @@ pub mod roughness;
 mod simd;
 pub mod symmetric;
 pub mod texture;
+pub mod watch;

@@ -68,6 +68,11 @@ pub struct Places {
 }
 
 impl Places {
+    /// Keeps `path` for a copy of `source`, or for the output itself, which is there from an earlier run; whether it is free.
+    pub fn hold(&mut self, path: &Path, source: &Path) -> bool {
+        self.take(path, source.to_owned()).is_ok()
+    }
+
     /// Takes a place for a copy of `source`, or for the output itself.
     fn take(&mut self, path: &Path, source: PathBuf) -> Result<(), PublishError> {
         match self.taken.entry(path.to_owned()) {

@@ -7,11 +7,12 @@ use std::path::PathBuf;
 use std::time::SystemTime;
 
 use super::Outcome;
+use super::cached::CacheOptions;
 use super::depfile::depfile;
 use super::jobs::{self, JobOptions};
 use super::report::{Asset, Report, Status};
 use super::selection::Selection;
-use super::work::{CacheOptions, Work};
+use super::work::Work;
 use crate::bake::{Settings, write_file};
 
 /// Bake glTF assets: KTX2 textures with the lost roughness in their mips, and a glTF that refers to them.

@@ -1,6 +1,7 @@
 //! The command line: one file per command, each with its `Args` and a `run`.
 
 mod bake;
+mod cached;
 mod check;
 mod compare;
 mod completions;
@@ -19,6 +20,7 @@ mod render;
 mod report;
 mod selection;
 mod view;
+mod watch;
 mod work;
 
 use std::io::Write;
@@ -43,6 +45,7 @@ enum Command {
     Bake(bake::Args),
     Init(init::Args),
     Map(map::Args),
+    Watch(watch::Args),
     Plan(plan::Args),
     Check(check::Args),
     Inspect(inspect::Args),
@@ -105,6 +108,7 @@ pub fn run(cli: Cli, out: &mut dyn Write, err: &mut dyn Write) -> std::io::Resul
         Command::Bake(args) => bake::run(&args, out, err),
         Command::Init(args) => init::run(&args, out, err),
         Command::Map(args) => map::run(&args, out, err),
+        Command::Watch(args) => watch::run(&args, out, err),
         Command::Plan(args) => plan::run(&args, out, err),
         Command::Check(args) => check::run(&args, out, err),
         Command::Inspect(args) => inspect::run(&args, out, err),

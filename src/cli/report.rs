@@ -60,18 +60,24 @@ pub enum Status {
     Failed,
 }
 
+impl Status {
+    /// How a job that succeeded ended.
+    pub fn of(done: &Done) -> Self {
+        match &done.report.textures {
+            _ if done.is_cached => Self::Cached,
+            textures if textures.is_empty() => Self::Copied,
+            _ => Self::Baked,
+        }
+    }
+}
+
 impl Asset {
     /// An input that was baked; `own` are its settings where they are not those of the run.
     pub fn done(input: String, done: &Done, seconds: f64, own: Option<Settings>) -> Self {
-        let status = match &done.report.textures {
-            _ if done.is_cached => Status::Cached,
-            textures if textures.is_empty() => Status::Copied,
-            _ => Status::Baked,
-        };
         Self {
             input,
             output: Some(done.output.display().to_string()),
-            status,
+            status: Status::of(done),
             settings: own.map(|own| own.to_json(own.model)),
             seconds,
             bytes: done.bytes,

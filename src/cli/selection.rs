@@ -77,6 +77,8 @@ pub enum SelectionError {
 pub struct Selected {
     /// Assets, each with its settings.
     pub assets: Vec<(Input, Resolved)>,
+    /// Where their outputs go.
+    pub output: PathBuf,
     /// Inputs that cannot be used.
     pub errors: Vec<InputError>,
     /// Settings of assets without a configuration.
@@ -160,7 +162,7 @@ impl SettingOptions {
         }
         let settings = resolve(&[flags]).map_or_else(|_| Settings::default(), |resolved| resolved.settings);
         let configs = configs.0.into_values().flatten().map(|found| found.config.path).collect();
-        Ok(Selected { assets, errors, settings, configs })
+        Ok(Selected { assets, output, errors, settings, configs })
     }
 
     fn config<'c>(&self, configs: &'c mut Configs, folder: &Path) -> Result<Option<&'c Found>, SelectionError> {

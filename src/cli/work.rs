@@ -1,27 +1,16 @@
 //! Jobs run side by side, each from the cache if it is there, and are written and told of in order.
 
 use std::io::{self, Write};
-use std::path::PathBuf;
 use std::time::Instant;
 
 use super::Outcome;
+use super::cached::CacheOptions;
 use super::jobs::Planned;
 use super::progress::Progress;
 use super::report::Asset;
 use crate::bake::{Places, Settings};
-use crate::cache::{Cache, CacheError};
+use crate::cache::CacheError;
 use crate::plan::{self, Job, Lookup, RunError};
-
-/// Where bakes are kept.
-#[derive(Debug, clap::Args)]
-pub struct CacheOptions {
-    /// Keep outputs in this folder, and take from it what was baked before. Several runs may share it.
-    #[arg(long, value_name = "DIR")]
-    cache: Option<PathBuf>,
-    /// Largest size of that folder; what was not used for longest goes first. K, M, G and T are powers of 1024.
-    #[arg(long, value_name = "SIZE", value_parser = size, default_value = "10G")]
-    cache_size: u64,
-}
 
 /// How jobs are run.
 pub struct Work<'a> {
@@ -46,7 +35,7 @@ impl Work<'_> {
         err: &mut dyn Write,
         tell: &mut dyn FnMut(&Asset, &mut dyn Write) -> io::Result<()>,
     ) -> io::Result<(Vec<Asset>, Outcome)> {
-        let cache = self.cache.cache.as_deref().map(Cache::new);
+        let cache = self.cache.cache();
         let progress = Progress::new(planned.len(), self.is_quiet);
         let mut places = Places::default();
         // What to tell of an error, and whether trying again may help.
@@ -90,26 +79,9 @@ impl Work<'_> {
             Ok::<(), io::Error>(())
         })?;
         progress.finish();
-        if let Some(cache) = &cache
-            && let Err(error) = cache.trim(self.cache.cache_size)
-        {
-            writeln!(err, "warning: {error}")?;
+        if let Some(cache) = &cache {
+            self.cache.trim(cache, err)?;
         }
         Ok((assets, outcome))
     }
-}
-
-/// A number of bytes, with K, M, G or T for powers of 1024.
-fn size(text: &str) -> Result<u64, String> {
-    let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
-    let power = match text[digits.len()..].to_ascii_uppercase().as_str() {
-        "" => Some(0),
-        "K" => Some(1),
-        "M" => Some(2),
-        "G" => Some(3),
-        "T" => Some(4),
-        _ => None,
-    };
-    let bytes = power.and_then(|power| digits.parse::<u64>().ok()?.checked_mul(1 << (10 * power)));
-    bytes.ok_or_else(|| format!("expected a number of bytes such as 500M or 10G, found {text:?}"))
 }

@@ -194,7 +194,7 @@ pub fn beside(source: &Path, file: &Path) -> PathBuf {
 }
 
 /// Without `.`, and without `..` where a name stands before it: one file, one path.
-fn folded(path: &Path) -> PathBuf {
+pub fn folded(path: &Path) -> PathBuf {
     let mut folded = PathBuf::new();
     for part in path.components() {
         match part {

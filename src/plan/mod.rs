@@ -13,9 +13,9 @@ use serde::{Deserialize, Serialize};
 
 pub use error::RunError;
 pub use in_order::in_order;
-pub use job::{Job, JobInput, JobOutput, OutputKind};
+pub use job::{Job, JobInput, JobOutput, OutputKind, folded};
 pub use restore::Lookup;
-pub use run::{Done, Prepared, finish, prepare};
+pub use run::{Done, Prepared, Written, finish, prepare};
 
 /// The jobs of a run (`schemas/plan.schema.json`).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::error::RunError;
 use super::job::{Job, JobInput, beside};
-use super::run::Done;
+use super::run::{Done, Written};
 use crate::bake::{Places, PublishError, claim, read_file, write_file};
 use crate::cache::{Cache, CacheError, Entry, Stored};
 
@@ -94,7 +94,10 @@ pub fn restore(
         }
     }
     cache.touch(&job.id, &entry);
-    Ok(Some(Done { output: document, bytes, report: entry.report, is_cached: true }))
+    let copies = entry.copies.iter().map(|copy| Written::copy(job, copy));
+    let files = entry.files.iter().chain([&entry.document]);
+    let written = copies.chain(files.map(|file| Written::new(job, &file.path, file.blake3.clone()))).collect();
+    Ok(Some(Done { output: document, bytes, written, report: entry.report, is_cached: true }))
 }
 
 /// Whether the file at `path` has these bytes.

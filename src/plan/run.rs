@@ -20,10 +20,39 @@ pub struct Done {
     pub output: PathBuf,
     /// Bytes of all outputs.
     pub bytes: u64,
+    /// All outputs, the document last.
+    pub written: Vec<Written>,
     /// What is in them.
     pub report: AssetReport,
     /// Whether they were baked before.
     pub is_cached: bool,
+}
+
+/// An output.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Written {
+    /// Where it is.
+    pub path: PathBuf,
+    /// The file that it is a copy of, or itself.
+    pub source: PathBuf,
+    /// BLAKE3 of its bytes in hex.
+    pub blake3: String,
+}
+
+impl Written {
+    /// A new file in the job's output folder.
+    pub fn new(job: &Job, path: &Path, blake3: String) -> Self {
+        let path = job.output.join(path);
+        Self { source: path.clone(), path, blake3 }
+    }
+
+    /// A copy of what the document refers to as `file`.
+    pub fn copy(job: &Job, file: &Path) -> Self {
+        let source = beside(&job.source, file);
+        let input = job.inputs.iter().find(|input| input.path == source);
+        let blake3 = input.and_then(|input| input.blake3.clone()).unwrap_or_default();
+        Self { path: job.output.join(file), source, blake3 }
+    }
 }
 
 /// The part of a job that needs neither the places of outputs nor other jobs.
@@ -107,7 +136,12 @@ fn written(
     {
         warn(&error);
     }
-    Ok(Done { output, bytes, report: baked.report.clone(), is_cached: false })
+    let digest = |bytes: &[u8]| blake3::hash(bytes).to_hex().to_string();
+    let copies = baked.copies.iter().map(|copy| Written::copy(job, copy));
+    let files = baked.files.iter().map(|file| Written::new(job, &file.path, digest(&file.bytes)));
+    let document = Written { path: output.clone(), source: output.clone(), blake3: digest(&baked.document) };
+    let written = copies.chain(files).chain([document]).collect();
+    Ok(Done { output, bytes, written, report: baked.report.clone(), is_cached: false })
 }
 
 /// The files of a job: what is read must be what was hashed.

@@ -13,11 +13,12 @@ use semver::Version;
 
 use self::targets::{Sources, Target, source_document};
 use super::Outcome;
+use super::cached::CacheOptions;
 use super::head::read_head;
 use super::jobs;
 use super::report::Status;
 use super::selection::SettingOptions;
-use super::work::{CacheOptions, Work};
+use super::work::Work;
 use crate::bake::{Settings, read_file};
 use crate::check::{self, Code, Finding, Findings, Origin, Report, Scope, Severity, Usage};
 

@@ -1,0 +1,172 @@
+//! What happens, for people and as JSON lines (`schemas/watch.schema.json`).
+
+use std::collections::BTreeMap;
+use std::fmt::Display;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use crate::cli::report::{Asset, Status};
+use crate::plan::{Done, Written};
+use crate::watch::Removed;
+
+/// A line of `--json`.
+#[derive(Debug, Serialize)]
+#[serde(tag = "event", rename_all = "camelCase", rename_all_fields = "camelCase")]
+pub enum Event<'e> {
+    /// From now on nothing is missed.
+    Started {
+        /// Of the tool.
+        version: &'static str,
+        /// The watched folder.
+        folder: &'e Path,
+        /// The output folder.
+        output: &'e Path,
+        /// Milliseconds between two looks, where the system does not tell of changes.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        poll: Option<u64>,
+    },
+    /// An asset's outputs are written.
+    Baked {
+        /// The source.
+        input: &'e str,
+        /// The document.
+        output: &'e Path,
+        /// As in the report of `bake`.
+        status: Status,
+        /// All files of the asset, the document last.
+        files: Vec<&'e Path>,
+        /// Their size.
+        bytes: u64,
+        /// From reading to writing.
+        seconds: f64,
+    },
+    /// An asset, or the folder, cannot be baked as it is.
+    Failed {
+        /// The source, if it is one.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        input: Option<&'e str>,
+        /// What is wrong.
+        error: &'e str,
+    },
+    /// Outputs that no asset has any more are gone.
+    Removed {
+        /// The source that had them.
+        input: &'e Path,
+        /// The files.
+        files: Vec<&'e Path>,
+    },
+    /// The outputs are those of a bake of the folder as it is.
+    Idle {
+        /// Number of assets.
+        assets: usize,
+        /// Of those, the ones that cannot be baked.
+        failed: usize,
+    },
+}
+
+/// Outputs that changed.
+#[derive(Debug, Default)]
+pub struct Changes {
+    /// Documents that were written.
+    pub outputs: Vec<PathBuf>,
+    /// Files that were removed.
+    pub removed: Vec<PathBuf>,
+}
+
+/// Tells what happens.
+pub struct Teller<'w> {
+    out: &'w mut dyn Write,
+    err: &'w mut dyn Write,
+    is_json: bool,
+    is_quiet: bool,
+    has_news: bool,
+    changes: Changes,
+}
+
+impl<'w> Teller<'w> {
+    /// Results go to `out`, as JSON or unless `is_quiet`; complaints to `err`.
+    pub fn new(out: &'w mut dyn Write, err: &'w mut dyn Write, is_json: bool, is_quiet: bool) -> Self {
+        Self { out, err, is_json, is_quiet, has_news: true, changes: Changes::default() }
+    }
+
+    /// Tells of `event` on a line of its own, if lines are asked for.
+    pub fn tell(&mut self, event: &Event<'_>) -> io::Result<()> {
+        if self.is_json {
+            serde_json::to_writer(&mut self.out, event)?;
+            self.out.write_all(b"\n")?;
+            return self.out.flush();
+        }
+        match event {
+            _ if self.is_quiet => Ok(()),
+            Event::Started { folder, output, .. } => {
+                let (folder, output) = (folder.display(), output.display());
+                writeln!(self.out, "watching {folder}, baking to {output}; Ctrl-C ends")
+            }
+            Event::Removed { input, files } => {
+                writeln!(self.out, "removed {}: {} file(s) of it", input.display(), files.len())
+            }
+            _ => Ok(()),
+        }?;
+        self.out.flush()
+    }
+
+    /// An asset was baked in `seconds`.
+    pub fn baked(&mut self, name: String, done: &Done, seconds: f64) -> io::Result<()> {
+        self.has_news = true;
+        self.changes.outputs.push(done.output.clone());
+        if !self.is_json && !self.is_quiet {
+            self.out.write_all(Asset::done(name, done, seconds, None).summary().as_bytes())?;
+            return self.out.flush();
+        }
+        let files = done.written.iter().map(|Written { path, .. }| path.as_path()).collect();
+        let status = Status::of(done);
+        self.tell(&Event::Baked { input: &name, output: &done.output, status, files, bytes: done.bytes, seconds })
+    }
+
+    /// An asset, or everything, cannot be baked.
+    pub fn failed(&mut self, input: Option<&str>, error: &str) -> io::Result<()> {
+        self.has_news = true;
+        match input {
+            Some(input) => writeln!(self.err, "error: {input}: {error}")?,
+            None => writeln!(self.err, "error: {error}")?,
+        }
+        self.tell(&Event::Failed { input, error })
+    }
+
+    /// Files were removed.
+    pub fn removed(&mut self, removed: &[Removed]) -> io::Result<()> {
+        let mut by_asset: BTreeMap<&Path, Vec<&Path>> = BTreeMap::new();
+        for Removed { path, asset } in removed {
+            by_asset.entry(asset).or_default().push(path);
+        }
+        for (input, files) in by_asset {
+            self.tell(&Event::Removed { input, files })?;
+        }
+        self.has_news |= !removed.is_empty();
+        self.changes.removed.extend(removed.iter().map(|removed| removed.path.clone()));
+        Ok(())
+    }
+
+    /// Nothing is left to do, if there was anything.
+    pub fn idle(&mut self, (assets, failed): (usize, usize)) -> io::Result<()> {
+        if std::mem::take(&mut self.has_news) { self.tell(&Event::Idle { assets, failed }) } else { Ok(()) }
+    }
+
+    /// Complains of what does not stop anything.
+    pub fn warn(&mut self, warning: &dyn Display) -> io::Result<()> {
+        writeln!(self.err, "warning: {warning}")
+    }
+
+    /// Where complaints go.
+    pub fn err(&mut self) -> &mut dyn Write {
+        self.err
+    }
+
+    /// What changed since the last time, if anything.
+    pub fn take_changes(&mut self) -> Option<Changes> {
+        let changes = std::mem::take(&mut self.changes);
+        (!changes.outputs.is_empty() || !changes.removed.is_empty()).then_some(changes)
+    }
+}

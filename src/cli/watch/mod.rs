@@ -1,0 +1,161 @@
+//! `roughcast watch`.
+
+mod asset;
+mod events;
+mod hook;
+mod round;
+
+use std::io::{self, Write};
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::RecvTimeoutError;
+use std::time::{Duration, Instant};
+
+use super::Outcome;
+use super::cached::CacheOptions;
+use super::selection::Selection;
+use crate::watch::{Wake, Wakes};
+use events::{Event, Teller};
+use hook::Hook;
+use round::Round;
+
+/// Bake a folder of glTF assets, and bake again what changes.
+///
+/// Outputs are always those of a bake of the folder as it is: they change with the glTF files, their images and buffers
+/// and roughcast.toml, and go when their asset goes or cannot be baked. Ctrl-C ends it when the asset at work is done.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Example:\n  roughcast watch assets -o baked --on-change 'touch reload.txt'")]
+pub struct Args {
+    /// The folder; it may come later.
+    #[arg(value_name = "DIR")]
+    folder: PathBuf,
+    /// Print what happens as JSON, one object per line (docs/pipeline.md).
+    #[arg(long)]
+    json: bool,
+    /// Print errors only.
+    #[arg(short, long, conflicts_with = "json")]
+    quiet: bool,
+    /// Run a command of the shell after outputs changed. ROUGHCAST_OUTPUTS has the documents that were written,
+    /// ROUGHCAST_REMOVED the files that were removed, one per line.
+    #[arg(long, value_name = "COMMAND")]
+    on_change: Option<String>,
+    /// Look at all files every so many milliseconds, where the system has no events (network drives, some containers).
+    #[arg(long, value_name = "MS", num_args = 0..=1, require_equals = true, default_missing_value = "1000",
+        value_parser = clap::value_parser!(u64).range(10..))]
+    poll: Option<u64>,
+    /// A file is whole when it has not changed for so many milliseconds.
+    #[arg(long, value_name = "MS", default_value_t = 50)]
+    settle: u64,
+    #[command(flatten)]
+    cache: CacheOptions,
+    #[command(flatten)]
+    selection: Selection,
+}
+
+/// How often all files are looked at where the system does not watch as many.
+const POLL: Duration = Duration::from_secs(1);
+
+/// Least and longest pause between two looks.
+const LEAST_PAUSE: Duration = Duration::from_millis(2);
+const LONGEST_PAUSE: Duration = Duration::from_millis(200);
+
+/// Watches until it is told to stop.
+///
+/// # Errors
+/// When `out` or `err` cannot be written to.
+pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<Outcome> {
+    let selected = match args.selection.find(std::slice::from_ref(&args.folder)) {
+        _ if args.folder.exists() && !args.folder.is_dir() => {
+            writeln!(
+                err,
+                "error: {}: expected a folder, found a file; bake it with `roughcast bake`",
+                args.folder.display()
+            )?;
+            return Ok(Outcome::Usage);
+        }
+        Ok(selected) => selected,
+        Err(reason) => {
+            writeln!(err, "error: {reason}")?;
+            return Ok(Outcome::Usage);
+        }
+    };
+    let (wake, woken) = Wake::channel();
+    let stop = Arc::new(AtomicBool::new(false));
+    let (told, waking) = (stop.clone(), wake.clone());
+    // The second time, whoever asks does not want to wait. A process that has a handler already keeps it.
+    let _ = ctrlc::try_set_handler(move || {
+        if told.swap(true, Ordering::AcqRel) {
+            std::process::exit(130);
+        }
+        waking.wake();
+    });
+    let mut teller = Teller::new(out, err, args.json, args.quiet);
+    let mut poll = args.poll.map(Duration::from_millis);
+    let mut wakes = match poll {
+        Some(_) => None,
+        None => match Wakes::new(wake.clone()) {
+            Ok(wakes) => Some(wakes),
+            Err(error) => {
+                teller.warn(&error)?;
+                None
+            }
+        },
+    };
+    let hook = args.on_change.as_deref().map(|command| Hook::new(command, args.json));
+    let mut round = Round::new(args, selected.output);
+    let mut is_first = true;
+    loop {
+        let start = Instant::now();
+        // First watch, then look: nothing happens in between.
+        if let Some(watching) = &mut wakes
+            && let Err(error) = watching.follow(round.scope())
+        {
+            teller.warn(&error)?;
+            wakes = None;
+        }
+        if wakes.is_none() {
+            poll.get_or_insert(POLL);
+        }
+        if is_first {
+            teller.tell(&Event::Started {
+                version: env!("CARGO_PKG_VERSION"),
+                folder: &args.folder,
+                output: round.output(),
+                poll: poll.map(|poll| poll.as_millis() as u64),
+            })?;
+        }
+        let next = round.run(args, &stop, &mut teller, is_first)?;
+        is_first = false;
+        if stop.load(Ordering::Acquire) {
+            return Ok(Outcome::Done);
+        }
+        if let Some(hook) = &hook
+            && let Some(changes) = teller.take_changes()
+            && let Err(error) = hook.run(&changes, &stop)
+        {
+            teller.warn(&error)?;
+        }
+        let is_followed = wakes.as_ref().is_none_or(|wakes| wakes.is_following(round.scope()));
+        if !is_followed {
+            continue;
+        }
+        if next.is_idle {
+            teller.idle(round.counts())?;
+        }
+        // Half of the time at most, however many events there are.
+        let earliest = Instant::now() + start.elapsed().clamp(LEAST_PAUSE, LONGEST_PAUSE);
+        let latest = [next.at, poll.map(|poll| Instant::now() + poll)].into_iter().flatten().min();
+        let ended = match latest {
+            None => woken.recv().is_err(),
+            Some(at) => {
+                let wait = at.max(earliest).saturating_duration_since(Instant::now());
+                woken.recv_timeout(wait) == Err(RecvTimeoutError::Disconnected)
+            }
+        };
+        if stop.load(Ordering::Acquire) || ended {
+            return Ok(Outcome::Done);
+        }
+        std::thread::sleep(earliest.saturating_duration_since(Instant::now()));
+    }
+}
