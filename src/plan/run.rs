@@ -157,14 +157,15 @@ impl<'j> Inputs<'j> {
     }
 
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
-        let bytes = read_file(path)?;
-        let digest = blake3::hash(&bytes).to_hex();
-        if self.digests.get(path) != Some(&Some(digest.as_str()))
-            && let Ok(mut changed) = self.changed.lock()
-        {
+        let read = read_file(path);
+        let digest = read.as_ref().ok().map(|bytes| blake3::hash(bytes).to_hex());
+        let planned = self.digests.get(path).copied().flatten();
+        // What was there and is gone has changed, too; what was not there is missed by who needs it.
+        let is_as_planned = digest.as_ref().map(|digest| digest.as_str()) == planned;
+        if !is_as_planned && let Ok(mut changed) = self.changed.lock() {
             changed.get_or_insert_with(|| path.to_owned());
         }
-        Ok(bytes)
+        read
     }
 
     fn changed(&self) -> Option<PathBuf> {

@@ -16,7 +16,7 @@ use super::scope::Scope;
 pub enum WatchError {
     /// More folders than the system watches.
     #[error(
-        "expected to watch every folder, found the system's limit reached; raise it (fs.inotify.max_user_watches on Linux) or pass --poll"
+        "expected to watch every folder, found the system's limit reached; raise it (Linux: fs.inotify.max_user_watches) or pass --poll"
     )]
     Limit,
     /// The system refused.

@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 use super::Outcome;
 use super::cached::CacheOptions;
 use super::selection::Selection;
-use crate::watch::{Wake, Wakes};
+use crate::watch::{Scope, Wake, Wakes, WatchError};
 use events::{Event, Teller};
 use hook::Hook;
 use round::Round;
@@ -92,30 +92,18 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
     });
     let mut teller = Teller::new(out, err, args.json, args.quiet);
     let mut poll = args.poll.map(Duration::from_millis);
-    let mut wakes = match poll {
-        Some(_) => None,
-        None => match Wakes::new(wake.clone()) {
-            Ok(wakes) => Some(wakes),
-            Err(error) => {
-                teller.warn(&error)?;
-                None
-            }
-        },
-    };
+    let mut wakes = None;
     let hook = args.on_change.as_deref().map(|command| Hook::new(command, args.json));
     let mut round = Round::new(args, selected.output);
     let mut is_first = true;
     loop {
         let start = Instant::now();
         // First watch, then look: nothing happens in between.
-        if let Some(watching) = &mut wakes
-            && let Err(error) = watching.follow(round.scope())
+        if poll.is_none()
+            && let Err(error) = follow(&mut wakes, &wake, round.scope())
         {
-            teller.warn(&error)?;
-            wakes = None;
-        }
-        if wakes.is_none() {
-            poll.get_or_insert(POLL);
+            teller.warn(&format_args!("{error}; looking at all files every {} ms instead", POLL.as_millis()))?;
+            (wakes, poll) = (None, Some(POLL));
         }
         if is_first {
             teller.tell(&Event::Started {
@@ -157,5 +145,13 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
             return Ok(Outcome::Done);
         }
         std::thread::sleep(earliest.saturating_duration_since(Instant::now()));
+    }
+}
+
+/// Watches what `scope` names.
+fn follow(wakes: &mut Option<Wakes>, wake: &Wake, scope: &Scope) -> Result<(), WatchError> {
+    match wakes {
+        Some(wakes) => wakes.follow(scope),
+        None => wakes.insert(Wakes::new(wake.clone())?).follow(scope),
     }
 }
