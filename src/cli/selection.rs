@@ -26,6 +26,7 @@ pub struct Selection {
 /// How outputs are made.
 #[derive(Debug, clap::Args)]
 pub struct SettingOptions {
+    pub output: Option<PathBuf>,
     /// Settings of every asset, instead of the roughcast.toml in its folder or in the nearest above.
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,

@@ -14,3 +14,4 @@ mod render;
 mod survival;
 mod transcripts;
 mod validator;
+mod watch;

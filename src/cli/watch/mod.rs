@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 
 use super::Outcome;
 use super::cached::CacheOptions;
-use super::selection::Selection;
+use super::selection::{Selection, SelectionError};
 use crate::watch::{Scope, Wake, Wakes, WatchError};
 use events::{Event, Teller};
 use hook::Hook;
@@ -65,17 +65,17 @@ const LONGEST_PAUSE: Duration = Duration::from_millis(200);
 /// # Errors
 /// When `out` or `err` cannot be written to.
 pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<Outcome> {
-    let selected = match args.selection.find(std::slice::from_ref(&args.folder)) {
-        _ if args.folder.exists() && !args.folder.is_dir() => {
-            writeln!(
-                err,
-                "error: {}: expected a folder, found a file; bake it with `roughcast bake`",
-                args.folder.display()
-            )?;
-            return Ok(Outcome::Usage);
-        }
-        Ok(selected) => selected,
-        Err(reason) => {
+    let folder = &args.folder;
+    if folder.exists() && !folder.is_dir() {
+        let folder = folder.display();
+        writeln!(err, "error: {folder}: expected a folder, found a file; bake it with `roughcast bake`")?;
+        return Ok(Outcome::Usage);
+    }
+    let output = match (args.selection.find(std::slice::from_ref(folder)), &args.selection.output) {
+        (Ok(selected), _) => selected.output,
+        // A file that is wrong can be put right meanwhile.
+        (Err(SelectionError::Config { .. } | SelectionError::Read { .. }), Some(output)) => output.clone(),
+        (Err(reason), _) => {
             writeln!(err, "error: {reason}")?;
             return Ok(Outcome::Usage);
         }
@@ -94,7 +94,7 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
     let mut poll = args.poll.map(Duration::from_millis);
     let mut wakes = None;
     let hook = args.on_change.as_deref().map(|command| Hook::new(command, args.json));
-    let mut round = Round::new(args, selected.output);
+    let mut round = Round::new(args, output);
     let mut is_first = true;
     loop {
         let start = Instant::now();

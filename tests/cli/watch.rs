@@ -1,0 +1,258 @@
+//! Watching: what changed is baked, what is gone is removed, and in the end all is as a bake of the folder leaves it.
+
+mod edits;
+mod session;
+
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+#[cfg(target_os = "linux")]
+use std::process::Command;
+
+use tempfile::{TempDir, tempdir};
+
+#[cfg(target_os = "linux")]
+use super::process::skipped;
+use super::process::{copy, files, fixtures, hashes, roughcast_in};
+use session::{Session, assert_as_baked};
+
+fn scene() -> TempDir {
+    let folder = tempdir().expect("a folder");
+    for asset in ["brushed", "knobs", "waves"] {
+        copy(&fixtures().join(asset), &folder.path().join("assets").join(asset));
+    }
+    let config = "model = 'none'\n";
+    fs::write(folder.path().join("assets/roughcast.toml"), config).expect("a file");
+    folder
+}
+
+fn rename(folder: &Path, from: &str, to: &str) {
+    fs::rename(folder.join(from), folder.join(to)).expect("a file");
+}
+
+#[test]
+fn only_what_depends_on_a_change_is_baked() {
+    for options in ["", "--poll=20"] {
+        let scene = scene();
+        let folder = scene.path();
+        let mut session = Session::start(folder, options);
+        let first = session.until("idle");
+        assert_eq!(first.iter().filter(|event| event["event"] == "baked").count(), 3, "{first:?}");
+        assert_as_baked(folder, "at first");
+        let at = |name: &str| folder.join("assets").join(name);
+        let touch = |name: &str| fs::write(at(name), fs::read(at(name)).expect("a file")).expect("a file");
+        touch("waves/waves.glb");
+        touch("roughcast.toml");
+        touch("knobs/knobs.bin");
+        assert_eq!(session.settle(folder), Vec::<String>::new(), "touched");
+        fs::copy(at("brushed/brushed_normal.png"), at("knobs/knurled grip.png")).expect("a file");
+        assert_eq!(session.settle(folder), ["baked assets/knobs/knobs.gltf"], "an image");
+        fs::write(at("knobs/knobs.bin"), [&fs::read(at("knobs/knobs.bin")).expect("a file")[..], b"more"].concat())
+            .expect("a file");
+        assert_eq!(session.settle(folder), ["baked assets/knobs/knobs.gltf"], "a buffer");
+        let config = "model = 'none'\n[[override]]\nfiles = 'waves/*'\nmodel = 'isotropic'\n";
+        fs::write(at("roughcast.toml"), config).expect("a file");
+        assert_eq!(session.settle(folder), ["baked assets/waves/waves.glb"], "a setting of one");
+        rename(folder, "assets/brushed", "assets/renamed");
+        let told = session.settle(folder);
+        assert_eq!(told, ["removed assets/brushed/brushed.gltf", "baked assets/renamed/brushed.gltf"]);
+        fs::remove_file(at("knobs/knobs.gltf")).expect("a file");
+        assert_eq!(session.settle(folder), ["removed assets/knobs/knobs.gltf"]);
+        assert!(!folder.join("out/knobs").exists() && !folder.join("out/brushed").exists());
+        assert_as_baked(folder, "in the end");
+        let run = session.stop();
+        assert_eq!((run.code, run.err.as_str()), (0, ""));
+    }
+}
+
+#[test]
+fn a_file_that_is_being_written_waits_and_one_that_is_broken_is_tried_again() {
+    let scene = scene();
+    let folder = scene.path();
+    let mut session = Session::start(folder, "--settle 1500");
+    session.until("idle");
+    let image = folder.join("assets/knobs/knurled grip.png");
+    let bytes = fs::read(fixtures().join("brushed/brushed_normal.png")).expect("a file");
+    let (half, rest) = bytes.split_at(bytes.len() / 2);
+    let mut file = fs::File::create(&image).expect("a file");
+    file.write_all(half).expect("bytes");
+    file.flush().expect("bytes");
+    std::thread::sleep(std::time::Duration::from_millis(100));
+    file.write_all(rest).expect("bytes");
+    assert_eq!(session.settle(folder), ["baked assets/knobs/knobs.gltf"]);
+    fs::write(&image, half).expect("a file");
+    let told = session.settle(folder);
+    assert_eq!(told, ["failed assets/knobs/knobs.gltf", "removed assets/knobs/knobs.gltf"]);
+    assert_as_baked(folder, "broken");
+    fs::write(&image, &bytes).expect("a file");
+    assert_eq!(session.settle(folder), ["baked assets/knobs/knobs.gltf"]);
+    assert_as_baked(folder, "whole again");
+    assert!(session.stop().err.contains("assets/knobs/knobs.gltf"));
+}
+
+#[test]
+fn folders_come_late_and_go() {
+    let folder = tempdir().expect("a folder");
+    let folder = folder.path();
+    let mut session = Session::start(folder, "--model none");
+    session.until("idle");
+    // The folder itself, made and filled, and one below it.
+    copy(&fixtures().join("waves"), &folder.join("assets/waves"));
+    session.settle(folder);
+    copy(&fixtures().join("brushed"), &folder.join("assets/new/deep/brushed"));
+    assert_eq!(session.settle(folder), ["baked assets/new/deep/brushed/brushed.gltf"]);
+    let before = hashes(&folder.join("out"));
+    // Without its folder, nothing is known to be gone.
+    rename(folder, "assets", "away");
+    assert_eq!(session.until("failed").len(), 1);
+    session.until("idle");
+    assert_eq!(hashes(&folder.join("out")), before);
+    rename(folder, "away", "assets");
+    fs::remove_dir_all(folder.join("assets/new")).expect("a folder");
+    assert_eq!(session.settle(folder), ["removed assets/new/deep/brushed/brushed.gltf"]);
+    assert_eq!(session.stop().code, 0);
+    assert!(files(&folder.join("out")).iter().all(|(name, _)| name.starts_with("waves/") || name == "mark.gltf"));
+}
+
+#[test]
+fn what_watch_did_not_write_stays() {
+    let scene = scene();
+    let folder = scene.path();
+    let foreign =
+        ["out/own.txt", "out/knobs/own.txt", "out/knobs/knobs.roughcast/own.ktx2"].map(|name| folder.join(name));
+    for path in &foreign {
+        fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
+        fs::write(path, "own").expect("a file");
+    }
+    let mut session = Session::start(folder, "");
+    session.until("idle");
+    let edited = folder.join("out/knobs/knobs.bin");
+    fs::write(&edited, "by hand").expect("a file");
+    fs::remove_dir_all(folder.join("assets/knobs")).expect("a folder");
+    session.settle(folder);
+    let kept: Vec<_> = files(&folder.join("out/knobs")).into_iter().map(|(name, _)| name).collect();
+    assert_eq!(kept, ["knobs.bin", "knobs.roughcast/own.ktx2", "own.txt"]);
+    assert!(foreign.iter().all(|path| fs::read(path).is_ok_and(|bytes| bytes == b"own")));
+    assert_eq!(session.stop().code, 0);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_command_runs_after_each_change_and_its_failure_is_a_warning() {
+    let scene = scene();
+    let folder = scene.path();
+    let script = "echo noise; echo \"+$ROUGHCAST_OUTPUTS-$ROUGHCAST_REMOVED\" >> hook.txt; exit 3";
+    fs::write(folder.join("hook.sh"), script).expect("a file");
+    let mut session = Session::start(folder, "--on-change ./hook.sh");
+    // Not executable: the shell's own failure.
+    session.until("idle");
+    assert!(session.stop().err.contains("warning: expected \"./hook.sh\" to end with exit code 0"));
+    let _ = fs::remove_file(folder.join("hook.txt"));
+    let mut permissions = fs::metadata(folder.join("hook.sh")).expect("facts").permissions();
+    std::os::unix::fs::PermissionsExt::set_mode(&mut permissions, 0o755);
+    fs::set_permissions(folder.join("hook.sh"), permissions).expect("permissions");
+    let mut session = Session::start(folder, "--on-change ./hook.sh");
+    session.until("idle");
+    fs::remove_dir_all(folder.join("assets/waves")).expect("a folder");
+    session.until("idle");
+    let run = session.stop();
+    let told = fs::read_to_string(folder.join("hook.txt")).expect("a file");
+    let first = "+out/brushed/brushed.gltf\nout/knobs/knobs.gltf\nout/waves/waves.gltf-\n+-out/waves/waves.";
+    assert!(told.starts_with(first), "{told}");
+    assert!(run.err.contains("found exit status: 3") && run.err.contains("noise"), "{}", run.err);
+    assert_eq!(run.code, 0);
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_ends_it_cleanly_at_any_time() {
+    for wait_for in ["started", "baked", "idle"] {
+        let scene = scene();
+        let folder = scene.path();
+        let mut session = Session::start(folder, "");
+        session.until(wait_for);
+        let run = session.stop();
+        assert_eq!((run.code, run.err.as_str()), (0, ""), "{wait_for}");
+        assert!(files(folder).iter().all(|(name, _)| !name.contains(".roughcast-")), "leftovers: {wait_for}");
+        let mut session = Session::start(folder, "");
+        session.until("idle");
+        assert_eq!(session.stop().code, 0);
+        assert_as_baked(folder, wait_for);
+    }
+}
+
+#[test]
+fn a_cache_saves_the_first_bake() {
+    let scene = scene();
+    let folder = scene.path();
+    let bake = || {
+        let mut session = Session::start(folder, "--cache assets/.cache");
+        let events = session.until("idle");
+        assert_eq!(session.stop().code, 0);
+        let baked = events.into_iter().filter(|event| event["event"] == "baked");
+        baked.map(|event| event["status"].as_str().expect("a status").to_owned()).collect::<Vec<_>>()
+    };
+    assert_eq!(bake(), ["baked"; 3]);
+    assert_eq!(bake(), ["cached"; 3]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn more_folders_than_the_system_watches_are_looked_at_from_time_to_time() {
+    // Limits of a user namespace are its own.
+    let limit = "echo 3 > /proc/sys/user/max_inotify_watches";
+    let probe = Command::new("unshare").args(["-Ur", "sh", "-c", limit]).output();
+    if !probe.is_ok_and(|output| output.status.success()) {
+        return skipped("the limit on watched folders, which needs user namespaces");
+    }
+    let scene = scene();
+    let folder = scene.path();
+    let mut command = Command::new("unshare");
+    command.args(["-Ur", "sh", "-c", &format!("{limit}; exec \"$0\" \"$@\""), env!("CARGO_BIN_EXE_roughcast")]);
+    let mut session = Session::start_by(command, folder, "");
+    let events = session.until("idle");
+    assert_eq!(events[0]["poll"], 1000, "{events:?}");
+    fs::remove_file(folder.join("assets/waves/waves.glb")).expect("a file");
+    assert_eq!(session.settle(folder), ["removed assets/waves/waves.glb"]);
+    let run = session.stop();
+    assert_eq!((run.code, run.err.lines().count()), (0, 1), "{}", run.err);
+    assert!(run.err.starts_with("warning: expected to watch every folder, found the system's limit reached"));
+}
+
+#[test]
+fn what_makes_no_sense_is_refused() {
+    let scene = scene();
+    let folder = scene.path();
+    for (line, code, expected) in [
+        ("watch assets/waves/waves.glb -o out", 2, "expected a folder, found a file"),
+        ("watch assets", 2, "expected an output folder, found none"),
+        ("watch assets -o out --poll=1", 2, "1 is not in 10"),
+        ("watch assets -o out --lobe phong", 2, "invalid value 'phong'"),
+    ] {
+        let run = roughcast_in(folder, line.split(' '));
+        assert!(run.code == code && run.err.contains(expected), "{line}: {}: {}", run.code, run.err);
+    }
+}
+
+#[test]
+fn a_configuration_that_is_wrong_is_told_of_and_outputs_stay() {
+    let scene = scene();
+    let folder = scene.path();
+    let config = folder.join("assets/roughcast.toml");
+    fs::write(&config, "modle = 'none'\n").expect("a file");
+    let mut session = Session::start(folder, "");
+    assert!(session.until("failed").last().expect("an event")["error"].as_str().is_some_and(|e| e.contains("modle")));
+    fs::write(&config, "model = 'none'\n").expect("a file");
+    session.settle(folder);
+    assert_as_baked(folder, "put right");
+    let before = hashes(&folder.join("out"));
+    fs::write(&config, "modle = 'none'\n").expect("a file");
+    fs::remove_dir_all(folder.join("assets/waves")).expect("a folder");
+    session.until("failed");
+    session.until("idle");
+    assert_eq!(hashes(&folder.join("out")), before);
+    fs::remove_file(&config).expect("a file");
+    fs::write(&config, "model = 'none'\n").expect("a file");
+    assert_eq!(session.settle(folder), ["removed assets/waves/waves.glb"]);
+    assert_eq!(session.stop().code, 0);
+}

@@ -1,0 +1,133 @@
+//! A running `roughcast watch`, and what it tells.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::{BufRead, BufReader, Read};
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, channel};
+use std::thread;
+use std::time::Duration;
+
+use serde_json::Value;
+
+use crate::process::{Run, hashes, roughcast_in};
+
+/// Nothing takes as long, on any machine: who waits longer waits for what does not come.
+const PATIENCE: Duration = Duration::from_secs(100);
+
+static MARKS: AtomicU64 = AtomicU64::new(0);
+
+/// The command at work in a folder, watching `assets` and baking to `out`.
+pub struct Session {
+    child: Child,
+    events: Receiver<Value>,
+}
+
+impl Session {
+    /// Starts it with `options`.
+    pub fn start(folder: &Path, options: &str) -> Self {
+        Self::start_by(Command::new(env!("CARGO_BIN_EXE_roughcast")), folder, options)
+    }
+
+    /// Starts it by a command that runs it.
+    pub fn start_by(mut command: Command, folder: &Path, options: &str) -> Self {
+        command.current_dir(folder).args("watch assets -o out --json".split(' ')).args(options.split_whitespace());
+        command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut child = command.spawn().expect("the command starts");
+        let lines = BufReader::new(child.stdout.take().expect("a pipe")).lines();
+        let (sender, events) = channel();
+        thread::spawn(move || {
+            for line in lines.map_while(Result::ok) {
+                let event: Value =
+                    serde_json::from_str(&line).unwrap_or_else(|_| panic!("expected JSON, found {line:?}"));
+                if sender.send(event).is_err() {
+                    break;
+                }
+            }
+        });
+        Self { child, events }
+    }
+
+    /// The next event, which satisfies the schema.
+    pub fn event(&mut self) -> Value {
+        let Ok(event) = self.events.recv_timeout(PATIENCE) else {
+            let _ = self.child.kill();
+            let mut err = String::new();
+            let _ = self.child.stderr.take().expect("a pipe").read_to_string(&mut err);
+            panic!("expected an event, found none: {:?}, {err}", self.child.wait());
+        };
+        let schema: Value = serde_json::from_str(include_str!("../../../schemas/watch.schema.json")).expect("JSON");
+        let schema = jsonschema::validator_for(&schema).expect("a schema");
+        let errors: Vec<String> = schema.iter_errors(&event).map(|e| format!("{}: {e}", e.instance_path())).collect();
+        assert!(errors.is_empty(), "{event}: {errors:#?}");
+        event
+    }
+
+    /// Events up to one of the kind `kind`, which is the last.
+    pub fn until(&mut self, kind: &str) -> Vec<Value> {
+        let mut events = vec![self.event()];
+        while events.last().expect("an event")["event"] != kind {
+            events.push(self.event());
+        }
+        events
+    }
+
+    /// Adds an asset beside `assets/..` and waits until it is baked and nothing is left to do: whatever was done before is
+    /// then dealt with. Returns what was told of other assets, as `<event> <input>`.
+    pub fn settle(&mut self, folder: &Path) -> Vec<String> {
+        // Another one each time, or it would not be baked; renamed, since a busy machine may stop between two writes.
+        let number = MARKS.fetch_add(1, Ordering::Relaxed);
+        let beside = folder.join("mark");
+        fs::write(&beside, format!(r#"{{"asset":{{"version":"2.0","generator":"{number}"}}}}"#)).expect("a file");
+        fs::rename(beside, folder.join("assets/mark.gltf")).expect("a file");
+        let mut told = Vec::new();
+        loop {
+            for event in self.until("idle") {
+                let kind = event["event"].as_str().expect("an event");
+                if let Some(input) = event["input"].as_str() {
+                    told.push(format!("{kind} {input}"));
+                }
+            }
+            if told.iter().any(|event| event == "baked assets/mark.gltf") {
+                told.retain(|event| !event.ends_with("assets/mark.gltf"));
+                return told;
+            }
+        }
+    }
+
+    /// Ends it as Ctrl-C does.
+    pub fn stop(mut self) -> Run {
+        #[cfg(unix)]
+        Command::new("kill").args(["-INT", &self.child.id().to_string()]).status().expect("a signal");
+        #[cfg(not(unix))]
+        self.child.kill().expect("a process");
+        let status = self.child.wait().expect("an exit");
+        let mut err = String::new();
+        self.child.stderr.take().expect("a pipe").read_to_string(&mut err).expect("UTF-8");
+        Run { code: status.code().unwrap_or(-1), out: String::new(), err }
+    }
+}
+
+impl Drop for Session {
+    fn drop(&mut self) {
+        // A test that failed leaves nothing running.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// Expects `out` to be what a bake of `assets` writes to a new folder.
+pub fn assert_as_baked(folder: &Path, context: &str) {
+    let clean = folder.join("clean");
+    let run = roughcast_in(folder, "bake assets -o clean -q".split(' '));
+    assert!(matches!(run.code, 0 | 1), "{context}: {}", run.err);
+    let (expected, found) = (hashes(&clean), hashes(&folder.join("out")));
+    let names = |all: &BTreeMap<String, String>| all.keys().cloned().collect::<Vec<_>>();
+    assert_eq!(names(&found), names(&expected), "{context}\n{}", run.err);
+    assert_eq!(found, expected, "{context}");
+    if clean.exists() {
+        fs::remove_dir_all(clean).expect("a folder");
+    }
+}
