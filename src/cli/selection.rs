@@ -18,7 +18,7 @@ use crate::texture::EncodeError;
 pub struct Selection {
     /// Output folder. [default: `output` in roughcast.toml]
     #[arg(short, long, value_name = "DIR")]
-    output: Option<PathBuf>,
+    pub output: Option<PathBuf>,
     #[command(flatten)]
     settings: SettingOptions,
 }
@@ -26,7 +26,6 @@ pub struct Selection {
 /// How outputs are made.
 #[derive(Debug, clap::Args)]
 pub struct SettingOptions {
-    pub output: Option<PathBuf>,
     /// Settings of every asset, instead of the roughcast.toml in its folder or in the nearest above.
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,

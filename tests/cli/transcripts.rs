@@ -48,8 +48,7 @@ fn help() {
 
 #[test]
 fn help_of_each_command() {
-    for command in ["bake", "init", "map", "check", "compare", "plan", "render", "completions", "man"] {
-    for command in ["bake", "init", "map", "watch", "compare", "plan", "render", "completions", "man"] {
+    for command in ["bake", "init", "map", "watch", "check", "compare", "plan", "render", "completions", "man"] {
         transcript(&format!("help_{command}"), &[&format!("roughcast {command} --help")]);
     }
 }
