@@ -162,7 +162,7 @@ impl SettingOptions {
         }
         let settings = resolve(&[flags]).map_or_else(|_| Settings::default(), |resolved| resolved.settings);
         let configs = configs.0.into_values().flatten().map(|found| found.config.path).collect();
-        Ok(Selected { assets, output, errors, settings, configs })
+        Ok(Selected { assets, output: output.to_owned(), errors, settings, configs })
     }
 
     fn config<'c>(&self, configs: &'c mut Configs, folder: &Path) -> Result<Option<&'c Found>, SelectionError> {
