@@ -23,15 +23,16 @@ const TYPES = {
 
 /**
  * Serves folders by the first part of the path: { three: '/a/folder' } is /three/. What links lead to counts: a file
- * outside its folder is not found.
+ * outside its folder is not found. Pages that listen to /events hear of each `tell`.
  *
- * @returns {Promise<{url: string, close: () => Promise<void>}>}
+ * @returns {Promise<{url: string, tell: () => void, close: () => Promise<void>}>}
  */
 export async function serve(folders) {
   const roots = new Map();
   for (const [name, folder] of Object.entries(folders)) roots.set(name, await realpath(folder));
+  const listeners = new Set();
   const server = http.createServer((request, response) => {
-    answer(roots, request, response).catch(() => fail(response, 500));
+    answer(roots, listeners, request, response).catch(() => fail(response, 500));
   });
   await new Promise((resolve, reject) => {
     server.once('error', reject);
@@ -39,14 +40,16 @@ export async function serve(folders) {
   });
   return {
     url: `http://127.0.0.1:${server.address().port}`,
+    tell: () => listeners.forEach((response) => response.write('data: baked\n\n')),
     close: () => new Promise((resolve) => server.close(resolve) && server.closeAllConnections()),
   };
 }
 
-async function answer(roots, request, response) {
+async function answer(roots, listeners, request, response) {
   // Another site's name for this address would let its pages read the files (DNS rebinding).
   if (!/^(127\.0\.0\.1|localhost)(:\d+)?$/.test(request.headers.host ?? '')) return fail(response, 403);
   if (request.method !== 'GET' && request.method !== 'HEAD') return fail(response, 405);
+  if (request.method === 'GET' && request.url === '/events') return listen(listeners, response);
   const file = await find(roots, request.url);
   if (file === null) return fail(response, 404);
   response.writeHead(200, {
@@ -60,6 +63,14 @@ async function answer(roots, request, response) {
   createReadStream(file.name)
     .on('error', () => response.destroy())
     .pipe(response);
+}
+
+/** Server-sent events, until the page is left. */
+function listen(listeners, response) {
+  response.writeHead(200, { 'content-type': 'text/event-stream', 'cache-control': 'no-store' });
+  response.flushHeaders();
+  listeners.add(response);
+  response.on('close', () => listeners.delete(response));
 }
 
 /** The file that a URL names, or null. */

@@ -1,9 +1,11 @@
-// usage: npm run view -- [<baked.gltf> [--original <asset.gltf>]]
+// usage: npm run view -- [<baked.gltf> [--original <asset.gltf>] [--events]]
 // Serves the page with an asset on this machine until Ctrl-C. Without an asset: the fixture, baked for the occasion.
+// With --events the page reloads on what `roughcast watch --json` writes to standard input.
 import { mkdirSync, mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import os from 'node:os';
 import path from 'node:path';
 import process from 'node:process';
+import { createInterface } from 'node:readline';
 import { fileURLToPath } from 'node:url';
 import { parseArgs } from 'node:util';
 import { serve } from './server.js';
@@ -37,15 +39,24 @@ function fixture() {
 const resolve = (file) => path.resolve(process.env.INIT_CWD ?? '.', file);
 
 /** Files of the variants that there are. */
-function variants() {
-  const { positionals, values } = parseArgs({ allowPositionals: true, options: { original: { type: 'string' } } });
+function variants({ positionals, values }) {
   if (positionals.length === 0) return fixture();
   const all = Object.fromEntries(positionals.map((file) => [profile(resolve(file)), resolve(file)]));
   return values.original ? { original: resolve(values.original), ...all } : all;
 }
 
+/** Whether a line of `roughcast watch --json` is about new outputs. */
+function isNews(line) {
+  try {
+    return ['baked', 'removed'].includes(JSON.parse(line).event);
+  } catch {
+    return false;
+  }
+}
+
 try {
-  const files = variants();
+  const given = parseArgs({ allowPositionals: true, options: { original: { type: 'string' }, events: { type: 'boolean' } } });
+  const files = variants(given);
   // Each asset's folder by itself: two may have files of one name.
   const folders = Object.fromEntries(Object.entries(files).map(([name, file]) => [`asset-${name}`, path.dirname(file)]));
   const urls = Object.entries(files).map(([name, file]) => [name, `/asset-${name}/${encodeURIComponent(path.basename(file))}`]);
@@ -60,6 +71,7 @@ try {
     three: path.join(here, 'node_modules/three'),
   });
   console.log(`${server.url}/page/index.html`);
+  if (given.values.events) createInterface({ input: process.stdin }).on('line', (line) => isNews(line) && server.tell());
 } catch (error) {
   console.error(`view: ${error.message}`);
   process.exit(1);

@@ -134,6 +134,8 @@ try {
   new ResizeObserver(request).observe(canvas.parentElement);
   frame();
   document.documentElement.dataset.ready = 'true';
+  // Browsers keep what the controls say.
+  new EventSource('/events').onmessage = () => location.reload();
 } catch (error) {
   status.textContent = `Cannot be shown: ${error.message}`;
   throw error;

@@ -11,14 +11,14 @@ import { example, missing, repository, roughcast, temporary } from './roughcast.
 const SHOTS = path.join(repository, 'target/three');
 const options = { skip: missing || browserMissing };
 
-/** `npm run view` with arguments: its URL, or what it complained of. */
+/** `npm run view` with arguments: its URL and standard input, or what it complained of. */
 function view(t, ...args) {
   const child = spawn(process.execPath, [path.join(example, 'view.js'), ...args]);
   t.after(() => child.kill());
   return new Promise((resolve) => {
     let complaint = '';
     child.stderr.on('data', (text) => (complaint += text));
-    child.stdout.once('data', (text) => resolve({ url: String(text).trim() }));
+    child.stdout.once('data', (text) => resolve({ url: String(text).trim(), input: child.stdin }));
     child.once('exit', (code) => resolve({ code, complaint }));
   });
 }
@@ -105,6 +105,22 @@ test("a user's asset is shown", options, async (t) => {
   t.after(() => browser.close());
   const page = await ready(browser, url, { viewport: { width: 500, height: 300 } });
   assert.deepEqual(await control(page, 'left').locator('option').allTextContents(), ['pyramid']);
+  assert.deepEqual(page.problems, []);
+});
+
+test('it reloads on what a watch tells', options, async (t) => {
+  const folder = temporary(t);
+  roughcast('bake', path.join(repository, 'fixtures/waves'), '-o', folder, '--quiet');
+  const { url, input } = await view(t, path.join(folder, 'waves.gltf'), '--events');
+  const browser = await launch();
+  t.after(() => browser.close());
+  const page = await ready(browser, url, { viewport: { width: 400, height: 300 } });
+  await page.evaluate(() => (window.isOld = true));
+  input.write('{"event":"idle","assets":1,"failed":0}\nno JSON\n');
+  await page.waitForTimeout(300);
+  assert.equal(await page.evaluate(() => window.isOld), true, 'nothing is new');
+  input.write('{"event":"baked","output":"waves.gltf"}\n');
+  await page.waitForFunction(() => !window.isOld && document.documentElement.dataset.ready);
   assert.deepEqual(page.problems, []);
 });
 
