@@ -83,8 +83,9 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
     let (wake, woken) = Wake::channel();
     let stop = Arc::new(AtomicBool::new(false));
     let (told, waking) = (stop.clone(), wake.clone());
-    // The second time, whoever asks does not want to wait. A process that has a handler already keeps it.
-    let _ = ctrlc::try_set_handler(move || {
+    // The second time, whoever asks does not want to wait. Shells start jobs in the
+    // background with interrupts ignored; a signal that someone sends counts all the same.
+    let _ = ctrlc::set_handler(move || {
         if told.swap(true, Ordering::AcqRel) {
             std::process::exit(130);
         }
