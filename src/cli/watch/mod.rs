@@ -98,7 +98,6 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
     let mut round = Round::new(args, output);
     let mut is_first = true;
     loop {
-        let start = Instant::now();
         // First watch, then look: nothing happens in between.
         if poll.is_none()
             && let Err(error) = follow(&mut wakes, &wake, round.scope())
@@ -132,8 +131,8 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
         if next.is_idle {
             teller.idle(round.counts())?;
         }
-        // Half of the time at most, however many events there are.
-        let earliest = Instant::now() + start.elapsed().clamp(LEAST_PAUSE, LONGEST_PAUSE);
+        // Looking takes half of the time at most, however many events there are.
+        let earliest = Instant::now() + next.took.clamp(LEAST_PAUSE, LONGEST_PAUSE);
         let latest = [next.at, poll.map(|poll| Instant::now() + poll)].into_iter().flatten().min();
         let ended = match latest {
             None => woken.recv().is_err(),

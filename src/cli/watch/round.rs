@@ -42,6 +42,8 @@ pub struct Next {
     pub at: Option<Instant>,
     /// Whether nothing is left to do.
     pub is_idle: bool,
+    /// How long it took to look, without what was baked.
+    pub took: Duration,
 }
 
 impl Round {
@@ -82,7 +84,7 @@ impl Round {
     /// Looks at everything and bakes what changed; the `first` time without waiting for what is being written.
     pub fn run(&mut self, args: &Args, stop: &AtomicBool, teller: &mut Teller<'_>, first: bool) -> io::Result<Next> {
         let now = Instant::now();
-        let mut retry = None;
+        let (mut retry, mut baking) = (None, Duration::ZERO);
         if let Some(selected) = self.select(args, teller, first)?
             && (first || self.has_settled_configs(&selected.configs, now))
         {
@@ -94,7 +96,9 @@ impl Round {
             let planned = self.plan(&selected.assets, now, first);
             if planned.iter().any(Option::is_some) {
                 is_same_scope = false;
+                let start = Instant::now();
                 retry = self.work(&selected.assets, planned, stop, teller)?;
+                baking = start.elapsed();
                 teller.removed(&self.ledger.sweep())?;
                 if let Some(cache) = &self.cache {
                     args.cache.trim(cache, teller.err())?;
@@ -111,7 +115,7 @@ impl Round {
         let waits = [self.settling.pending(now), untold, retry.filter(Duration::is_zero).map(|_| now)];
         let is_idle = waits.iter().all(Option::is_none);
         let at = waits.into_iter().flatten().chain(retry.map(|retry| Instant::now() + retry)).min();
-        Ok(Next { at, is_idle })
+        Ok(Next { at, is_idle, took: now.elapsed().saturating_sub(baking) })
     }
 
     fn current_scope(&self, args: &Args) -> Scope {
