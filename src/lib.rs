@@ -14,6 +14,7 @@ pub mod choose;
 pub mod cli;
 pub mod compare;
 pub mod config;
+mod digest;
 pub mod gltf;
 pub mod inspect;
 pub mod judge;

@@ -9,6 +9,7 @@ use walkdir::WalkDir;
 
 use super::entry::{Entry, Stored};
 use crate::bake::{Baked, write_unsynced};
+use crate::digest::digest;
 
 /// A cache in a folder.
 #[derive(Clone, Debug)]
@@ -48,7 +49,7 @@ impl Cache {
     pub fn entry(&self, id: &str) -> Result<Option<Entry>, CacheError> {
         let path = self.path("jobs", id);
         let Some(bytes) = read(&path)? else { return Ok(None) };
-        let text = bytes.split_at_checked(DIGEST_LENGTH).filter(|(digest, rest)| hex(rest).as_bytes() == *digest);
+        let text = bytes.split_at_checked(DIGEST_LENGTH).filter(|(named, json)| digest(json).as_bytes() == *named);
         let entry = text.and_then(|(_, json)| serde_json::from_slice::<Entry>(json).ok());
         entry.filter(Entry::is_contained).map(Some).ok_or_else(|| dropped(path))
     }
@@ -57,10 +58,10 @@ impl Cache {
     ///
     /// # Errors
     /// [`CacheError`] where they are not what they were.
-    pub fn blob(&self, digest: &str) -> Result<Option<Vec<u8>>, CacheError> {
-        let path = self.path("blobs", digest);
+    pub fn blob(&self, name: &str) -> Result<Option<Vec<u8>>, CacheError> {
+        let path = self.path("blobs", name);
         match read(&path)? {
-            Some(bytes) if hex(&bytes) == digest => Ok(Some(bytes)),
+            Some(bytes) if digest(&bytes) == name => Ok(Some(bytes)),
             Some(_) => Err(dropped(path)),
             None => Ok(None),
         }
@@ -80,12 +81,12 @@ impl Cache {
         let entry = Entry { document, files, copies: baked.copies.clone(), report: baked.report.clone() };
         let path = self.path("jobs", id);
         let json = serde_json::to_vec(&entry).map_err(|e| failed(&path)(e.into()))?;
-        let text = [hex(&json).as_bytes(), &json].concat();
+        let text = [digest(&json).as_bytes(), &json].concat();
         write_unsynced(&path, &text).map_err(failed(&path))
     }
 
     fn put_blob(&self, name: &Path, bytes: &[u8]) -> Result<Stored, CacheError> {
-        let blake3 = hex(bytes);
+        let blake3 = digest(bytes);
         let path = self.path("blobs", &blake3);
         // Also over a blob that is there: it may be damaged.
         write_unsynced(&path, bytes).map_err(failed(&path))?;
@@ -136,8 +137,8 @@ impl Cache {
         Ok(())
     }
 
-    fn path(&self, kind: &str, digest: &str) -> PathBuf {
-        self.root.join(kind).join(digest.get(..2).unwrap_or("")).join(digest)
+    fn path(&self, kind: &str, name: &str) -> PathBuf {
+        self.root.join(kind).join(name.get(..2).unwrap_or("")).join(name)
     }
 }
 
@@ -146,10 +147,6 @@ const MARK_AGE: Duration = Duration::from_secs(3600);
 
 /// Hexadecimal digits of a BLAKE3 digest.
 const DIGEST_LENGTH: usize = 64;
-
-fn hex(bytes: &[u8]) -> String {
-    blake3::hash(bytes).to_hex().to_string()
-}
 
 fn read(path: &Path) -> Result<Option<Vec<u8>>, CacheError> {
     match fs::read(path) {

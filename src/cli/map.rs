@@ -14,6 +14,7 @@ use crate::bake::{
     write_file,
 };
 use crate::bump::Wrap;
+use crate::digest::digest;
 use crate::map::{
     DecodeError, DecodeOptions, HeightMap, Image, MapError, NormalLayout, NormalMap, decode, decode_colours,
 };
@@ -175,7 +176,7 @@ impl Written {
 fn bake(args: &Args, settings: &Settings) -> Result<Written, MapCommandError> {
     let bytes = read(&args.image)?;
     let image = decoded(&args.image, &bytes, args.layer.clone(), settings, decode)?;
-    let mut sources = vec![digest(&args.image, &bytes)];
+    let mut sources = vec![source_digest(&args.image, &bytes)];
     let is_jpeg = notes::is_jpeg(&bytes);
     drop(bytes);
     let failed = |error| MapCommandError::Map { path: args.image.clone(), error };
@@ -197,7 +198,7 @@ fn bake(args: &Args, settings: &Settings) -> Result<Written, MapCommandError> {
                 let bytes = read(path)?;
                 let image = decoded(path, &bytes, None, settings, decode_colours)?;
                 image.check_finite().map_err(|error| MapCommandError::Map { path: path.clone(), error })?;
-                sources.push(digest(path, &bytes));
+                sources.push(source_digest(path, &bytes));
                 Ok::<_, MapCommandError>(image)
             };
             Some(OwnRoughness { image: image.as_ref().map(&mut load).transpose()?, factor: factor.unwrap_or(1.0) })
@@ -258,9 +259,9 @@ fn decoded(
     decode(bytes, &options).map_err(|error| MapCommandError::Decode { path: path.to_owned(), error })
 }
 
-fn digest(path: &Path, bytes: &[u8]) -> SourceDigest {
+fn source_digest(path: &Path, bytes: &[u8]) -> SourceDigest {
     let uri = path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
-    SourceDigest { uri, blake3: blake3::hash(bytes).to_hex().to_string() }
+    SourceDigest { uri, blake3: digest(bytes) }
 }
 
 fn texture_file(

@@ -9,6 +9,7 @@ use serde_json::{Map, Value, json};
 use super::error::RunError;
 use crate::bake::{Settings, Survey, read_file, survey};
 use crate::config::Values;
+use crate::digest::digest;
 use crate::gltf::document::{Container, Document};
 
 /// The bake of one asset. Paths are relative to the working folder, if the command line's are.
@@ -78,7 +79,6 @@ impl Job {
         let stem = stem(source);
         // Without what has no meaning, such as a slash at the end.
         let output: &Path = &output.components().collect::<PathBuf>();
-        let digest = |bytes: &[u8]| blake3::hash(bytes).to_hex().to_string();
         let mut inputs =
             vec![JobInput { path: source.to_owned(), blake3: Some(digest(&bytes)), bytes: bytes.len() as u64 }];
         for file in &survey.files {

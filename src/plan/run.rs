@@ -11,6 +11,7 @@ use super::restore::{Lookup, restore};
 use crate::bake::report::AssetReport;
 use crate::bake::{Baked, Places, Source, bake, publish, read_file};
 use crate::cache::{Cache, CacheError};
+use crate::digest::digest;
 use crate::gltf::document::{Container, Document};
 
 /// What a job did.
@@ -136,7 +137,6 @@ fn written(
     {
         warn(&error);
     }
-    let digest = |bytes: &[u8]| blake3::hash(bytes).to_hex().to_string();
     let copies = baked.copies.iter().map(|copy| Written::copy(job, copy));
     let files = baked.files.iter().map(|file| Written::new(job, &file.path, digest(&file.bytes)));
     let document = Written { path: output.clone(), source: output.clone(), blake3: digest(&baked.document) };
@@ -158,10 +158,10 @@ impl<'j> Inputs<'j> {
 
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
         let read = read_file(path);
-        let digest = read.as_ref().ok().map(|bytes| blake3::hash(bytes).to_hex());
+        let found = read.as_ref().ok().map(|bytes| digest(bytes));
         let planned = self.digests.get(path).copied().flatten();
         // What was there and is gone has changed, too; what was not there is missed by who needs it.
-        let is_as_planned = digest.as_ref().map(|digest| digest.as_str()) == planned;
+        let is_as_planned = found.as_deref() == planned;
         if !is_as_planned && let Ok(mut changed) = self.changed.lock() {
             changed.get_or_insert_with(|| path.to_owned());
         }

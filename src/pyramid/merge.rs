@@ -72,6 +72,44 @@ pub(crate) fn store<S: Simd, const N: usize>(wide: [Wide<S>; N]) -> [[f32; N]; L
     values
 }
 
+/// A texel as `N` numbers, for [`Merge`].
+pub(super) trait Numbers<const N: usize>: Copy + Default {
+    /// The numbers.
+    fn values(&self) -> [f32; N];
+
+    /// The texel of them.
+    fn from_values(values: [f32; N]) -> Self;
+
+    /// The numbers of what is merged of `parts`, for one texel or many side by side.
+    fn merged<F: Real>(weights: &[F], parts: &[[F; N]]) -> [F; N];
+}
+
+/// [`Merge::merge`] of numbers.
+pub(super) fn merge_numbers<T: Numbers<N>, const N: usize>(weights: &[f32], parts: &[T]) -> T {
+    let parts: Vec<_> = parts.iter().map(T::values).collect();
+    T::from_values(T::merged(weights, &parts))
+}
+
+/// [`Merge::merge_lanes`] of numbers.
+#[inline(always)]
+pub(super) fn merge_number_lanes<S: Simd, T: Numbers<N>, const N: usize>(
+    simd: S,
+    weights: &[[f32; LANES]],
+    part: impl Fn(usize, usize) -> T,
+) -> [T; LANES] {
+    let mut wide = [Wide::splat(simd, 0.0); MAX_PARTS];
+    for (tap, weights) in weights.iter().enumerate() {
+        wide[tap] = Wide::simd_from(simd, *weights);
+    }
+    let parts = load(simd, weights.len(), |tap, lane| part(tap, lane).values());
+    let merged = store(T::merged(&wide[..weights.len()], &parts[..weights.len()]));
+    let mut texels = [T::default(); LANES];
+    for lane in 0..LANES {
+        texels[lane] = T::from_values(merged[lane]);
+    }
+    texels
+}
+
 /// Mean and covariance of the offsets in the area of one texel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Moments {
@@ -90,57 +128,46 @@ impl Moments {
 
 impl Merge for Moments {
     fn merge(weights: &[f32], parts: &[Self]) -> Self {
-        let parts: Vec<_> = parts.iter().map(Self::values).collect();
-        Self::from_values(merged(weights, &parts))
+        merge_numbers(weights, parts)
     }
 
     #[inline(always)]
     fn merge_lanes<S: Simd>(simd: S, weights: &[[f32; LANES]], part: impl Fn(usize, usize) -> Self) -> [Self; LANES] {
-        let mut wide = [Wide::splat(simd, 0.0); MAX_PARTS];
-        for (tap, weights) in weights.iter().enumerate() {
-            wide[tap] = Wide::simd_from(simd, *weights);
-        }
-        let parts = load(simd, weights.len(), |tap, lane| part(tap, lane).values());
-        let merged = store(merged(&wide[..weights.len()], &parts[..weights.len()]));
-        let mut texels = [Self::default(); LANES];
-        for lane in 0..LANES {
-            texels[lane] = Self::from_values(merged[lane]);
-        }
-        texels
+        merge_number_lanes(simd, weights, part)
     }
 }
 
-impl Moments {
+impl Numbers<5> for Moments {
     #[inline(always)]
-    pub(super) fn values(&self) -> [f32; 5] {
+    fn values(&self) -> [f32; 5] {
         let Symmetric2 { uu, uv, vv } = self.covariance;
         [self.mean.u, self.mean.v, uu, uv, vv]
     }
 
     #[inline(always)]
-    pub(super) fn from_values([u, v, uu, uv, vv]: [f32; 5]) -> Self {
+    fn from_values([u, v, uu, uv, vv]: [f32; 5]) -> Self {
         Self { mean: Offset { u, v }, covariance: Symmetric2::new(uu, uv, vv) }
     }
-}
 
-/// m = sum w m_i, K = sum w (K_i + (m_i - m)(m_i - m)^T): the paper's recursion ("The roughness pyramid", last formula)
-/// for any weights. Central moments throughout: `E[x^2] - E[x]^2` cancels (test
-/// `moment_subtraction_cancels_and_the_recursion_does_not`). Parts are u, v, uu, uv, vv.
-#[inline(always)]
-fn merged<F: Real>(weights: &[F], parts: &[[F; 5]]) -> [F; 5] {
-    let zero = weights[0].like(0.0);
-    let (mut u, mut v) = (zero, zero);
-    for (w, part) in weights.iter().zip(parts) {
-        (u, v) = (u + *w * part[0], v + *w * part[1]);
+    /// m = sum w m_i, K = sum w (K_i + (m_i - m)(m_i - m)^T): the paper's recursion ("The roughness pyramid", last formula)
+    /// for any weights. Central moments throughout: `E[x^2] - E[x]^2` cancels (test
+    /// `moment_subtraction_cancels_and_the_recursion_does_not`). Parts are u, v, uu, uv, vv.
+    #[inline(always)]
+    fn merged<F: Real>(weights: &[F], parts: &[[F; 5]]) -> [F; 5] {
+        let zero = weights[0].like(0.0);
+        let (mut u, mut v) = (zero, zero);
+        for (w, part) in weights.iter().zip(parts) {
+            (u, v) = (u + *w * part[0], v + *w * part[1]);
+        }
+        let (mut uu, mut uv, mut vv) = (zero, zero, zero);
+        for (w, part) in weights.iter().zip(parts) {
+            let (x, y) = (part[0] - u, part[1] - v);
+            uu = uu + *w * (part[2] + x * x);
+            uv = uv + *w * (part[3] + x * y);
+            vv = vv + *w * (part[4] + y * y);
+        }
+        [u, v, uu, uv, vv]
     }
-    let (mut uu, mut uv, mut vv) = (zero, zero, zero);
-    for (w, part) in weights.iter().zip(parts) {
-        let (x, y) = (part[0] - u, part[1] - v);
-        uu = uu + *w * (part[2] + x * x);
-        uv = uv + *w * (part[3] + x * y);
-        vv = vv + *w * (part[4] + y * y);
-    }
-    [u, v, uu, uv, vv]
 }
 
 /// Plain averages, for channels whose variance no one needs.

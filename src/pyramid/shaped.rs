@@ -1,10 +1,10 @@
 //! Third and fourth moments: what tells a heavy-tailed or lopsided distribution of offsets from a normal one.
 
-use fearless_simd::{Simd, prelude::*};
+use fearless_simd::Simd;
 
-use super::merge::{MAX_PARTS, load, store};
+use super::merge::{Numbers, merge_number_lanes, merge_numbers};
 use super::{Merge, Moments, Rows};
-use crate::simd::{LANES, Real, Wide};
+use crate::simd::{LANES, Real};
 use crate::symmetric::Symmetric2;
 
 /// Mean, covariance and the third and fourth central moments of the offsets in the area of one texel.
@@ -29,30 +29,19 @@ impl ShapedMoments {
 
 impl Merge for ShapedMoments {
     fn merge(weights: &[f32], parts: &[Self]) -> Self {
-        let parts: Vec<_> = parts.iter().map(Self::values).collect();
-        Self::from_values(merged(weights, &parts))
+        merge_numbers(weights, parts)
     }
 
     #[inline(always)]
     fn merge_lanes<S: Simd>(simd: S, weights: &[[f32; LANES]], part: impl Fn(usize, usize) -> Self) -> [Self; LANES] {
-        let mut wide = [Wide::splat(simd, 0.0); MAX_PARTS];
-        for (tap, weights) in weights.iter().enumerate() {
-            wide[tap] = Wide::simd_from(simd, *weights);
-        }
-        let parts = load(simd, weights.len(), |tap, lane| part(tap, lane).values());
-        let merged = store(merged(&wide[..weights.len()], &parts[..weights.len()]));
-        let mut texels = [Self::default(); LANES];
-        for lane in 0..LANES {
-            texels[lane] = Self::from_values(merged[lane]);
-        }
-        texels
+        merge_number_lanes(simd, weights, part)
     }
 }
 
 /// Numbers of a texel: mean, covariance, third and fourth moments.
 const VALUES: usize = 14;
 
-impl ShapedMoments {
+impl Numbers<VALUES> for ShapedMoments {
     #[inline(always)]
     fn values(&self) -> [f32; VALUES] {
         let [u, v, uu, uv, vv] = self.moments.values();
@@ -68,41 +57,41 @@ impl ShapedMoments {
             fourth: [f0, f1, f2, f3, f4],
         }
     }
-}
 
-/// Exact for any weights: E[(d_i + e)^p] expanded, with d_i central in its part and e from the whole's mean to the
-/// part's (P. Pebay, "Formulas for robust, one-pass parallel computation of covariances and arbitrary-order
-/// statistical moments", SAND2008-6212, 2008, section 3; here for two variables and weights that sum to 1).
-#[inline(always)]
-fn merged<F: Real>(weights: &[F], parts: &[[F; VALUES]]) -> [F; VALUES] {
-    let zero = weights[0].like(0.0);
-    let (two, three, four, six) = (zero.like(2.0), zero.like(3.0), zero.like(4.0), zero.like(6.0));
-    let mut sums = [zero; VALUES];
-    for (w, part) in weights.iter().zip(parts) {
-        (sums[0], sums[1]) = (sums[0] + *w * part[0], sums[1] + *w * part[1]);
-    }
-    for (w, &[u, v, kuu, kuv, kvv, t0, t1, t2, t3, f0, f1, f2, f3, f4]) in weights.iter().zip(parts) {
-        let (u, v) = (u - sums[0], v - sums[1]);
-        let (uu, uv, vv) = (u * u, u * v, v * v);
-        let powers = [
-            kuu + uu,
-            kuv + uv,
-            kvv + vv,
-            t0 + (three * kuu + uu) * u,
-            t1 + two * kuv * u + (kuu + uu) * v,
-            t2 + two * kuv * v + (kvv + vv) * u,
-            t3 + (three * kvv + vv) * v,
-            f0 + four * t0 * u + (six * kuu + uu) * uu,
-            f1 + three * t1 * u + t0 * v + three * kuv * uu + (three * kuu + uu) * uv,
-            f2 + two * (t2 * u + t1 * v) + kuu * vv + kvv * uu + (four * kuv + uv) * uv,
-            f3 + three * t2 * v + t3 * u + three * kuv * vv + (three * kvv + vv) * uv,
-            f4 + four * t3 * v + (six * kvv + vv) * vv,
-        ];
-        for i in 0..powers.len() {
-            sums[2 + i] = sums[2 + i] + *w * powers[i];
+    /// Exact for any weights: E[(d_i + e)^p] expanded, with d_i central in its part and e from the whole's mean to the
+    /// part's (P. Pebay, "Formulas for robust, one-pass parallel computation of covariances and arbitrary-order
+    /// statistical moments", SAND2008-6212, 2008, section 3; here for two variables and weights that sum to 1).
+    #[inline(always)]
+    fn merged<F: Real>(weights: &[F], parts: &[[F; VALUES]]) -> [F; VALUES] {
+        let zero = weights[0].like(0.0);
+        let (two, three, four, six) = (zero.like(2.0), zero.like(3.0), zero.like(4.0), zero.like(6.0));
+        let mut sums = [zero; VALUES];
+        for (w, part) in weights.iter().zip(parts) {
+            (sums[0], sums[1]) = (sums[0] + *w * part[0], sums[1] + *w * part[1]);
         }
+        for (w, &[u, v, kuu, kuv, kvv, t0, t1, t2, t3, f0, f1, f2, f3, f4]) in weights.iter().zip(parts) {
+            let (u, v) = (u - sums[0], v - sums[1]);
+            let (uu, uv, vv) = (u * u, u * v, v * v);
+            let powers = [
+                kuu + uu,
+                kuv + uv,
+                kvv + vv,
+                t0 + (three * kuu + uu) * u,
+                t1 + two * kuv * u + (kuu + uu) * v,
+                t2 + two * kuv * v + (kvv + vv) * u,
+                t3 + (three * kvv + vv) * v,
+                f0 + four * t0 * u + (six * kuu + uu) * uu,
+                f1 + three * t1 * u + t0 * v + three * kuv * uu + (three * kuu + uu) * uv,
+                f2 + two * (t2 * u + t1 * v) + kuu * vv + kvv * uu + (four * kuv + uv) * uv,
+                f3 + three * t2 * v + t3 * u + three * kuv * vv + (three * kvv + vv) * uv,
+                f4 + four * t3 * v + (six * kvv + vv) * vv,
+            ];
+            for i in 0..powers.len() {
+                sums[2 + i] = sums[2 + i] + *w * powers[i];
+            }
+        }
+        sums
     }
-    sums
 }
 
 /// Offsets read as [`ShapedMoments`].

@@ -92,7 +92,7 @@ mod tests {
         let path = folder.path().join(name);
         fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
         fs::write(&path, name).expect("a file");
-        Written { source: path.clone(), path, blake3: blake3::hash(name.as_bytes()).to_hex().to_string() }
+        Written { source: path.clone(), path, blake3: crate::digest::digest(name.as_bytes()) }
     }
 
     fn names(folder: &TempDir, removed: &[Removed]) -> Vec<String> {

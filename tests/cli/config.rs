@@ -1,12 +1,11 @@
 //! `roughcast.toml`: found, read, overridden, shown.
 
 use std::fs;
-use std::path::Path;
 
 use serde_json::Value;
 use tempfile::{TempDir, tempdir};
 
-use super::process::{Run, copy, files, fixtures, hashes, roughcast_in};
+use super::process::{copy, done, files, fixtures, hashes, run};
 
 /// `assets/brushed`, `assets/props/waves`, and `assets/roughcast.toml` with `config`.
 fn scene(config: &str) -> TempDir {
@@ -16,16 +15,6 @@ fn scene(config: &str) -> TempDir {
     copy(&fixtures().join("waves"), &assets.join("props"));
     fs::write(assets.join("roughcast.toml"), config).expect("a file");
     folder
-}
-
-fn run(folder: &Path, line: &str) -> Run {
-    roughcast_in(folder, line.split_whitespace())
-}
-
-fn done(folder: &Path, line: &str) -> String {
-    let run = run(folder, line);
-    assert_eq!((run.code, run.err.as_str()), (0, ""), "{line}");
-    run.out
 }
 
 #[test]

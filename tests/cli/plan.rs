@@ -7,7 +7,7 @@ use std::path::Path;
 use serde_json::{Value, json};
 use tempfile::{TempDir, tempdir};
 
-use super::process::{Run, copy, fixtures, hashes, roughcast_in};
+use super::process::{copy, done, fixtures, hashes, roughcast_in, run};
 
 fn scene() -> TempDir {
     let folder = tempdir().expect("a folder");
@@ -15,16 +15,6 @@ fn scene() -> TempDir {
         copy(&fixtures().join(asset), &folder.path().join("assets").join(asset));
     }
     folder
-}
-
-fn run(folder: &Path, line: &str) -> Run {
-    roughcast_in(folder, line.split_whitespace())
-}
-
-fn done(folder: &Path, line: &str) -> String {
-    let run = run(folder, line);
-    assert_eq!((run.code, run.err.as_str()), (0, ""), "{line}");
-    run.out
 }
 
 /// Plans `assets` to `out` with `options`, and writes the plan to `plan.json`.

@@ -38,6 +38,18 @@ pub fn roughcast_in(folder: &Path, arguments: impl IntoIterator<Item = impl AsRe
     command.output().expect("the command starts").into()
 }
 
+/// Runs it in `folder` with the words of `line` as arguments.
+pub fn run(folder: &Path, line: &str) -> Run {
+    roughcast_in(folder, line.split_whitespace())
+}
+
+/// What it prints there, when it works and complains of nothing.
+pub fn done(folder: &Path, line: &str) -> String {
+    let run = run(folder, line);
+    assert_eq!((run.code, run.err.as_str()), (0, ""), "{line}");
+    run.out
+}
+
 /// Bakes `input` to `output` and expects it to work.
 pub fn bake(input: &Path, output: &Path, options: &[&str]) -> Run {
     let mut arguments = vec![OsStr::new("bake"), input.as_ref(), "-o".as_ref(), output.as_ref()];

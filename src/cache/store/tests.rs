@@ -58,7 +58,7 @@ fn no_entry_writes_outside_the_output_folder() {
         let (_folder, cache, mut entry) = filled();
         entry.files[0].path = PathBuf::from(path);
         let json = serde_json::to_vec(&entry).expect("JSON");
-        fs::write(cache.path("jobs", "0123"), [hex(&json).as_bytes(), &json].concat()).expect("a file");
+        fs::write(cache.path("jobs", "0123"), [digest(&json).as_bytes(), &json].concat()).expect("a file");
         assert!(matches!(cache.entry("0123"), Err(CacheError::Damaged { .. })), "{path}");
     }
 }
