@@ -1,11 +1,11 @@
 //! The next coarser level: area-weighted boxes of 2 taps for even sizes, 3 for odd ones (polyphase boxes).
 
-use fearless_simd::{Level as InstructionSet, Simd, dispatch};
+use fearless_simd::{Level as InstructionSet, Simd};
 use rayon::prelude::*;
 
 use super::Rows;
 use super::merge::{MAX_PARTS, Merge};
-use crate::simd::LANES;
+use crate::simd::{LANES, dispatch};
 
 /// Texels under one coarser texel along one axis: at most 3.
 const MAX_TAPS: usize = 3;
@@ -187,12 +187,7 @@ mod tests {
     fn instruction_sets() -> Vec<InstructionSet> {
         let all = InstructionSet::new();
         #[cfg(target_arch = "x86_64")]
-        let sets = [
-            all.as_sse2().map(InstructionSet::Sse2),
-            all.as_sse4_2().map(InstructionSet::Sse4_2),
-            all.as_avx2().map(InstructionSet::Avx2),
-            all.as_avx512().map(InstructionSet::Avx512),
-        ];
+        let sets = [all.as_sse2().map(InstructionSet::Sse2), all.as_avx2().map(InstructionSet::Avx2)];
         #[cfg(not(target_arch = "x86_64"))]
         let sets = [Some(all)];
         sets.into_iter().flatten().collect()

@@ -23,10 +23,12 @@ mod tables;
 #[cfg(test)]
 mod tests;
 
-use fearless_simd::{Level, Simd, dispatch};
+use fearless_simd::{Level, Simd};
 use hints::{Hints, solid_etc1};
 use pack::{Block, pack_solid};
 use rayon::prelude::*;
+
+use crate::simd::dispatch;
 
 /// Bytes of one block.
 pub const BLOCK_BYTES: usize = 16;
@@ -96,12 +98,7 @@ fn gather(lines: &[&[u8]; 4], left: usize) -> [[u8; 4]; 16] {
     })
 }
 
-/// Encodes one block of 4x4 RGBA8 texels, row 0 first.
-pub fn encode_block(texels: &[[u8; 4]; 16], metric: Metric, effort: Effort) -> [u8; BLOCK_BYTES] {
-    dispatch!(Level::new(), simd => encode_with(simd, texels, metric, effort))
-}
-
-/// The encoder's loops over sixteen texels are compiled for every instruction set; their order of operations, and so
+/// Encodes one block of 4x4 RGBA8 texels, row 0 first. The encoder's loops over sixteen texels are compiled for every instruction set; their order of operations, and so
 /// the bytes, are the same.
 #[inline(always)]
 fn encode_with<S: Simd>(simd: S, texels: &[[u8; 4]; 16], metric: Metric, effort: Effort) -> [u8; BLOCK_BYTES] {
@@ -109,22 +106,13 @@ fn encode_with<S: Simd>(simd: S, texels: &[[u8; 4]; 16], metric: Metric, effort:
         Metric::Rgb | Metric::Surface | Metric::Direction => true,
         Metric::Rgba => texels.iter().all(|t| t[3] == 255),
     };
-    if opaque {
-        let texels = texels.map(|[r, g, b, _]| [r, g, b, 255]);
-        if let Some(block) = solid(&texels) {
-            return block;
-        }
-        let block = search(simd, &texels, metric, true, effort);
-        let hints = Hints::of(&texels, block.mode);
-        block.pack(&hints)
-    } else {
-        if let Some(block) = solid(texels) {
-            return block;
-        }
-        let block = search(simd, texels, metric, false, effort);
-        let hints = Hints::of(texels, block.mode);
-        block.pack(&hints)
+    let texels = &texels.map(|[r, g, b, a]| [r, g, b, if opaque { 255 } else { a }]);
+    if let Some(block) = solid(texels) {
+        return block;
     }
+    let block = search(simd, texels, metric, opaque, effort);
+    let hints = Hints::of(texels, block.mode);
+    block.pack(&hints)
 }
 
 fn solid(texels: &[[u8; 4]; 16]) -> Option<[u8; BLOCK_BYTES]> {

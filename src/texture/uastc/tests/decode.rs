@@ -1,16 +1,16 @@
 //! Blocks decode to exactly what the encoder took them for.
 
 use super::super::candidate::{Split, one_line, split_lines, two_planes};
-use super::super::encode_block;
 use super::super::hints::Hints;
 use super::super::moments::{ALL, Lane, moments, principal_axis};
 use super::super::pack::Block;
 use super::super::tables::*;
 use super::*;
+use crate::simd::dispatch;
 use basisu::uastc::bise::{astc_get_levels, unquant_astc_endpoint_val};
 use basisu::uastc::huff_modes::HUFF_MODES;
 use basisu::uastc::patterns::{ASTC_BC7_PATTERNS2, ASTC_BC7_PATTERNS3};
-use fearless_simd::{Level, Simd, dispatch};
+use fearless_simd::{Level, Simd};
 
 pub(super) fn lanes<const N: usize>(texels: &Texels) -> [Lane; N] {
     std::array::from_fn(|c| texels.map(|t| f32::from(t[c])))

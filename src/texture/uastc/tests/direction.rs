@@ -1,12 +1,12 @@
 //! The metric of normals against its slow definition, and what it gains.
 
 use super::super::direction::{LONG, Normals, REBUILT, SHORT, normals as unit_normals};
-use super::super::encode_block;
 use super::super::hints::Hints;
 use super::super::pack::Block;
 use super::decode::{every_mode, expected, lanes};
 use super::*;
-use fearless_simd::{Level, dispatch};
+use crate::simd::dispatch;
+use fearless_simd::Level;
 
 type Vector = [f64; 3];
 

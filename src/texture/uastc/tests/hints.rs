@@ -1,6 +1,5 @@
 //! Blocks transcode, by their hints, to textures that stay near the source.
 
-use super::super::encode_block;
 use super::*;
 use basisu::etc::{uastc_to_etc1, uastc_to_etc2};
 use basisu::uastc::{astc_pack, bc1, bc3_bc5, bc7};

@@ -1,6 +1,6 @@
 //! Whole levels: padding, threads, sizes.
 
-use super::super::{encode_block, encode_level};
+use super::super::encode_level;
 use super::*;
 
 fn picture(width: usize, height: usize) -> Vec<u8> {

@@ -7,7 +7,7 @@ mod hints;
 mod level;
 mod quality;
 
-use super::{BLOCK_BYTES, Effort, Metric};
+use super::{BLOCK_BYTES, Effort, Metric, encode_level};
 use basisu::uastc::unpack::unpack_uastc;
 
 pub(super) type Texels = [[u8; 4]; 16];
@@ -31,6 +31,11 @@ impl Random {
     pub fn unit(&mut self) -> f64 {
         (self.next() >> 11) as f64 / (1u64 << 53) as f64
     }
+}
+
+/// One block.
+pub(super) fn encode_block(texels: &Texels, metric: Metric, effort: Effort) -> [u8; BLOCK_BYTES] {
+    encode_level(texels.as_flattened(), 4, 4, metric, effort).try_into().expect("one block")
 }
 
 /// What the reference transcoder makes of a block.

@@ -1,6 +1,5 @@
 //! How near the blocks are to their source.
 
-use super::super::encode_block;
 use super::*;
 
 fn ratio(sources: &[Texels], effort: Effort) -> f64 {
