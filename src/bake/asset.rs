@@ -13,10 +13,12 @@ use super::job::{self, JobError, JobOutput, JobTexture, PyramidUse, describe};
 use super::names::Names;
 use super::plan::{PlanError, plan};
 use super::png::encode_png;
+use super::provenance::DocumentProvenance;
 use super::pyramids::Range;
 use super::report::{AssetReport, LayerReport, TextureReport};
 use super::settings::{Form, Settings};
 use super::source::{Source, SourceError};
+use crate::digest::digest;
 use crate::gltf::document::{Container, Document, DocumentError};
 use crate::gltf::json::JsonError;
 use crate::gltf::material::{MaterialError, materials};
@@ -238,7 +240,7 @@ impl<'a> Assembly<'a> {
             let blake3 = match self.digests.get(location) {
                 Some(digest) => digest.clone(),
                 None => {
-                    let digest = blake3::hash(&self.source.image(location)?).to_hex().to_string();
+                    let digest = digest(&self.source.image(location)?);
                     self.digests.insert(location.clone(), digest.clone());
                     digest
                 }
@@ -256,6 +258,10 @@ impl<'a> Assembly<'a> {
 
     fn finish(mut self) -> Result<Baked, BakeError> {
         let json = self.document.json_mut();
+        if self.settings.provenance && !self.textures.is_empty() {
+            let told: Vec<PathBuf> = self.digests.keys().filter_map(file).collect();
+            DocumentProvenance::new(self.source, |path| told.iter().any(|told| told == path))?.write(json)?;
+        }
         let indices = add_textures(json, &self.textures)?;
         for pointer in &self.unit_factors {
             json.set(pointer, &1)?;
@@ -301,6 +307,14 @@ impl<'a> Assembly<'a> {
             copies,
             report: self.report,
         })
+    }
+}
+
+/// The file that an image is, if it is one.
+fn file(location: &ImageLocation) -> Option<PathBuf> {
+    match location {
+        ImageLocation::Uri(uri) => relative_path(uri).ok(),
+        ImageLocation::BufferView(_) => None,
     }
 }
 

@@ -10,6 +10,7 @@ use serde_json::Value;
 use super::extension::RoughnessPyramid;
 use super::findings::{Code, Finding, Findings};
 use super::materials::check_materials;
+use super::provenance::check_document_provenance;
 use super::scope::Scope;
 use super::sources::{Sources, Textures};
 use super::texture::{Usage, check_texture};
@@ -75,6 +76,9 @@ pub fn check_document(
         }
     }
     let is_baked = images.contents.values().any(Option::is_some);
+    if let Some(origin) = scope.origin {
+        check_document_provenance(&document, bytes, !images.contents.is_empty(), origin, &mut findings);
+    }
     if let Some(settings) = scope.settings.filter(|_| is_baked) {
         let is_glb = document.container() == Container::Glb;
         if settings.glb != is_glb {

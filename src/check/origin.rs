@@ -6,6 +6,7 @@ use std::io;
 use std::path::Path;
 
 use crate::bake::Source;
+use crate::digest::digest;
 use crate::gltf::document::Document;
 use crate::gltf::texture::ImageLocation;
 
@@ -27,12 +28,18 @@ impl<'a> Origin<'a> {
         self.digests.borrow_mut().entry(uri.to_owned()).or_insert_with(|| self.hash(uri)).clone()
     }
 
+    /// The document, where there is one, and its digest.
+    pub fn document(&self) -> Option<(&Document, String)> {
+        let document = self.document.as_ref()?;
+        Some((document, digest(&document.to_bytes().ok()?)))
+    }
+
     fn hash(&self, uri: &str) -> Result<Vec<String>, String> {
         let locations = self.locations(uri);
         if locations.is_empty() {
             return Err("no such image in the source document".to_owned());
         }
-        let hash = |location| Ok(blake3::hash(&self.bytes(location)?).to_hex().to_string());
+        let hash = |location| Ok(digest(&self.bytes(location)?));
         locations.iter().map(hash).collect()
     }
 

@@ -8,7 +8,10 @@ use super::findings::{Code, Findings};
 use super::origin::Origin;
 use super::scope::Scope;
 use super::settings::check_settings;
-use crate::texture::ktx2::{Ktx2, PROVENANCE_KEY, Provenance, provenance};
+use crate::bake::DocumentProvenance;
+use crate::digest::digest;
+use crate::gltf::document::Document;
+use crate::texture::ktx2::{Ktx2, PROVENANCE_KEY, Provenance, SourceDigest, provenance};
 
 /// Reads the provenance, and compares it with what `scope` has.
 pub fn check_provenance(file: &Ktx2<'_>, scope: &Scope<'_>, findings: &mut Findings) -> Option<Provenance> {
@@ -33,7 +36,7 @@ pub fn check_provenance(file: &Ktx2<'_>, scope: &Scope<'_>, findings: &mut Findi
     };
     check_version(&version, scope.min_version, &place, findings);
     if let Some(origin) = scope.origin {
-        check_sources(&found, origin, &place, findings);
+        check_sources(&found.sources, origin, &place, findings);
     }
     if let Some(expected) = scope.settings {
         check_settings(&found.settings, expected, &place, findings);
@@ -65,8 +68,41 @@ fn check_version(found: &Version, min: Option<&Version>, place: &str, findings: 
     }
 }
 
-fn check_sources(found: &Provenance, origin: &Origin<'_>, place: &str, findings: &mut Findings) {
-    for source in &found.sources {
+/// Compares what `document`, whose bytes are `bytes`, was made from with `origin`. Of the images of baked textures, which
+/// `has_textures` says whether there are any, those textures tell themselves.
+pub fn check_document_provenance(
+    document: &Document,
+    bytes: &[u8],
+    has_textures: bool,
+    origin: &Origin<'_>,
+    findings: &mut Findings,
+) {
+    let Some((source, source_digest)) = origin.document() else { return };
+    // What has no bumps comes back as it is, whoever baked it.
+    if digest(bytes) == source_digest {
+        return;
+    }
+    let is_stale = match DocumentProvenance::read(document) {
+        Some(found) => {
+            check_sources(&found.files, origin, DocumentProvenance::PLACE, findings);
+            found.document != source_digest
+        }
+        None if has_textures || document.container() != source.container() => {
+            let message = "expected the digest of the source document, found none; bake without --no-provenance, or \
+                           check without --source";
+            findings.add(Code::Untraceable, DocumentProvenance::PLACE, message);
+            false
+        }
+        None => true,
+    };
+    if is_stale {
+        let message = "expected the source document as it was baked, found it changed; bake again";
+        findings.add(Code::Stale, "", message);
+    }
+}
+
+fn check_sources(sources: &[SourceDigest], origin: &Origin<'_>, place: &str, findings: &mut Findings) {
+    for source in sources {
         match origin.digests(&source.uri) {
             Err(reason) => {
                 let message = format!("expected the source {}, found: {reason}", source.uri);

@@ -152,6 +152,16 @@ const FIXTURES: &[Fixture] = &[
     with_source(Code::Stale, "bumps.normal.ktx2", "key roughcast", |b| {
         fs::copy(b.source.join("surface.png"), b.source.join("bumps.png")).map(drop).unwrap();
     }),
+    with_source(Code::Stale, "ridges.gltf", "", |b| edit_source(b, |text| text.replace("Ridges", "Grooves"))),
+    with_source(Code::Stale, "ridges.gltf", "/asset/extras/roughcast", |b| {
+        fs::write(b.source.join("mesh.bin"), [1; 96]).unwrap();
+    }),
+    with_source(Code::MissingSource, "ridges.gltf", "/asset/extras/roughcast", |b| {
+        fs::remove_file(b.source.join("mesh.bin")).unwrap();
+    }),
+    with_source(Code::Untraceable, "ridges.gltf", "/asset/extras/roughcast", |b| {
+        b.edit(|document| document["asset"]["extras"] = json!({ "roughcast": 1 }));
+    }),
     with_source(Code::OtherSettings, "bumps.normal.ktx2", "key roughcast", |b| {
         fs::write(b.source.join("roughcast.toml"), "quality = 'best'").unwrap();
     }),
@@ -166,6 +176,11 @@ const FIXTURES: &[Fixture] = &[
         ..with_source(Code::Untraceable, "bumps.normal.ktx2", "key roughcast", |_| {})
     },
 ];
+
+fn edit_source(bake: &Bake, edit: impl Fn(&str) -> String) {
+    let path = bake.source.join("ridges.gltf");
+    fs::write(&path, edit(&fs::read_to_string(&path).unwrap())).unwrap();
+}
 
 /// What documents are tested for.
 pub fn codes() -> Vec<Code> {
@@ -194,6 +209,45 @@ fn staleness_is_told_of_the_right_textures() {
     let (_, report) = bake.check_source(&[]);
     let stale: Vec<String> = findings(&report).into_iter().filter(|f| f.0 == "RC1505").map(|f| f.1).collect();
     assert!(!stale.is_empty() && stale.iter().all(|file| file.starts_with("surface.")), "{report}");
+}
+
+/// An asset without bumps comes back byte for byte, and nothing else will do.
+#[test]
+fn documents_without_bumps_are_compared_as_they_are() {
+    let bake = bake(&[]);
+    edit_source(&bake, |text| text.replace("normalTexture", "occlusionTexture"));
+    let paths = [bake.source.to_str().unwrap(), bake.baked.to_str().unwrap()];
+    assert_eq!(roughcast(&["bake", paths[0], "-o", paths[1], "-q"]).0, Outcome::Done);
+    fs::remove_dir_all(bake.texture("")).unwrap();
+    assert_eq!(findings(&bake.check_source(&[]).1), []);
+    edit_source(&bake, |text| text.replace("Ridges", "Grooves"));
+    let stale = ("RC1505".to_owned(), "ridges.gltf".to_owned(), String::new());
+    assert_eq!(findings(&bake.check_source(&[]).1), [stale]);
+}
+
+/// What others keep in `extras` stays; where they leave no place, nothing is recorded of the document.
+#[test]
+fn extras_of_others_stay() {
+    for (extras, is_recorded) in [(json!({ "author": "me" }), true), (json!("mine"), false)] {
+        let bake = bake(&[]);
+        edit_source(&bake, |text| {
+            let mut document: Value = serde_json::from_str(text).unwrap();
+            document["asset"]["extras"] = extras.clone();
+            document.to_string()
+        });
+        let paths = [bake.source.to_str().unwrap(), bake.baked.to_str().unwrap()];
+        assert_eq!(roughcast(&["bake", paths[0], "-o", paths[1], "-q"]).0, Outcome::Done);
+        let document: Value = serde_json::from_slice(&fs::read(bake.document()).unwrap()).unwrap();
+        let found = &document["asset"]["extras"];
+        if is_recorded {
+            assert_eq!(found["author"], "me");
+            assert_eq!(found["roughcast"]["files"][0]["uri"], "mesh.bin");
+        } else {
+            assert_eq!(*found, extras);
+        }
+        let codes: Vec<String> = findings(&bake.check_source(&[]).1).into_iter().map(|f| f.0).collect();
+        assert_eq!(codes.is_empty(), is_recorded, "{codes:?}");
+    }
 }
 
 /// Textures inside a .glb are named by their image.

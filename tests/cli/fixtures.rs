@@ -33,7 +33,10 @@ fn what_the_bake_does_not_own_survives() {
     bake(&fixtures().join("knobs/knobs.gltf"), folder.path(), &["--profile", "both"]);
     let read = |path| serde_json::from_slice::<Value>(&fs::read(path).expect("a document")).expect("JSON");
     let source = read(fixtures().join("knobs/knobs.gltf"));
-    let baked = read(folder.path().join("knobs.gltf"));
+    let mut baked = read(folder.path().join("knobs.gltf"));
+    let asset = baked["asset"].as_object_mut().expect("an object");
+    let own = asset.remove("extras").expect("what the bake records of its sources");
+    assert_eq!(own.as_object().expect("an object").keys().collect::<Vec<_>>(), ["roughcast"]);
     for pointer in [
         "/asset",
         "/scenes",

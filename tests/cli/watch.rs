@@ -90,6 +90,40 @@ fn a_file_that_is_being_written_waits_and_one_that_is_broken_is_tried_again() {
     assert!(session.stop().err.contains("assets/knobs/knobs.gltf"));
 }
 
+/// More happens than the system keeps until it is read: of the last changes it tells only that there were some.
+#[cfg(target_os = "linux")]
+#[test]
+fn events_that_are_lost_make_no_difference() {
+    let scene = scene();
+    let folder = scene.path();
+    let limit = fs::read_to_string("/proc/sys/fs/inotify/max_queued_events").expect("Linux has it");
+    let limit: usize = limit.trim().parse().expect("a number");
+    if limit > 100_000 {
+        return skipped(&format!("lost events: {limit} are kept"));
+    }
+    let notes = ["a", "b"].map(|name| folder.join("assets").join(name));
+    notes.iter().for_each(|note| fs::write(note, "new").expect("a file"));
+    let mut session = Session::start(folder, "");
+    session.until("idle");
+    session.signal("-STOP");
+    // In turn: the system joins events that are alike.
+    for note in notes.iter().cycle().take(limit) {
+        fs::write(note, "old").expect("a file");
+    }
+    copy(&fixtures().join("brushed"), &folder.join("assets/lost/brushed"));
+    fs::remove_file(folder.join("assets/waves/waves.glb")).expect("a file");
+    session.signal("-CONT");
+    session.settle(folder);
+    assert_as_baked(folder, "after the loss");
+    // The folder whose making was lost is watched as well.
+    fs::remove_file(folder.join("assets/lost/brushed/brushed.gltf")).expect("a file");
+    let told = session.until("removed");
+    assert_eq!(told.last().expect("an event")["input"], "assets/lost/brushed/brushed.gltf");
+    session.until("idle");
+    assert_as_baked(folder, "in the end");
+    assert_eq!(session.stop().code, 0);
+}
+
 #[test]
 fn folders_come_late_and_go() {
     let folder = tempdir().expect("a folder");

@@ -97,10 +97,17 @@ impl Session {
         }
     }
 
+    /// Sends it a signal, such as `-STOP`.
+    #[cfg(unix)]
+    pub fn signal(&self, signal: &str) {
+        let status = Command::new("kill").args([signal, &self.child.id().to_string()]).status();
+        assert!(status.expect("a signal").success());
+    }
+
     /// Ends it as Ctrl-C does.
     pub fn stop(mut self) -> Run {
         #[cfg(unix)]
-        Command::new("kill").args(["-INT", &self.child.id().to_string()]).status().expect("a signal");
+        self.signal("-INT");
         #[cfg(not(unix))]
         self.child.kill().expect("a process");
         let status = self.child.wait().expect("an exit");
