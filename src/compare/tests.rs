@@ -1,6 +1,9 @@
 //! Charts and tables of made-up numbers.
 
-use super::{Comparison, Cost, Entry, Kind, chart, csv};
+use super::{Comparison, Cost, Entry, Kind, Ours, chart, csv};
+use crate::judge::Peer;
+use crate::pyramid::Level;
+use crate::render::{Bumps, LostBumps, Material, OwnAnisotropy, Texture};
 
 fn comparison(material: &str) -> Comparison {
     let entry = |i: u32, kind| Entry {
@@ -38,4 +41,31 @@ fn every_entry_is_labelled_and_hostile_names_are_text() {
 fn without_any_numbers_there_is_still_a_chart() {
     let svg = chart(&Comparison { material: String::new(), entries: Vec::new() });
     assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
+}
+
+#[test]
+fn every_shader_that_was_measured_has_its_cost() {
+    let texture = || Texture::with_mips(Level { width: 4, height: 4, texels: vec![[0.5; 4]; 16] });
+    let ours = |anisotropy| Ours {
+        name: String::new(),
+        material: Material {
+            bumps: Bumps::Normals { texture: texture(), scale: 1.0, has_z: true },
+            roughness: None,
+            roughness_factor: 1.0,
+            anisotropy,
+            lost: LostBumps::Folded,
+        },
+        file_bytes: 1,
+        seconds: 1.0,
+        chosen: false,
+    };
+    let ellipse = OwnAnisotropy { texture: None, strength: 0.5, rotation: [1.0, 0.0] };
+    let [plain, anisotropic] = [None, Some(ellipse)].map(|own| Cost::of_ours(&ours(own)));
+    assert!(plain.operations < anisotropic.operations && plain.fetches < anisotropic.fetches);
+    for peer in Peer::ALL {
+        let cost = Cost::of_peer(peer, &texture(), true, &plain);
+        let is_measured = !matches!(peer, Peer::LeanHalf | Peer::LeanFloat);
+        assert_eq!((cost.operations.is_some(), cost.fetches.is_some()), (is_measured, is_measured), "{}", peer.name());
+        assert!(cost.operations.is_none_or(|n| Some(n) >= plain.operations), "{}", peer.name());
+    }
 }

@@ -1,8 +1,11 @@
 import assert from 'node:assert/strict';
+import { readFileSync, writeFileSync } from 'node:fs';
+import path from 'node:path';
 import test from 'node:test';
 import { missing } from '../browser.js';
 import { costs } from '../looks/run.js';
 import { count, forSpirv } from '../looks/spirv.js';
+import { example, repository } from './roughcast.js';
 
 /** A module of instructions [opcode, ...operands]. */
 const spirv = (...instructions) =>
@@ -24,11 +27,25 @@ test('uniforms and varyings find their places', () => {
   );
 });
 
-test('the pyramid costs what it reads', { skip: missing }, async () => {
-  const [plain, portable, reflected, lambda1, d] = await costs();
+test('the pyramid costs what it reads, and what `roughcast compare` reckons with', { skip: missing }, async () => {
+  const measured = await costs();
+  const [plain, portable, reflected, lambda1, d] = measured;
   assert.deepEqual([portable, lambda1].map(([, , fetches]) => fetches - plain[2]), [1, 1]);
   // In its loop, and after it where no look-up counts.
   assert.equal(reflected[2], portable[2] + 1);
   assert.equal(d[2], lambda1[2] + 1);
   for (const dearer of [portable, reflected, lambda1, d]) assert.ok(dearer[1] > plain[1], `${dearer}`);
+  const table = path.join(repository, 'src/compare/shading.json');
+  const { version } = JSON.parse(readFileSync(path.join(example, 'node_modules/three/package.json'), 'utf8'));
+  const { source, shading } = JSON.parse(readFileSync(table, 'utf8'));
+  const names = Object.keys(shading);
+  const now = Object.fromEntries(measured.map(([, operations, fetches], i) => [names[i], { operations, fetches }]));
+  if (process.env.COSTS === 'overwrite') {
+    const rows = names.map((name) => `    "${name}": { "operations": ${now[name].operations}, "fetches": ${now[name].fetches} }`);
+    const text = source.replace(/three\.js [\d.]+/, `three.js ${version}`);
+    writeFileSync(table, `{\n  "source": "${text}",\n  "shading": {\n${rows.join(',\n')}\n  }\n}\n`);
+  } else {
+    assert.deepEqual(shading, now, 'COSTS=overwrite npm test writes the table anew');
+    assert.match(source, new RegExp(`^three\\.js ${version},`));
+  }
 });
