@@ -262,6 +262,12 @@ impl<'a> Assembly<'a> {
             let told: Vec<PathBuf> = self.digests.keys().filter_map(file).collect();
             DocumentProvenance::new(self.source, |path| told.iter().any(|told| told == path))?.write(json)?;
         }
+        // First, so that textures of the material's own lobe count as needed.
+        for pyramid in &self.pyramids {
+            if let Some(unfolded) = &pyramid.unfolded {
+                json.set(&format!("{}/unfolded", pyramid.pointer), unfolded)?;
+            }
+        }
         let indices = add_textures(json, &self.textures)?;
         for pointer in &self.unit_factors {
             json.set(pointer, &1)?;
@@ -286,6 +292,7 @@ impl<'a> Assembly<'a> {
                 pyramid.correction,
                 pyramid.frame,
                 &pyramid.mapping,
+                pyramid.unfolded.clone(),
             );
             json.set(&pyramid.pointer, &extension)?;
             declare(json, EXTENSION, false)?;

@@ -5,7 +5,7 @@ use serde_json::Value;
 
 use super::pyramids::Range;
 use crate::bump::Frame;
-use crate::gltf::material::Mapping;
+use crate::gltf::material::{Layer, Mapping, TextureUse};
 
 /// Name of the extension.
 pub const EXTENSION: &str = "ROUGHCAST_materials_roughness_pyramid";
@@ -29,6 +29,45 @@ pub struct Extension {
     frame: &'static str,
     #[serde(skip_serializing_if = "Option::is_none")]
     main_direction: Option<[f32; 3]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    unfolded: Option<Unfolded>,
+}
+
+/// The lobe that a material had before the portable profile folded its bumps into the core properties. A plugin adds K to
+/// this one, or it would count the bumps twice.
+#[derive(Clone, Debug, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct Unfolded {
+    roughness_factor: f32,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    metallic_roughness_texture: Option<TextureInfo>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    anisotropy: Option<Anisotropy>,
+}
+
+/// `KHR_materials_anisotropy`.
+#[derive(Clone, Debug, Serialize)]
+#[serde(rename_all = "camelCase")]
+struct Anisotropy {
+    anisotropy_strength: f32,
+    anisotropy_rotation: f32,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    anisotropy_texture: Option<TextureInfo>,
+}
+
+impl Unfolded {
+    /// As `layer` says, whose textures stay in the document.
+    pub fn new(layer: &Layer) -> Self {
+        Self {
+            roughness_factor: layer.roughness_factor,
+            metallic_roughness_texture: layer.roughness.as_ref().map(TextureInfo::of),
+            anisotropy: layer.anisotropy.as_ref().map(|own| Anisotropy {
+                anisotropy_strength: own.strength,
+                anisotropy_rotation: own.rotation,
+                anisotropy_texture: own.texture.as_ref().map(TextureInfo::of),
+            }),
+        }
+    }
 }
 
 #[derive(Clone, Debug, Serialize)]
@@ -47,6 +86,20 @@ struct TextureInfoExtensions {
     transform: Value,
 }
 
+impl TextureInfo {
+    fn new(index: usize, mapping: &Mapping) -> Self {
+        Self {
+            index,
+            tex_coord: mapping.tex_coord,
+            extensions: mapping.transform.clone().map(|transform| TextureInfoExtensions { transform }),
+        }
+    }
+
+    fn of(texture: &TextureUse) -> Self {
+        Self::new(texture.texture, &texture.mapping)
+    }
+}
+
 /// A texture with what its texels stand for.
 pub struct RangedTexture {
     /// Index into `textures`.
@@ -56,19 +109,17 @@ pub struct RangedTexture {
 }
 
 impl Extension {
-    /// Offsets, and D (three channels) or lambda_1 (one), read with the texture coordinates of `mapping`.
+    /// Offsets, and D (three channels) or lambda_1 (one), read with the texture coordinates of `mapping`; `unfolded` where
+    /// the core properties hold K, too.
     pub fn new(
         offset: RangedTexture,
         roughness: Option<RangedTexture>,
         correction_factor: f32,
         frame: Frame,
         mapping: &Mapping,
+        unfolded: Option<Unfolded>,
     ) -> Self {
-        let info = |index| TextureInfo {
-            index,
-            tex_coord: mapping.tex_coord,
-            extensions: mapping.transform.clone().map(|transform| TextureInfoExtensions { transform }),
-        };
+        let info = |index| TextureInfo::new(index, mapping);
         let model = |r: &RangedTexture| if r.range.max.len() == 3 { "covarianceFactor" } else { "standardDeviation" };
         let (frame, main_direction) = match frame {
             Frame::Natural => ("natural", None),
@@ -86,6 +137,7 @@ impl Extension {
             correction_factor,
             frame,
             main_direction,
+            unfolded,
         }
     }
 }

@@ -30,10 +30,36 @@ pub struct RoughnessPyramid {
     pub frame: FrameName,
     /// m, in the space of the mesh.
     pub main_direction: Option<[f64; 3]>,
+    /// The lobe that K is added to, where it is not that of the core properties.
+    pub unfolded: Option<Unfolded>,
     #[serde(rename = "extensions")]
     _extensions: Option<Map<String, Value>>,
     #[serde(rename = "extras")]
     _extras: Option<Value>,
+}
+
+/// A material's own lobe.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct Unfolded {
+    /// `roughnessFactor` of the core material; 1 when absent.
+    pub roughness_factor: Option<f64>,
+    /// `metallicRoughnessTexture` of the core material.
+    pub metallic_roughness_texture: Option<TextureInfo>,
+    /// `KHR_materials_anisotropy`.
+    pub anisotropy: Option<Anisotropy>,
+}
+
+/// `KHR_materials_anisotropy`.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct Anisotropy {
+    /// 0 when absent.
+    pub anisotropy_strength: Option<f64>,
+    /// In radians; 0 when absent.
+    pub anisotropy_rotation: Option<f64>,
+    /// Direction and strength.
+    pub anisotropy_texture: Option<TextureInfo>,
 }
 
 /// A reference to a texture.
@@ -88,7 +114,7 @@ impl RoughnessPyramid {
     /// What the schema does not allow, in words.
     pub fn read(value: &Value) -> Result<Self, String> {
         // Optional members may be absent, not null; readers of serde make no difference.
-        if value.as_object().is_some_and(|members| members.values().any(Value::is_null)) {
+        if has_null(value) {
             return Err("null in place of a value".to_owned());
         }
         let read = Self::deserialize(value).map_err(|e| e.to_string())?;
@@ -138,4 +164,14 @@ impl RoughnessPyramid {
         }
         textures
     }
+}
+
+/// Whether a member that the schema describes is null.
+fn has_null(value: &Value) -> bool {
+    let is_null = |(key, value): (&String, &Value)| match key.as_str() {
+        "extras" => false,
+        "extensions" => value.is_null(),
+        _ => value.is_null() || has_null(value),
+    };
+    value.as_object().is_some_and(|members| members.iter().any(is_null))
 }

@@ -49,6 +49,22 @@ fn extensions_satisfy_their_schema_and_the_strict_reader() {
     }
 }
 
+/// The own lobe is told where the core material holds another one, and there only.
+#[test]
+fn own_lobes_satisfy_the_schema_and_the_strict_reader() {
+    let schema = schema(&format!("material.{EXTENSION}"));
+    for (profile, model, is_told) in [
+        ("both", "anisotropic", true),
+        ("both", "isotropic", true),
+        ("both", "none", false),
+        ("pyramid", "isotropic", false),
+    ] {
+        let extension = extension_of(&["--profile", profile, "--model", model]);
+        assert_valid(&schema, &extension);
+        assert_eq!(RoughnessPyramid::read(&extension).unwrap().unfolded.is_some(), is_told, "{profile}, {model}");
+    }
+}
+
 #[test]
 fn schema_and_strict_reader_refuse_the_same() {
     let schema = schema(&format!("material.{EXTENSION}"));
@@ -61,6 +77,11 @@ fn schema_and_strict_reader_refuse_the_same() {
         "correctionFactor": 0.9,
         "frame": "mainDirection",
         "mainDirection": [0, 1, 0],
+        "unfolded": {
+            "roughnessFactor": 0.5,
+            "metallicRoughnessTexture": { "index": 0, "texCoord": 1 },
+            "anisotropy": { "anisotropyStrength": 0.5, "anisotropyRotation": 1, "anisotropyTexture": { "index": 3 } }
+        },
         "extras": { "note": 1 }
     });
     assert_valid(&schema, &whole);
@@ -84,6 +105,12 @@ fn schema_and_strict_reader_refuse_the_same() {
         ("/frame", json!("tangent")),
         ("/mainDirection", json!([0, 1])),
         ("/roughnesstexture", json!({ "index": 2 })),
+        ("/unfolded", json!(1)),
+        ("/unfolded", json!({ "roughnessFactor": null })),
+        ("/unfolded", json!({ "metallicRoughnessTexture": 0 })),
+        ("/unfolded", json!({ "metallicFactor": 1 })),
+        ("/unfolded", json!({ "anisotropy": { "anisotropyTexture": null } })),
+        ("/unfolded", json!({ "anisotropy": { "strength": 1 } })),
     ];
     for (pointer, value) in edits {
         let mut broken = whole.clone();
@@ -91,7 +118,7 @@ fn schema_and_strict_reader_refuse_the_same() {
         assert!(!schema.is_valid(&broken), "the schema takes {pointer} = {value}");
         assert!(RoughnessPyramid::read(&broken).is_err(), "the reader takes {pointer} = {value}");
     }
-    for member in whole.as_object().unwrap().keys().filter(|k| *k != "extras") {
+    for member in whole.as_object().unwrap().keys().filter(|k| !["extras", "unfolded"].contains(&k.as_str())) {
         let mut broken = whole.clone();
         broken.as_object_mut().unwrap().remove(member);
         assert!(!schema.is_valid(&broken), "the schema misses no {member}");

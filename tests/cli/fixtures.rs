@@ -58,3 +58,19 @@ fn what_the_bake_does_not_own_survives() {
         assert_eq!(baked.pointer(pointer), part, "{pointer}");
     }
 }
+
+/// What a plugin adds K to: the lobe before the fold, with its texture kept in the document.
+#[test]
+fn both_profiles_together_keep_the_own_lobe() {
+    let folder = tempdir().expect("a folder");
+    bake(&fixtures().join("brushed/brushed.gltf"), folder.path(), &["--profile", "both"]);
+    let document = fs::read(folder.path().join("brushed.gltf")).expect("a document");
+    let document: Value = serde_json::from_slice(&document).expect("JSON");
+    let at = |pointer: &str| document.pointer(pointer).unwrap_or_else(|| panic!("no {pointer}"));
+    let unfolded = "/materials/0/extensions/ROUGHCAST_materials_roughness_pyramid/unfolded";
+    let texture = at(&format!("{unfolded}/metallicRoughnessTexture/index"));
+    assert_ne!(texture, at("/materials/0/pbrMetallicRoughness/metallicRoughnessTexture/index"));
+    let image = at(&format!("/textures/{texture}/source"));
+    assert_eq!(at(&format!("/images/{image}/uri")), "brushed_surface.png");
+    assert!(folder.path().join("brushed_surface.png").is_file());
+}

@@ -20,16 +20,22 @@ const read = (target) => {
   return pixels;
 };
 
-/** Every variant and the truth from one place. Black where edges of the subject alias: bumps are what is judged. */
-function pictures(size, samples, view) {
+/** Variants from one place. */
+function draw(names, size, view) {
   const target = new THREE.WebGLRenderTarget(size, size, { type: THREE.FloatType });
   stage.resize(size, size);
   stage.look(view);
-  const drawn = DRAWN.map((name) => {
+  const drawn = names.map((name) => {
     stage.draw(name, target);
     return read(target);
   });
   target.dispose();
+  return drawn;
+}
+
+/** Every variant and the truth from one place. Black where edges of the subject alias: bumps are what is judged. */
+function pictures(size, samples, view) {
+  const drawn = draw(DRAWN, size, view);
   stage.accumulator.reset(size, size);
   stage.accumulate(samples);
   const truth = read(stage.accumulator.target).map((value) => value / samples);
@@ -50,6 +56,12 @@ window.errors = ({ kind, distance, size, samples }) => {
   stage.show(kind);
   const { drawn, truth } = pictures(size, samples, { ...CAMERA, distance });
   return drawn.map((picture) => [relativeL1(picture, truth), ssim(picture, truth, size)]);
+};
+
+/** How far one variant is from another: relative L1. */
+window.apart = ({ kind, distance, size, names }) => {
+  stage.show(kind);
+  return relativeL1(...draw(names, size, { ...CAMERA, distance }));
 };
 
 /** Flicker of each variant while the camera turns. */

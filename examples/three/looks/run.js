@@ -51,7 +51,7 @@ function wrapped(folder, name, map, roughness) {
 export async function forEach(folder, chosen, use) {
   for (const [name, source] of chosen) {
     mkdirSync(path.join(folder, name));
-    for (const profile of ['portable', 'pyramid']) {
+    for (const profile of ['portable', 'pyramid', 'both']) {
       roughcast('bake', source, '-o', path.join(folder, name, profile), '--profile', profile, '--gltf', 'strict', '--quiet');
     }
   }
@@ -64,8 +64,8 @@ export async function forEach(folder, chosen, use) {
       const page = await open(browser, `${server.url}/looks/looks.html`);
       await page.waitForFunction('window.ready');
       const baked = (profile) => `/baked/${name}/${profile}/${name}.gltf`;
-      const [portable, pyramid] = [baked('portable'), baked('pyramid')];
-      const urls = { original: `/source-${name}/${name}.gltf`, portable, reflected: portable, pyramid };
+      const [portable, pyramid, both] = ['portable', 'pyramid', 'both'].map(baked);
+      const urls = { original: `/source-${name}/${name}.gltf`, portable, reflected: portable, pyramid, both };
       await page.evaluate((u) => window.load(u), urls);
       await use(name, page);
       await page.context().close();

@@ -35,6 +35,16 @@ interface Shared {
 export interface PyramidExtension extends Shared {
   offset: Range & { texture: TextureInfo };
   roughness: (Range & { texture: TextureInfo; model: RoughnessModel }) | null;
+  /** The lobe that K is added to, where the core material has it folded in already. */
+  unfolded: UnfoldedLobe | null;
+}
+
+/** A material's own lobe; what is absent has glTF's default. */
+export interface UnfoldedLobe {
+  roughnessFactor?: number;
+  metallicRoughnessTexture?: TextureInfo;
+  /** KHR_materials_anisotropy. */
+  anisotropy?: { anisotropyStrength?: number; anisotropyRotation?: number; anisotropyTexture?: TextureInfo };
 }
 
 /** The same with textures in linear colour space. */

@@ -29,6 +29,10 @@ test('bakes are closer to the truth than plain mips', { skip: missing || browser
     for (const all of [plane, sphere]) assert.ok(total(all, 0) > 1.5 * Math.max(total(all, 2), total(all, 3)), `${all}`);
     const [plain, , reflected, pyramid] = await page.evaluate((o) => window.flicker(o), { kind: 'plane', distance: 12, size: 48, samples: 64, frames: 6 });
     assert.ok(Math.max(reflected, pyramid) < plain, `flicker: ${reflected}, ${pyramid} of ${plain}`);
+    const apart = (...names) => page.evaluate((o) => window.apart(o), { kind: 'sphere', distance: 5, size: 64, names });
+    // Occlusion is in the same texture as the folded roughness, so that of `both` has gone through the encoder.
+    assert.ok((await apart('both', 'pyramid')) < 0.02, 'K is counted once where the core material has it, too');
+    assert.ok((await apart('portable', 'pyramid')) > 0.1);
     assert.deepEqual(page.problems, []);
   });
 });

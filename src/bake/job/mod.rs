@@ -8,6 +8,7 @@ pub use error::JobError;
 
 use super::bumps::Bumps;
 use super::chain::{Chain, grid};
+use super::extension::Unfolded;
 use super::geometry::Geometry;
 use super::notes;
 use super::plan::{LayerPlan, ReliefKind, ReliefPlan};
@@ -84,6 +85,8 @@ pub struct PyramidUse {
     pub frame: Frame,
     /// c.
     pub correction: f32,
+    /// The material's own lobe, where the core properties have the folded one.
+    pub unfolded: Option<Unfolded>,
 }
 
 /// What a job produced.

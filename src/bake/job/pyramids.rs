@@ -3,6 +3,7 @@
 use super::{Job, JobError, JobOutput, JobTexture, PyramidUse};
 use crate::bake::bumps::Bumps;
 use crate::bake::chain::Encoding;
+use crate::bake::extension::Unfolded;
 use crate::bake::notes;
 use crate::bake::plan::LayerPlan;
 use crate::bake::pyramids::{Quantity, Ranged, bake_quantity, filter_loss};
@@ -62,8 +63,9 @@ impl Job<'_> {
             };
             let (offset, _) = find_or_make(Quantity::Offset)?;
             let (roughness, note) = roughness.map(find_or_make).transpose()?.unzip();
-            output.layers[index].report.notes.extend(note.flatten());
-            output.layers[index].pyramid = Some(PyramidUse {
+            let outcome = &mut output.layers[index];
+            outcome.report.notes.extend(note.flatten());
+            outcome.pyramid = Some(PyramidUse {
                 pointer: layer.pointer("extensions/ROUGHCAST_materials_roughness_pyramid"),
                 offset,
                 roughness,
@@ -71,6 +73,7 @@ impl Job<'_> {
                 mapping: layer.layer.bumps.texture().mapping.clone(),
                 frame,
                 correction,
+                unfolded: outcome.unit_factor.is_some().then(|| Unfolded::new(&layer.layer)),
             });
         }
         Ok(())

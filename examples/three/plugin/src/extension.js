@@ -27,7 +27,29 @@ export function readExtension(definition) {
     correctionFactor,
     frame,
     mainDirection: frame === 'mainDirection' ? numbers(definition, 'mainDirection', 3) : null,
+    unfolded: readUnfolded(definition.unfolded),
   };
+}
+
+/** The material's own lobe, where the core material has K folded in; null where it has not. */
+function readUnfolded(unfolded) {
+  if (unfolded === undefined) return null;
+  if (typeof unfolded !== 'object' || unfolded === null || Array.isArray(unfolded)) throw wrong('unfolded', 'an object', unfolded);
+  return unfolded;
+}
+
+/** A glTF material with its own lobe in the place of the folded one. */
+export function withOwnLobe(material, { roughnessFactor, metallicRoughnessTexture, anisotropy }) {
+  const own = { roughnessFactor, metallicRoughnessTexture };
+  return {
+    ...material,
+    pbrMetallicRoughness: defined({ ...material.pbrMetallicRoughness, ...own }),
+    extensions: defined({ ...material.extensions, KHR_materials_anisotropy: anisotropy }),
+  };
+}
+
+function defined(members) {
+  return Object.fromEntries(Object.entries(members).filter(([, value]) => value !== undefined));
 }
 
 function readRoughness(definition) {

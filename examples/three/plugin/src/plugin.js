@@ -1,4 +1,4 @@
-import { EXTENSION, readExtension } from './extension.js';
+import { EXTENSION, readExtension, withOwnLobe } from './extension.js';
 import { applyPyramid, applyReflections } from './material.js';
 
 /** Plugin of GLTFLoader. See index.d.ts. */
@@ -17,20 +17,24 @@ export class RoughcastPlugin {
   }
 
   async #load(index, definition) {
-    const material = await this.parser.loadMaterial(index);
+    const { materials } = this.parser.json;
     let extension;
     try {
       extension = readExtension(definition);
     } catch (error) {
       console.warn(`materials[${index}]: ${error.message}; shown without it`);
-      return material;
+      return this.parser.loadMaterial(index);
     }
-    const { roughness, ...rest } = extension;
+    const { roughness, unfolded, ...rest } = extension;
     const [offsetMap, roughnessMap] = await Promise.all([
       this.#texture(extension.offset.texture),
       roughness && this.#texture(roughness.texture),
     ]);
-    if (!material.isMeshStandardMaterial || !offsetMap || (roughness && !roughnessMap)) {
+    const isComplete = offsetMap && (!roughness || roughnessMap);
+    // The loader's other plugins, too, look materials up there.
+    if (isComplete && unfolded) materials[index] = withOwnLobe(materials[index], unfolded);
+    const material = await this.parser.loadMaterial(index);
+    if (!material.isMeshStandardMaterial || !isComplete) {
       const reason = material.isMeshStandardMaterial ? 'a texture cannot be loaded' : `${material.type} is not lit`;
       console.warn(`materials[${index}]: ${EXTENSION}: ${reason}; shown without it`);
       return material;

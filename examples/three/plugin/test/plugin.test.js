@@ -36,6 +36,26 @@ test('a material with it is patched', async (t) => {
   assert.deepEqual(warnings, []);
 });
 
+test('K is added to the own lobe, not to the folded one', async (t) => {
+  const json = { materials: [{ pbrMetallicRoughness: { roughnessFactor: 1 }, extensions: {} }] };
+  const [folded] = json.materials;
+  const seen = [];
+  const given = {
+    ...parser(),
+    json,
+    loadMaterial: async (index) => {
+      seen.push(json.materials[index].pbrMetallicRoughness.roughnessFactor);
+      return new MeshStandardMaterial();
+    },
+  };
+  folded.extensions[EXTENSION] = { ...definition, unfolded: { roughnessFactor: 0.3 } };
+  await new RoughcastPlugin(given).loadMaterial(0);
+  json.materials[0] = folded;
+  t.mock.method(console, 'warn', () => {});
+  await new RoughcastPlugin({ ...given, assignTexture: async () => null }).loadMaterial(0);
+  assert.deepEqual(seen, [0.3, 1], 'without its textures the folded one is all there is');
+});
+
 test('what cannot be used is told and shown without', async (t) => {
   const broken = await load(t, { [EXTENSION]: { ...definition, frame: 'world' } });
   assert.equal(broken.material.normalMap, null);
