@@ -22,6 +22,7 @@ pub mod lobe;
 pub mod map;
 pub mod plan;
 pub mod pyramid;
+pub mod remote;
 pub mod render;
 pub mod roughness;
 mod simd;

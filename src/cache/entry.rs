@@ -5,6 +5,10 @@ use std::path::{Component, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use crate::bake::report::AssetReport;
+use crate::digest::digest;
+
+/// Hexadecimal digits of a BLAKE3 digest.
+const DIGEST_LENGTH: usize = 64;
 
 /// The outputs of a job.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -21,6 +25,23 @@ pub struct Entry {
 }
 
 impl Entry {
+    /// Reads what [`Self::to_bytes`] wrote; `None` for anything else, and where a file belongs elsewhere.
+    pub fn parse(bytes: &[u8]) -> Option<Self> {
+        let (named, json) = bytes.split_at_checked(DIGEST_LENGTH)?;
+        let is_whole = digest(json).as_bytes() == named;
+        let entry = is_whole.then(|| serde_json::from_slice::<Self>(json).ok())?;
+        entry.filter(Self::is_contained)
+    }
+
+    /// The file that holds it: a BLAKE3 of the rest in hex, and JSON.
+    ///
+    /// # Errors
+    /// None in practice: names that are not UTF-8.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, serde_json::Error> {
+        let json = serde_json::to_vec(self)?;
+        Ok([digest(&json).as_bytes(), &json].concat())
+    }
+
     /// Whether all stored files belong below the output folder: nobody's cache writes elsewhere.
     pub fn is_contained(&self) -> bool {
         let mut parts = self.files.iter().chain([&self.document]).flat_map(|stored| stored.path.components());

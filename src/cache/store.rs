@@ -49,9 +49,7 @@ impl Cache {
     pub fn entry(&self, id: &str) -> Result<Option<Entry>, CacheError> {
         let path = self.path("jobs", id);
         let Some(bytes) = read(&path)? else { return Ok(None) };
-        let text = bytes.split_at_checked(DIGEST_LENGTH).filter(|(named, json)| digest(json).as_bytes() == *named);
-        let entry = text.and_then(|(_, json)| serde_json::from_slice::<Entry>(json).ok());
-        entry.filter(Entry::is_contained).map(Some).ok_or_else(|| dropped(path))
+        Entry::parse(&bytes).map(Some).ok_or_else(|| dropped(path))
     }
 
     /// The bytes of a blob, if it is there.
@@ -79,13 +77,24 @@ impl Cache {
         }
         let document = self.put_blob(&name, &baked.document)?;
         let entry = Entry { document, files, copies: baked.copies.clone(), report: baked.report.clone() };
-        let path = self.path("jobs", id);
-        let json = serde_json::to_vec(&entry).map_err(|e| failed(&path)(e.into()))?;
-        let text = [digest(&json).as_bytes(), &json].concat();
-        write_unsynced(&path, &text).map_err(failed(&path))
+        self.put_entry(id, &entry)
     }
 
-    fn put_blob(&self, name: &Path, bytes: &[u8]) -> Result<Stored, CacheError> {
+    /// Stores what is known of the job `id`, whose blobs are there.
+    ///
+    /// # Errors
+    /// [`CacheError::Io`].
+    pub fn put_entry(&self, id: &str, entry: &Entry) -> Result<(), CacheError> {
+        let path = self.path("jobs", id);
+        let bytes = entry.to_bytes().map_err(|e| failed(&path)(e.into()))?;
+        write_unsynced(&path, &bytes).map_err(failed(&path))
+    }
+
+    /// Stores the bytes of the output `name`.
+    ///
+    /// # Errors
+    /// [`CacheError::Io`].
+    pub fn put_blob(&self, name: &Path, bytes: &[u8]) -> Result<Stored, CacheError> {
         let blake3 = digest(bytes);
         let path = self.path("blobs", &blake3);
         // Also over a blob that is there: it may be damaged.
@@ -144,9 +153,6 @@ impl Cache {
 
 /// How exactly the order of eviction is known.
 const MARK_AGE: Duration = Duration::from_secs(3600);
-
-/// Hexadecimal digits of a BLAKE3 digest.
-const DIGEST_LENGTH: usize = 64;
 
 fn read(path: &Path) -> Result<Option<Vec<u8>>, CacheError> {
     match fs::read(path) {

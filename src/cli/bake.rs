@@ -10,9 +10,10 @@ use super::Outcome;
 use super::cached::CacheOptions;
 use super::depfile::depfile;
 use super::jobs::{self, JobOptions};
+use super::remote::RemoteOptions;
 use super::report::{Asset, Report, Status};
 use super::selection::Selection;
-use super::work::Work;
+use super::work::{Work, Worked};
 use crate::bake::{Settings, write_file};
 
 /// Bake glTF assets: KTX2 textures with the lost roughness in their mips, and a glTF that refers to them.
@@ -41,6 +42,8 @@ pub struct Args {
     print_config: bool,
     #[command(flatten)]
     cache: CacheOptions,
+    #[command(flatten)]
+    remote: RemoteOptions,
     #[command(flatten)]
     jobs: JobOptions,
     #[command(flatten)]
@@ -83,9 +86,18 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
         Err(reason) => return usage(err, &reason),
     };
     let dependencies = depfile(planned.iter().filter_map(|planned| planned.job.as_ref().ok()), &configs);
-    let work =
-        Work { cache: &args.cache, settings: &settings, check: &|job| args.jobs.check(job), is_quiet: args.quiet };
-    let (assets, ended) = work.run(planned, err, &mut |asset, _| {
+    let remote = match args.remote.options() {
+        Ok(remote) => remote,
+        Err(reason) => return usage(err, &reason),
+    };
+    let work = Work {
+        cache: &args.cache,
+        settings: &settings,
+        remote,
+        check: &|job| args.jobs.check(job),
+        is_quiet: args.quiet,
+    };
+    let Worked { assets, outcome: ended, remote } = work.run(planned, err, &mut |asset, _| {
         if args.quiet || args.json { Ok(()) } else { print(out, &asset.summary()) }
     })?;
     outcome = outcome.and(ended);
@@ -100,6 +112,7 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
         version: env!("CARGO_PKG_VERSION"),
         settings: settings.to_json(settings.model),
         assets: failed.chain(assets).collect(),
+        remote,
     };
     let json = if args.json || args.report.is_some() {
         serde_json::to_string_pretty(&report).map_err(io::Error::other)? + "\n"

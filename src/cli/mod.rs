@@ -16,6 +16,7 @@ mod map;
 mod options;
 mod plan;
 mod progress;
+mod remote;
 mod render;
 mod report;
 mod selection;

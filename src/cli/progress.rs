@@ -5,6 +5,8 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::remote::Counts;
+
 /// Steps per asset.
 const STEPS: f32 = 1000.0;
 
@@ -35,6 +37,13 @@ impl Progress {
         let before = self.along.get(index).map_or(now, |along| along.fetch_max(now, Ordering::Relaxed));
         self.bar.inc(now.saturating_sub(before));
         self.bar.set_message(name.to_owned());
+    }
+
+    /// A server is so far with all that it was sent.
+    pub fn count(&self, counts: Counts) {
+        let Counts { queued, running, cached, done, .. } = counts;
+        let text = format!("{queued} queued, {running} running, {cached} cached, {done} done");
+        self.bar.set_message(text);
     }
 
     /// Runs `write` without the bar in the way.

@@ -7,6 +7,7 @@ use crate::bake::Settings;
 use crate::bake::report::{AssetReport, Choice};
 
 use crate::plan::Done;
+use crate::remote::{Counts, Origin};
 
 /// What a run did.
 #[derive(Debug, Serialize)]
@@ -18,6 +19,9 @@ pub struct Report {
     pub settings: Value,
     /// Each input, in order.
     pub assets: Vec<Asset>,
+    /// What a server did.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub remote: Option<Counts>,
 }
 
 /// What became of an input.
@@ -31,6 +35,9 @@ pub struct Asset {
     pub output: Option<String>,
     /// How it ended.
     pub status: Status,
+    /// Whether a worker of a server baked it, or the server knew it; absent where it was not asked.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub remote: Option<Origin>,
     /// Its settings, where its configuration makes them other than those of the run.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub settings: Option<Value>,
@@ -61,10 +68,11 @@ pub enum Status {
 }
 
 impl Status {
-    /// How a job that succeeded ended.
-    pub fn of(done: &Done) -> Self {
+    /// How a job that succeeded ended, whose outputs are from `origin`.
+    pub fn of(done: &Done, origin: Option<Origin>) -> Self {
         match &done.report.textures {
-            _ if done.is_cached => Self::Cached,
+            // What a worker baked is new, although it comes through a cache.
+            _ if done.is_cached && origin != Some(Origin::Executed) => Self::Cached,
             textures if textures.is_empty() => Self::Copied,
             _ => Self::Baked,
         }
@@ -73,11 +81,12 @@ impl Status {
 
 impl Asset {
     /// An input that was baked; `own` are its settings where they are not those of the run.
-    pub fn done(input: String, done: &Done, seconds: f64, own: Option<Settings>) -> Self {
+    pub fn done(input: String, done: &Done, origin: Option<Origin>, seconds: f64, own: Option<Settings>) -> Self {
         Self {
             input,
             output: Some(done.output.display().to_string()),
-            status: Status::of(done),
+            status: Status::of(done, origin),
+            remote: origin,
             settings: own.map(|own| own.to_json(own.model)),
             seconds,
             bytes: done.bytes,
@@ -92,6 +101,7 @@ impl Asset {
             input,
             output: None,
             status: Status::Failed,
+            remote: None,
             settings: None,
             seconds,
             bytes: 0,

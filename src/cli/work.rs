@@ -3,14 +3,27 @@
 use std::io::{self, Write};
 use std::time::Instant;
 
+use rayon::prelude::*;
+
 use super::Outcome;
 use super::cached::CacheOptions;
 use super::jobs::Planned;
 use super::progress::Progress;
 use super::report::Asset;
 use crate::bake::{Places, Settings};
-use crate::cache::CacheError;
+use crate::cache::{Cache, CacheError};
 use crate::plan::{self, Job, Lookup, RunError};
+use crate::remote::{Counts, Errand, JobFailure, Options, Remote, Wait};
+
+/// What became of jobs.
+pub struct Worked {
+    /// Each, in order.
+    pub assets: Vec<Asset>,
+    /// How it all ended.
+    pub outcome: Outcome,
+    /// What a server did, if there is one.
+    pub remote: Option<Counts>,
+}
 
 /// How jobs are run.
 pub struct Work<'a> {
@@ -18,6 +31,8 @@ pub struct Work<'a> {
     pub cache: &'a CacheOptions,
     /// Settings of the run: an asset tells its own where they are others.
     pub settings: &'a Settings,
+    /// The server that bakes, if it is not this machine.
+    pub remote: Option<Options>,
     /// Whether a job may be run.
     pub check: &'a (dyn Fn(&Job) -> Result<(), RunError> + Sync),
     /// No progress bar.
@@ -25,7 +40,7 @@ pub struct Work<'a> {
 }
 
 impl Work<'_> {
-    /// Runs `planned` and tells of each, with what complaints go to. Returns what became of each, and how it all ended.
+    /// Runs `planned` and tells of each, with what complaints go to.
     ///
     /// # Errors
     /// When `err` cannot be written to, or `tell` cannot tell.
@@ -34,25 +49,77 @@ impl Work<'_> {
         planned: Vec<Planned>,
         err: &mut dyn Write,
         tell: &mut dyn FnMut(&Asset, &mut dyn Write) -> io::Result<()>,
-    ) -> io::Result<(Vec<Asset>, Outcome)> {
-        let cache = self.cache.cache();
+    ) -> io::Result<Worked> {
+        // What a server bakes goes through a cache, be it for this run only.
+        let is_local = self.remote.is_none() || self.cache.cache.is_some();
+        let folder = if is_local { None } else { Some(tempfile::tempdir()?) };
+        let cache = folder.as_ref().map(|folder| Cache::new(folder.path())).or_else(|| self.cache.cache());
+        let errand =
+            self.remote.as_ref().zip(cache.as_ref()).map(|(options, cache)| (options, unknown(&planned, cache)));
+        let remote = match errand.filter(|(_, jobs)| !jobs.is_empty()) {
+            None => None,
+            Some((options, jobs)) => match Remote::connect(options.clone()) {
+                Ok(remote) => Some((remote, jobs)),
+                Err(error) => {
+                    writeln!(err, "error: {error}")?;
+                    let outcome = if error.is_passing() { Outcome::Retry } else { Outcome::Usage };
+                    return Ok(Worked { assets: Vec::new(), outcome, remote: None });
+                }
+            },
+        };
         let progress = Progress::new(planned.len(), self.is_quiet);
+        let (mut assets, mut outcome) = (Vec::with_capacity(planned.len()), Outcome::Done);
+        let mut publish = |wait: Wait<'_>| {
+            self.publish(&planned, cache.as_ref(), &progress, wait, err, &mut |asset, ended, err| {
+                outcome = outcome.and(ended);
+                progress.suspend(|| tell(&asset, err))?;
+                assets.push(asset);
+                Ok(())
+            })
+        };
+        match (&remote, &cache) {
+            (Some((remote, jobs)), Some(cache)) => {
+                let changed = |counts: Counts| progress.count(counts);
+                let errand = Errand { jobs: jobs.clone(), cache, check: self.check, changed: &changed };
+                remote.ahead(&errand, publish)?;
+            }
+            _ => publish(&|_| None)?,
+        }
+        progress.finish();
+        if let Some(cache) = cache.filter(|_| is_local) {
+            self.cache.trim(&cache, err)?;
+        }
+        let counts = remote.map_or_else(Counts::default, |(remote, _)| remote.tally().counts());
+        Ok(Worked { assets, outcome, remote: self.remote.as_ref().map(|_| counts) })
+    }
+
+    /// Prepares jobs side by side and publishes them in order. `wait` tells of those that somebody else runs.
+    fn publish(
+        &self,
+        planned: &[Planned],
+        cache: Option<&Cache>,
+        progress: &Progress,
+        wait: Wait<'_>,
+        err: &mut dyn Write,
+        take: &mut dyn FnMut(Asset, Outcome, &mut dyn Write) -> io::Result<()>,
+    ) -> io::Result<()> {
         let mut places = Places::default();
-        // What to tell of an error, and whether trying again may help.
-        let told = |error: &RunError| (error.to_string(), error.is_passing());
+        let told = |error: &RunError| JobFailure::from(error);
         let prepare = |index: usize| {
             let start = Instant::now();
             let Planned { name, job } = &planned[index];
             progress.set(index, 0.0, name);
             let prepared = job.as_ref().map_err(told).and_then(|job| {
-                (self.check)(job).map_err(|error| told(&error))?;
-                let lookup = cache.as_ref().map(|cache| Lookup::new(job, cache));
+                let origin = wait(index).transpose()?;
+                if origin.is_none() {
+                    (self.check)(job).map_err(|error| told(&error))?;
+                }
+                let lookup = cache.map(|cache| Lookup::new(job, cache));
                 let prepared = plan::prepare(job, lookup, &|share| progress.set(index, share, name));
-                Ok((job, prepared.map_err(|error| told(&error))?))
+                Ok((job, origin, prepared.map_err(|error| told(&error))?))
             });
             (prepared, start.elapsed().as_secs_f64())
         };
-        let (mut assets, mut outcome) = (Vec::with_capacity(planned.len()), Outcome::Done);
         plan::in_order(planned.len(), rayon::current_num_threads(), prepare, |index, (prepared, seconds)| {
             let start = Instant::now();
             let name = &planned[index].name;
@@ -60,28 +127,31 @@ impl Work<'_> {
                 // The bake does not depend on who reads this.
                 let _ = progress.suspend(|| writeln!(err, "warning: {name}: {error}"));
             };
-            let result = prepared.and_then(|(job, prepared)| {
-                let done = plan::finish(job, prepared, &mut places, cache.as_ref(), &mut warn);
-                done.and_then(|done| Ok((job.typed_settings()?, done))).map_err(|error| told(&error))
+            let result = prepared.and_then(|(job, origin, prepared)| {
+                let done = plan::finish(job, prepared, &mut places, cache, &mut warn);
+                let done = done.and_then(|done| Ok((job.typed_settings()?, done))).map_err(|error| told(&error))?;
+                Ok((origin, done))
             });
             let seconds = seconds + start.elapsed().as_secs_f64();
+            let mut ended = Outcome::Done;
             let asset = match result {
-                Ok((own, done)) => Asset::done(name.clone(), &done, seconds, (own != *self.settings).then_some(own)),
-                Err((message, is_passing)) => {
-                    outcome = outcome.and(if is_passing { Outcome::Retry } else { Outcome::Failed });
+                Ok((origin, (own, done))) => {
+                    Asset::done(name.clone(), &done, origin, seconds, (own != *self.settings).then_some(own))
+                }
+                Err(JobFailure { message, is_passing }) => {
+                    ended = if is_passing { Outcome::Retry } else { Outcome::Failed };
                     progress.suspend(|| writeln!(err, "error: {name}: {message}"))?;
                     Asset::failed(name.clone(), seconds, message)
                 }
             };
             progress.set(index, 1.0, name);
-            progress.suspend(|| tell(&asset, err))?;
-            assets.push(asset);
-            Ok::<(), io::Error>(())
-        })?;
-        progress.finish();
-        if let Some(cache) = &cache {
-            self.cache.trim(cache, err)?;
-        }
-        Ok((assets, outcome))
+            take(asset, ended, err)
+        })
     }
+}
+
+/// The jobs that `cache` does not know, with their indexes.
+fn unknown<'p>(planned: &'p [Planned], cache: &Cache) -> Vec<(usize, &'p Job)> {
+    let jobs = planned.par_iter().enumerate().filter_map(|(index, planned)| Some((index, planned.job.as_ref().ok()?)));
+    jobs.filter(|(_, job)| !matches!(cache.entry(&job.id), Ok(Some(_)))).collect()
 }

@@ -44,6 +44,12 @@ pub enum RunError {
         /// The file.
         path: PathBuf,
     },
+    /// A file of a job that is not in its folder, so that the job cannot be run elsewhere.
+    #[error("expected {} in the folder of the asset or of its outputs, found it elsewhere; plan again", path.display())]
+    NotMovable {
+        /// The file.
+        path: PathBuf,
+    },
     /// A declared output that is not there after the bake.
     #[error("expected the job to write {}, found nothing there", path.display())]
     NoOutput {

@@ -6,6 +6,7 @@
 mod error;
 mod in_order;
 mod job;
+mod moved;
 mod restore;
 mod run;
 
@@ -14,6 +15,7 @@ use serde::{Deserialize, Serialize};
 pub use error::RunError;
 pub use in_order::in_order;
 pub use job::{Job, JobInput, JobOutput, OutputKind, folded};
+pub use moved::Moved;
 pub use restore::Lookup;
 pub use run::{Done, Prepared, Written, finish, prepare};
 

@@ -263,13 +263,14 @@ impl Args {
                 return Ok(Outcome::Usage);
             }
         }
-        let work = Work { cache: &self.cache, settings: &Settings::default(), check: &|_| Ok(()), is_quiet: false };
-        let (_, outcome) = work.run(jobs::plan(&assets), err, &mut |asset, err| match &asset.output {
+        let settings = Settings::default();
+        let work = Work { cache: &self.cache, settings: &settings, remote: None, check: &|_| Ok(()), is_quiet: false };
+        let worked = work.run(jobs::plan(&assets), err, &mut |asset, err| match &asset.output {
             Some(output) if asset.status != Status::Failed => {
                 writeln!(err, "baked again: {} -> {output}", asset.input)
             }
             _ => Ok(()),
         })?;
-        Ok(outcome)
+        Ok(worked.outcome)
     }
 }

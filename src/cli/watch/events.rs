@@ -117,11 +117,11 @@ impl<'w> Teller<'w> {
         self.has_news = true;
         self.changes.outputs.push(done.output.clone());
         if !self.is_json && !self.is_quiet {
-            self.out.write_all(Asset::done(name, done, seconds, None).summary().as_bytes())?;
+            self.out.write_all(Asset::done(name, done, None, seconds, None).summary().as_bytes())?;
             return self.out.flush();
         }
         let files = done.written.iter().map(|Written { path, .. }| path.as_path()).collect();
-        let status = Status::of(done);
+        let status = Status::of(done, None);
         self.tell(&Event::Baked { input: &name, output: &done.output, status, files, bytes: done.bytes, seconds })
     }
 

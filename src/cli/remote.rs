@@ -1,0 +1,156 @@
+//! Options of commands that have a server bake.
+
+use std::collections::BTreeMap;
+use std::env;
+use std::fmt;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use crate::remote::{Header, Options, Tls};
+
+/// The variable that headers are taken from, a line for each.
+const HEADERS: &str = "ROUGHCAST_REMOTE_HEADER";
+
+/// Where jobs are run.
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Remote options")]
+pub struct RemoteOptions {
+    /// Have workers of this server of the Remote Execution API v2 bake: grpc://HOST:PORT, or grpcs:// with TLS. What --cache
+    /// has is not sent.
+    #[arg(long, value_name = "URL")]
+    remote: Option<String>,
+    /// Instance of the server.
+    #[arg(long, value_name = "NAME", default_value = "", hide_default_value = true, requires = "remote")]
+    remote_instance: String,
+    /// What workers must be, such as OSFamily=linux. May be given several times.
+    #[arg(long, value_name = "NAME=VALUE", value_parser = pair, requires = "remote")]
+    remote_platform: Vec<(String, String)>,
+    /// A header of every call, such as authorization=... May be given several times. Others see command lines: better
+    /// --remote-header-file, or the variable ROUGHCAST_REMOTE_HEADER, with a line for each header.
+    #[arg(long, value_name = "NAME=VALUE", requires = "remote")]
+    remote_header: Vec<Secret>,
+    /// A file with a header in each line.
+    #[arg(long, value_name = "FILE", requires = "remote")]
+    remote_header_file: Option<PathBuf>,
+    /// Certificates (PEM) that sign the server's, instead of the system's.
+    #[arg(long, value_name = "FILE", requires = "remote")]
+    remote_ca: Option<PathBuf>,
+    /// Certificate (PEM) that the server knows the caller by.
+    #[arg(long, value_name = "FILE", requires_all = ["remote", "remote_key"])]
+    remote_cert: Option<PathBuf>,
+    /// Its key (PEM).
+    #[arg(long, value_name = "FILE", requires_all = ["remote", "remote_cert"])]
+    remote_key: Option<PathBuf>,
+    /// The most actions at a time.
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=4096), requires = "remote")]
+    remote_jobs: u32,
+    /// The longest that an action may take, from its upload to its result; also what the server is asked for. [default: what
+    /// the server gives, and an hour]
+    #[arg(long, value_name = "SECONDS", value_parser = clap::value_parser!(u64).range(1..), requires = "remote")]
+    remote_timeout: Option<u64>,
+    /// How often something that may pass is tried again, ever more slowly: 8 times take half a minute.
+    #[arg(long, value_name = "N", default_value_t = 8, requires = "remote")]
+    remote_retries: u32,
+    /// The tool that workers run: a static build of this version for their system. [default: the one that is running]
+    #[arg(long, value_name = "FILE", requires = "remote")]
+    remote_tool: Option<PathBuf>,
+}
+
+/// Something that is not to be shown.
+#[derive(Clone)]
+struct Secret(String);
+
+impl From<String> for Secret {
+    fn from(text: String) -> Self {
+        Self(text)
+    }
+}
+
+impl fmt::Debug for Secret {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("...")
+    }
+}
+
+/// Why options make no sense.
+#[derive(Debug, thiserror::Error)]
+pub enum RemoteOptionError {
+    /// A header that is none. What stands there may be a secret.
+    #[error("{origin}: expected NAME=VALUE, found a line without a name (not shown, it may be a secret)")]
+    Header {
+        /// Where it is from.
+        origin: String,
+    },
+    /// A file that cannot be read.
+    #[error("--remote-header-file: expected a readable file at {}, found: {error}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// The system's error.
+        error: std::io::Error,
+    },
+    /// The running tool cannot be found.
+    #[error("--remote: expected to find the running tool, found: {0}; name one with --remote-tool")]
+    Tool(std::io::Error),
+}
+
+impl RemoteOptions {
+    /// What is said of a server, if one is named.
+    ///
+    /// # Errors
+    /// [`RemoteOptionError`].
+    pub fn options(&self) -> Result<Option<Options>, RemoteOptionError> {
+        let Some(url) = self.remote.clone() else { return Ok(None) };
+        let tool = match &self.remote_tool {
+            Some(tool) => tool.clone(),
+            None => env::current_exe().map_err(RemoteOptionError::Tool)?,
+        };
+        Ok(Some(Options {
+            url,
+            instance: self.remote_instance.clone(),
+            platform: self.remote_platform.clone(),
+            headers: self.headers()?,
+            tls: Tls {
+                authority: self.remote_ca.clone(),
+                identity: self.remote_cert.clone().zip(self.remote_key.clone()),
+            },
+            jobs: self.remote_jobs as usize,
+            timeout: self.remote_timeout.map(Duration::from_secs),
+            retries: self.remote_retries,
+            tool,
+        }))
+    }
+
+    /// Headers of the variable, the file and the flags; of one name, the last holds.
+    fn headers(&self) -> Result<Vec<Header>, RemoteOptionError> {
+        let mut headers = BTreeMap::new();
+        let mut add = |text: &str, origin: &str| {
+            for line in text.lines().map(str::trim).filter(|line| !line.is_empty()) {
+                let pair = line.split_once('=').map(|(name, value)| (name.trim(), value.trim()));
+                let Some((name, value)) = pair.filter(|(name, _)| !name.is_empty()) else {
+                    return Err(RemoteOptionError::Header { origin: origin.to_owned() });
+                };
+                headers.insert(name.to_ascii_lowercase(), value.to_owned());
+            }
+            Ok(())
+        };
+        if let Ok(text) = env::var(HEADERS) {
+            add(&text, HEADERS)?;
+        }
+        if let Some(path) = &self.remote_header_file {
+            let read = |path: &Path| fs::read_to_string(path);
+            let text = read(path).map_err(|error| RemoteOptionError::Read { path: path.clone(), error })?;
+            add(&text, &path.display().to_string())?;
+        }
+        for Secret(text) in &self.remote_header {
+            add(text, "--remote-header")?;
+        }
+        Ok(headers.into_iter().map(|(name, value)| Header { name, value }).collect())
+    }
+}
+
+fn pair(text: &str) -> Result<(String, String), String> {
+    let pair = text.split_once('=').filter(|(name, _)| !name.is_empty());
+    pair.map(|(name, value)| (name.to_owned(), value.to_owned())).ok_or_else(|| "expected NAME=VALUE".to_owned())
+}

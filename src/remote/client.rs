@@ -1,0 +1,236 @@
+//! The connection: headers, TLS, what the server can do, and how long a call may take.
+
+use std::fs;
+use std::future::Future;
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Duration;
+
+use prost::Message;
+use tokio::sync::{Semaphore, SemaphorePermit};
+use tonic::metadata::{Ascii, Binary, MetadataKey, MetadataValue};
+use tonic::service::Interceptor;
+use tonic::service::interceptor::InterceptedService;
+use tonic::transport::{Certificate, Channel, ClientTlsConfig, Endpoint, Identity};
+use tonic::{Request, Response, Status};
+
+use super::api;
+use super::error::RemoteError;
+use super::options::Options;
+use super::retry::{Attempts, random};
+use super::tally::Tally;
+
+/// What calls go through.
+pub type Service = InterceptedService<Channel, Headers>;
+
+/// The longest message: what servers send in one piece is far below.
+pub const MAX_MESSAGE: usize = 16 << 20;
+
+/// What a call may take besides the time for its bytes.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// The slowest connection that is waited for, in bytes per second.
+const SLOWEST: u64 = 50_000;
+
+/// What one message may hold where the server names no bound: gRPC's own is 4 MiB, of which some is framing.
+const BATCH: u64 = 3 << 20;
+
+/// The most memory for large blobs on their way, in MiB, however many actions there are at a time.
+const ROOM: u32 = 512;
+
+/// A connection.
+#[derive(Clone)]
+pub struct Client {
+    service: Service,
+    secrets: Arc<[String]>,
+    /// Instance of the server.
+    pub instance: String,
+    /// The most bytes in a batch of blobs.
+    pub batch: u64,
+    /// Whether blobs go compressed.
+    pub is_zstd: bool,
+    /// MiB that blobs on their way may take.
+    room: Arc<Semaphore>,
+}
+
+impl Client {
+    /// Connects and asks what the server can do.
+    pub async fn connect(options: &Options, tally: &Tally) -> Result<Self, RemoteError> {
+        let channel = endpoint(options)?.connect_lazy();
+        let headers = Headers::new(options)?;
+        let secrets = options.headers.iter().map(|header| header.value.clone()).collect();
+        let service = InterceptedService::new(channel, headers);
+        let (instance, batch, is_zstd) = (options.instance.clone(), BATCH, false);
+        let room = Arc::new(Semaphore::new(ROOM as usize));
+        let client = Self { service, secrets, instance, batch, is_zstd, room };
+        let found = Attempts::new(options.retries, tally).at(|| client.capabilities()).await;
+        let found = found.map_err(|error| match error {
+            RemoteError::Status { code: tonic::Code::Unavailable, message, .. } => {
+                RemoteError::Unreachable { url: options.url.clone(), reason: message }
+            }
+            error => error,
+        })?;
+        client.with(&found)
+    }
+
+    async fn capabilities(&self) -> Result<api::ServerCapabilities, RemoteError> {
+        let mut client = api::CapabilitiesClient::new(self.service());
+        let request = api::GetCapabilitiesRequest { instance_name: self.instance.clone() };
+        self.call("GetCapabilities", 0, client.get_capabilities(request)).await
+    }
+
+    fn with(self, found: &api::ServerCapabilities) -> Result<Self, RemoteError> {
+        let sha256 = api::digest_function::Value::Sha256 as i32;
+        let (Some(cache), Some(execution)) = (&found.cache_capabilities, &found.execution_capabilities) else {
+            return Err(RemoteError::Capabilities {
+                expected: "stores blobs and executes actions",
+                found: "one that does not".into(),
+            });
+        };
+        if !execution.exec_enabled {
+            return Err(RemoteError::Capabilities {
+                expected: "executes actions",
+                found: "one that stores blobs only".into(),
+            });
+        }
+        let executes = execution.digest_function == sha256 || execution.digest_functions.contains(&sha256);
+        if !(executes && cache.digest_functions.contains(&sha256)) {
+            return Err(RemoteError::Capabilities {
+                expected: "names blobs by SHA-256",
+                found: "one with other functions".into(),
+            });
+        }
+        let bound = u64::try_from(cache.max_batch_total_size_bytes).ok().filter(|bound| *bound > 0);
+        Ok(Self {
+            batch: bound.map_or(BATCH, |bound| bound.min(BATCH)),
+            is_zstd: cache.supported_compressors.contains(&(api::compressor::Value::Zstd as i32)),
+            ..self
+        })
+    }
+
+    /// What a generated client takes.
+    pub fn service(&self) -> Service {
+        self.service.clone()
+    }
+
+    /// The client of blobs.
+    pub fn storage(&self) -> api::ContentAddressableStorageClient<Service> {
+        api::ContentAddressableStorageClient::new(self.service()).max_decoding_message_size(MAX_MESSAGE)
+    }
+
+    /// The name of something in the server's instance.
+    pub fn resource(&self, name: &str) -> String {
+        if self.instance.is_empty() { name.to_owned() } else { format!("{}/{name}", self.instance) }
+    }
+
+    /// Waits until there is memory for `bytes`, or for the one blob that is larger than all of it.
+    pub async fn room(&self, bytes: u64) -> Option<SemaphorePermit<'_>> {
+        let megabytes = u32::try_from(bytes >> 20).unwrap_or(ROOM).clamp(1, ROOM);
+        // Never closed.
+        self.room.acquire_many(megabytes).await.ok()
+    }
+
+    /// Awaits a call that moves `bytes`.
+    pub async fn call<T>(
+        &self,
+        name: &'static str,
+        bytes: u64,
+        call: impl Future<Output = Result<Response<T>, Status>>,
+    ) -> Result<T, RemoteError> {
+        self.within(name, bytes, async { call.await.map(Response::into_inner) }).await
+    }
+
+    /// Awaits something that moves `bytes`.
+    pub async fn within<T>(
+        &self,
+        name: &'static str,
+        bytes: u64,
+        call: impl Future<Output = Result<T, Status>>,
+    ) -> Result<T, RemoteError> {
+        let limit = PATIENCE + Duration::from_secs(bytes / SLOWEST);
+        let late = |_| Status::deadline_exceeded(format!("no answer within {} s", limit.as_secs()));
+        let result = tokio::time::timeout(limit, call).await.map_err(late).flatten();
+        result.map_err(|status| self.error(name, &status))
+    }
+
+    /// What a status tells, without the values of headers.
+    pub fn error(&self, call: &'static str, status: &Status) -> RemoteError {
+        let hidden = |text: String, secret: &String| text.replace(secret.as_str(), "...");
+        let secrets = self.secrets.iter().filter(|secret| !secret.is_empty());
+        let message = secrets.fold(status.message().to_owned(), hidden);
+        RemoteError::Status { call, code: status.code(), message: message.chars().take(500).collect() }
+    }
+}
+
+fn endpoint(options: &Options) -> Result<Endpoint, RemoteError> {
+    let wrong =
+        |reason: String| RemoteError::Options(format!("{}: expected grpc://host:port, found {reason}", options.url));
+    let (scheme, rest) = options.url.split_once("://").ok_or_else(|| wrong("no scheme".into()))?;
+    let is_tls = match scheme {
+        "grpc" => false,
+        "grpcs" => true,
+        other => return Err(wrong(format!("{other}://"))),
+    };
+    let url = format!("{}://{rest}", if is_tls { "https" } else { "http" });
+    let endpoint = Endpoint::from_shared(url).map_err(|error| wrong(error.to_string()))?;
+    let endpoint = endpoint.connect_timeout(Duration::from_secs(10)).tcp_keepalive(Some(Duration::from_secs(30)));
+    if is_tls { endpoint.tls_config(tls(options)?).map_err(|e| wrong(e.to_string())) } else { Ok(endpoint) }
+}
+
+fn tls(options: &Options) -> Result<ClientTlsConfig, RemoteError> {
+    let read =
+        |path: &Path| fs::read(path).map_err(|error| RemoteError::Read { path: path.to_owned(), error: error.into() });
+    let mut tls = ClientTlsConfig::new();
+    tls = match &options.tls.authority {
+        Some(path) => tls.ca_certificate(Certificate::from_pem(read(path)?)),
+        None => tls.with_native_roots(),
+    };
+    if let Some((certificate, key)) = &options.tls.identity {
+        tls = tls.identity(Identity::from_pem(read(certificate)?, read(key)?));
+    }
+    Ok(tls)
+}
+
+/// Headers that every call carries.
+#[derive(Clone)]
+pub struct Headers {
+    named: Arc<[(MetadataKey<Ascii>, MetadataValue<Ascii>)]>,
+    about: MetadataValue<Binary>,
+}
+
+impl Headers {
+    fn new(options: &Options) -> Result<Self, RemoteError> {
+        let mut named = Vec::with_capacity(options.headers.len());
+        for header in &options.headers {
+            let name = header.name.parse::<MetadataKey<Ascii>>();
+            let value = header.value.parse::<MetadataValue<Ascii>>();
+            let (Ok(name), Ok(mut value)) = (name, value) else {
+                let reason = format!("--remote-header {}: expected a header of gRPC, found none", header.name);
+                return Err(RemoteError::Options(reason));
+            };
+            value.set_sensitive(true);
+            named.push((name, value));
+        }
+        // Servers show these to those who look for what is running.
+        let tool =
+            api::ToolDetails { tool_name: "roughcast".to_owned(), tool_version: env!("CARGO_PKG_VERSION").to_owned() };
+        let invocation = format!("{:016x}{:016x}", random(), random());
+        let about = api::RequestMetadata {
+            tool_details: Some(tool),
+            tool_invocation_id: invocation,
+            ..api::RequestMetadata::default()
+        };
+        Ok(Self { named: named.into(), about: MetadataValue::from_bytes(&about.encode_to_vec()) })
+    }
+}
+
+impl Interceptor for Headers {
+    fn call(&mut self, mut request: Request<()>) -> Result<Request<()>, Status> {
+        let metadata = request.metadata_mut();
+        for (name, value) in self.named.iter() {
+            metadata.append(name.clone(), value.clone());
+        }
+        metadata.insert_bin("build.bazel.remote.execution.v2.requestmetadata-bin", self.about.clone());
+        Ok(request)
+    }
+}

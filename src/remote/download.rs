@@ -1,0 +1,140 @@
+//! Fetching blobs, and believing none of them: length and SHA-256 must be what was asked for.
+
+use std::io::Read;
+
+use tonic::{Code, Status};
+
+use super::api;
+use super::client::{Client, MAX_MESSAGE};
+use super::digest::Digest;
+use super::error::RemoteError;
+use super::retry::Attempts;
+use super::tally::{Tally, add};
+
+/// Fetches `digests`, each named once, and gives each blob to `take` as soon as it is there.
+///
+/// # Errors
+/// [`RemoteError`], and those of `take`.
+pub async fn fetch(
+    digests: &[Digest],
+    client: &Client,
+    retries: u32,
+    tally: &Tally,
+    take: &mut dyn FnMut(Digest, &[u8]) -> Result<(), RemoteError>,
+) -> Result<(), RemoteError> {
+    let mut took = |digest: Digest, content: &[u8]| {
+        add(&tally.downloaded_blobs, 1);
+        add(&tally.downloaded_bytes, digest.bytes);
+        take(digest, content)
+    };
+    let (mut batch, mut bytes) = (Vec::new(), 0);
+    for digest in digests.iter().copied() {
+        let cost = digest.bytes.saturating_add(200);
+        if cost > client.batch / 2 {
+            let _room = client.room(digest.bytes).await;
+            let content = Attempts::new(retries, tally).at(|| read(digest, client)).await?;
+            took(digest, &content)?;
+            continue;
+        }
+        if bytes + cost > client.batch {
+            fetch_batch(&std::mem::take(&mut batch), client, retries, tally, &mut took).await?;
+            bytes = 0;
+        }
+        batch.push(digest);
+        bytes += cost;
+    }
+    fetch_batch(&batch, client, retries, tally, &mut took).await
+}
+
+/// Fetches one blob.
+///
+/// # Errors
+/// [`RemoteError`].
+pub async fn fetch_one(digest: Digest, client: &Client, retries: u32, tally: &Tally) -> Result<Vec<u8>, RemoteError> {
+    let mut bytes = Vec::new();
+    let mut take = |_, content: &[u8]| {
+        bytes = content.to_vec();
+        Ok(())
+    };
+    fetch(&[digest], client, retries, tally, &mut take).await?;
+    Ok(bytes)
+}
+
+async fn fetch_batch(
+    digests: &[Digest],
+    client: &Client,
+    retries: u32,
+    tally: &Tally,
+    take: &mut dyn FnMut(Digest, &[u8]) -> Result<(), RemoteError>,
+) -> Result<(), RemoteError> {
+    if digests.is_empty() {
+        return Ok(());
+    }
+    let bytes = digests.iter().map(|digest| digest.bytes).sum();
+    let _room = client.room(bytes).await;
+    let request = api::BatchReadBlobsRequest {
+        instance_name: client.instance.clone(),
+        digests: digests.iter().map(|digest| digest.to_api()).collect(),
+        ..api::BatchReadBlobsRequest::default()
+    };
+    let ask = || async {
+        let mut service = client.storage();
+        let answer = client.call("BatchReadBlobs", bytes, service.batch_read_blobs(request.clone())).await?;
+        let mut blobs = Vec::with_capacity(digests.len());
+        for digest in digests {
+            let wanted = digest.to_api();
+            let found = answer.responses.iter().find(|response| response.digest.as_ref() == Some(&wanted));
+            let status = match found.and_then(|response| response.status.as_ref()) {
+                Some(status) if status.code != 0 => Some((status.code.into(), status.message.clone())),
+                _ if found.is_none() => Some((Code::NotFound, "a blob is not in the answer".to_owned())),
+                _ => None,
+            };
+            if let Some((code, message)) = status {
+                return Err(client.error("BatchReadBlobs", &Status::new(code, message)));
+            }
+            let content = found.map(|response| response.data.clone()).unwrap_or_default();
+            blobs.push((*digest, verified(*digest, content)?));
+        }
+        Ok(blobs)
+    };
+    for (digest, content) in Attempts::new(retries, tally).at(ask).await? {
+        take(digest, &content)?;
+    }
+    Ok(())
+}
+
+/// Fetches one blob in pieces.
+async fn read(digest: Digest, client: &Client) -> Result<Vec<u8>, RemoteError> {
+    let kind = if client.is_zstd { "compressed-blobs/zstd" } else { "blobs" };
+    let request = api::ReadRequest {
+        resource_name: client.resource(&format!("{kind}/{}", digest.path())),
+        ..api::ReadRequest::default()
+    };
+    // What does not compress grows a little.
+    let most = if client.is_zstd { digest.bytes.saturating_add(digest.bytes / 128 + 1024) } else { digest.bytes };
+    let pieces = async {
+        let mut service = api::ByteStreamClient::new(client.service()).max_decoding_message_size(MAX_MESSAGE);
+        let mut stream = service.read(request).await?.into_inner();
+        let mut content = Vec::new();
+        while let Some(piece) = stream.message().await? {
+            content.extend_from_slice(&piece.data);
+            if content.len() as u64 > most {
+                return Err(Status::data_loss("more bytes than the blob has"));
+            }
+        }
+        Ok(content)
+    };
+    let content = client.within("ByteStream.Read", digest.bytes, pieces).await?;
+    if !client.is_zstd {
+        return verified(digest, content);
+    }
+    let mut plain = Vec::new();
+    let decoder = zstd::stream::read::Decoder::new(content.as_slice());
+    let done = decoder.and_then(|decoder| decoder.take(digest.bytes.saturating_add(1)).read_to_end(&mut plain));
+    done.map_err(|_| RemoteError::Damaged { digest: digest.path() })?;
+    verified(digest, plain)
+}
+
+fn verified(digest: Digest, content: Vec<u8>) -> Result<Vec<u8>, RemoteError> {
+    if Digest::of(&content) == digest { Ok(content) } else { Err(RemoteError::Damaged { digest: digest.path() }) }
+}

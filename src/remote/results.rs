@@ -1,0 +1,195 @@
+//! From what a worker left to entries of the caller's cache, each part of it checked.
+
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::path::Path;
+
+use prost::Message;
+use serde::Deserialize;
+
+use super::action::RESULTS;
+use super::api;
+use super::client::Client;
+use super::digest::Digest;
+use super::download::{fetch, fetch_one};
+use super::error::RemoteError;
+use super::outcome::JobFailure;
+use super::tally::Tally;
+use crate::cache::{Cache, Entry};
+use crate::plan::{Job, Moved, OutputKind};
+
+/// A job of an action.
+pub struct Sent<'a> {
+    /// The job as it is here.
+    pub job: &'a Job,
+    /// The job as it was sent.
+    pub moved: &'a Moved,
+}
+
+/// The longest list of files, entry or text of a tool that is read.
+const MOST: u64 = 64 << 20;
+
+/// Puts what `result` has of `jobs` into `cache`. Returns why jobs failed that are not in it, in the order of `jobs`.
+///
+/// # Errors
+/// [`RemoteError`] where not every job has its outputs or a reason.
+pub async fn collect(
+    result: &api::ActionResult,
+    jobs: &[Sent<'_>],
+    cache: &Cache,
+    client: &Client,
+    retries: u32,
+    tally: &Tally,
+) -> Result<Vec<Option<JobFailure>>, RemoteError> {
+    let text = |raw: &[u8], digest: &Option<api::Digest>| {
+        let (raw, digest) = (raw.to_vec(), digest.as_ref().and_then(Digest::from_api));
+        async move {
+            match digest {
+                Some(digest) if raw.is_empty() && digest.bytes <= MOST => {
+                    fetch_one(digest, client, retries, tally).await
+                }
+                _ => Ok(raw),
+            }
+        }
+    };
+    let reasons = match result.exit_code {
+        0 => HashMap::new(),
+        1 | 4 => reasons(&text(&result.stdout_raw, &result.stdout_digest).await?)?,
+        code => {
+            let text = text(&result.stderr_raw, &result.stderr_digest).await?;
+            return Err(RemoteError::Tool { code, text: end(&text) });
+        }
+    };
+    let left = left(result, client, retries, tally).await?;
+    let entries = entries(&left, jobs, client, retries, tally).await?;
+    let mut failures = Vec::with_capacity(jobs.len());
+    for (sent, entry) in jobs.iter().zip(&entries) {
+        let reason = reasons.get(sent.moved.job.source.to_string_lossy().as_ref());
+        failures.push(match (entry, reason) {
+            (Some(_), _) => None,
+            (None, None) => return Err(RemoteError::NoOutputs),
+            (None, Some(reason)) => Some(JobFailure { message: here(reason, sent), is_passing: result.exit_code == 4 }),
+        });
+    }
+    let mut blobs: BTreeMap<Digest, (&str, &Path)> = BTreeMap::new();
+    for stored in entries.iter().flatten().flat_map(|entry| entry.files.iter().chain([&entry.document])) {
+        let digest = left.blobs.get(&stored.blake3).filter(|digest| digest.bytes == stored.bytes);
+        blobs.insert(*digest.ok_or(RemoteError::NoOutputs)?, (&stored.blake3, &stored.path));
+    }
+    let digests: Vec<Digest> = blobs.keys().copied().collect();
+    let kept = |error: crate::cache::CacheError| RemoteError::Cache(error.to_string());
+    let mut keep = |digest: Digest, content: &[u8]| {
+        let Some((blake3, path)) = blobs.get(&digest) else { return Ok(()) };
+        let stored = cache.put_blob(path, content).map_err(kept)?;
+        if stored.blake3 == *blake3 { Ok(()) } else { Err(RemoteError::Damaged { digest: (*blake3).to_owned() }) }
+    };
+    fetch(&digests, client, retries, tally, &mut keep).await?;
+    // Entries come last: whoever finds one finds its blobs.
+    for (sent, entry) in jobs.iter().zip(&entries) {
+        if let Some(entry) = entry {
+            cache.put_entry(&sent.job.id, entry).map_err(kept)?;
+        }
+    }
+    Ok(failures)
+}
+
+/// The cache that an action wrote: digests of files by their names.
+#[derive(Default)]
+struct Left {
+    jobs: HashMap<String, Digest>,
+    blobs: HashMap<String, Digest>,
+}
+
+async fn left(result: &api::ActionResult, client: &Client, retries: u32, tally: &Tally) -> Result<Left, RemoteError> {
+    let folder = result.output_directories.iter().find(|folder| folder.path == RESULTS);
+    let digest = folder.and_then(|folder| folder.tree_digest.as_ref()).and_then(Digest::from_api);
+    let Some(digest) = digest.filter(|digest| digest.bytes <= MOST) else { return Ok(Left::default()) };
+    let bytes = fetch_one(digest, client, retries, tally).await?;
+    let tree = api::Tree::decode(bytes.as_slice())
+        .map_err(|error| RemoteError::Malformed { expected: "a tree of outputs", found: error.to_string() })?;
+    let folders: HashMap<Digest, &api::Directory> =
+        tree.children.iter().map(|folder| (Digest::of(&folder.encode_to_vec()), folder)).collect();
+    let below = |folder: &api::Directory| {
+        let digests = folder.directories.iter().filter_map(|below| Digest::from_api(below.digest.as_ref()?));
+        digests.filter_map(|digest| folders.get(&digest).copied()).collect::<Vec<_>>()
+    };
+    // `jobs/<2 digits>/<id>` and `blobs/<2 digits>/<digest>`.
+    let root = tree.root.unwrap_or_default();
+    let named = |name: &str| -> HashMap<String, Digest> {
+        let kinds = root.directories.iter().filter(|kind| kind.name == name);
+        let kinds = kinds.filter_map(|kind| folders.get(&Digest::from_api(kind.digest.as_ref()?)?).copied());
+        let files = kinds.flat_map(below).flat_map(|folder| &folder.files);
+        files.filter_map(|file| Some((file.name.clone(), Digest::from_api(file.digest.as_ref()?)?))).collect()
+    };
+    Ok(Left { jobs: named("jobs"), blobs: named("blobs") })
+}
+
+/// What the worker knows of each job. Entries that are none, or of another job, count as absent.
+async fn entries(
+    left: &Left,
+    jobs: &[Sent<'_>],
+    client: &Client,
+    retries: u32,
+    tally: &Tally,
+) -> Result<Vec<Option<Entry>>, RemoteError> {
+    let digest_of = |sent: &Sent<'_>| left.jobs.get(&sent.job.id).copied().filter(|digest| digest.bytes <= MOST);
+    let digests: BTreeSet<Digest> = jobs.iter().filter_map(digest_of).collect();
+    let mut found = HashMap::new();
+    let mut take = |digest, content: &[u8]| {
+        found.extend(Entry::parse(content).map(|entry| (digest, entry)));
+        Ok(())
+    };
+    fetch(&digests.into_iter().collect::<Vec<_>>(), client, retries, tally, &mut take).await?;
+    let entry_of = |sent: &Sent<'_>| found.get(&digest_of(sent)?).filter(|entry| is_of(entry, sent.moved)).cloned();
+    Ok(jobs.iter().map(entry_of).collect())
+}
+
+/// Whether `entry` has what the job declares, and nothing elsewhere.
+fn is_of(entry: &Entry, moved: &Moved) -> bool {
+    let folder = &moved.job.output;
+    let document = folder.join(&entry.document.path);
+    let is_document = moved.job.outputs.first().is_some_and(|output| output.path == document);
+    let folders = || moved.job.outputs.iter().filter(|output| output.kind == OutputKind::Folder);
+    let is_declared = |path: &Path| folders().any(|output| folder.join(path).starts_with(&output.path));
+    is_document
+        && entry.files.iter().all(|file| is_declared(&file.path))
+        && entry.copies.iter().all(|copy| moved.names.contains(copy))
+}
+
+/// Why jobs failed, by their sources: what the report of the tool says.
+fn reasons(report: &[u8]) -> Result<HashMap<String, String>, RemoteError> {
+    #[derive(Deserialize)]
+    struct Report {
+        assets: Vec<Asset>,
+    }
+    #[derive(Deserialize)]
+    struct Asset {
+        input: String,
+        error: Option<String>,
+    }
+    let report: Report = serde_json::from_slice(report)
+        .map_err(|error| RemoteError::Malformed { expected: "the report of the tool", found: error.to_string() })?;
+    Ok(report.assets.into_iter().filter_map(|asset| Some((asset.input, asset.error?))).collect())
+}
+
+/// `reason` with the paths that the files have here.
+fn here(reason: &str, sent: &Sent<'_>) -> String {
+    let folder = |path: &Path| match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => format!("{}/", parent.display()),
+        _ => String::new(),
+    };
+    let text = reason.replace(&folder(&sent.moved.job.source), &folder(&sent.job.source));
+    let text = text.replace(&*sent.moved.job.output.to_string_lossy(), &sent.job.output.to_string_lossy());
+    plain(&text, 4000)
+}
+
+/// The end of what a tool said.
+fn end(text: &[u8]) -> String {
+    let text = String::from_utf8_lossy(text);
+    let lines: Vec<&str> = text.lines().filter(|line| !line.trim().is_empty()).collect();
+    plain(&lines[lines.len().saturating_sub(3)..].join("; "), 1000)
+}
+
+/// At most `length` characters of `text`, none of which moves the cursor of a terminal.
+fn plain(text: &str, length: usize) -> String {
+    text.chars().filter(|c| !c.is_control() || *c == '\n').take(length).collect()
+}

@@ -1,0 +1,221 @@
+//! Sending blobs that a server does not have: the small together, the large in pieces, each once.
+
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use tokio::sync::watch;
+
+use super::api;
+use super::client::Client;
+use super::digest::{Blob, Digest};
+use super::error::RemoteError;
+use super::retry::{Attempts, random};
+use super::tally::{Tally, add};
+
+/// Digests per question: a message of 4 MiB holds some 50 000.
+const QUESTION: usize = 10_000;
+
+/// Bytes per piece of a large blob.
+const PIECE: usize = 1 << 20;
+
+/// What is known to be there, or on its way.
+#[derive(Default)]
+pub struct Uploads(Mutex<HashMap<Digest, State>>);
+
+enum State {
+    /// Somebody sends it; the channel closes when that has ended.
+    Sending(watch::Receiver<()>),
+    There,
+}
+
+/// Blobs that one caller sends and others wait for.
+struct Claim<'u> {
+    uploads: &'u Uploads,
+    blobs: Vec<Blob>,
+    /// Closed when this is dropped.
+    _ended: watch::Sender<()>,
+}
+
+impl Drop for Claim<'_> {
+    fn drop(&mut self) {
+        let mut states = self.uploads.states();
+        for blob in &self.blobs {
+            if matches!(states.get(&blob.digest), Some(State::Sending(_))) {
+                states.remove(&blob.digest);
+            }
+        }
+    }
+}
+
+impl Uploads {
+    /// Sees to it that the server has all of `blobs`. Returns when it has them, whoever sent them.
+    pub async fn send(&self, blobs: &[Blob], client: &Client, retries: u32, tally: &Tally) -> Result<(), RemoteError> {
+        loop {
+            let (claim, others) = self.claim(blobs);
+            if !claim.blobs.is_empty() {
+                let missing = Attempts::new(retries, tally).at(|| missing(&claim.blobs, client)).await?;
+                send(&missing, client, retries, tally).await?;
+                let mut states = self.states();
+                for blob in claim.blobs.iter().filter(|blob| blob.is_file()) {
+                    states.insert(blob.digest, State::There);
+                }
+            }
+            drop(claim);
+            if others.is_empty() {
+                return Ok(());
+            }
+            for mut other in others {
+                // Closed, and nothing was ever sent.
+                let _ = other.changed().await;
+            }
+            // What others failed to send is claimed now.
+        }
+    }
+
+    /// Forgets that `blobs` are there, since the server says otherwise.
+    pub fn forget(&self, blobs: &[Blob]) {
+        let mut states = self.states();
+        for blob in blobs {
+            if matches!(states.get(&blob.digest), Some(State::There)) {
+                states.remove(&blob.digest);
+            }
+        }
+    }
+
+    fn claim(&self, blobs: &[Blob]) -> (Claim<'_>, Vec<watch::Receiver<()>>) {
+        let (ended, end) = watch::channel(());
+        let (mut mine, mut others) = (Vec::new(), Vec::new());
+        let mut states = self.states();
+        for blob in blobs {
+            match states.get(&blob.digest) {
+                Some(State::There) => {}
+                // Twice among `blobs`.
+                Some(State::Sending(other)) if other.same_channel(&end) => {}
+                Some(State::Sending(other)) => others.push(other.clone()),
+                None => {
+                    states.insert(blob.digest, State::Sending(end.clone()));
+                    mine.push(blob.clone());
+                }
+            }
+        }
+        (Claim { uploads: self, blobs: mine, _ended: ended }, others)
+    }
+
+    fn states(&self) -> std::sync::MutexGuard<'_, HashMap<Digest, State>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Those of `blobs` that the server does not have.
+async fn missing(blobs: &[Blob], client: &Client) -> Result<Vec<Blob>, RemoteError> {
+    let mut found = Vec::new();
+    for part in blobs.chunks(QUESTION) {
+        let mut service = client.storage();
+        let request = api::FindMissingBlobsRequest {
+            instance_name: client.instance.clone(),
+            blob_digests: part.iter().map(|blob| blob.digest.to_api()).collect(),
+            ..api::FindMissingBlobsRequest::default()
+        };
+        let answer = client.call("FindMissingBlobs", 0, service.find_missing_blobs(request)).await?;
+        let digests: Vec<Digest> = answer.missing_blob_digests.iter().filter_map(Digest::from_api).collect();
+        found.extend(part.iter().filter(|blob| digests.contains(&blob.digest)).cloned());
+    }
+    Ok(found)
+}
+
+async fn send(blobs: &[Blob], client: &Client, retries: u32, tally: &Tally) -> Result<(), RemoteError> {
+    let (mut batch, mut bytes) = (Vec::new(), 0);
+    for blob in blobs {
+        // A digest and framing besides.
+        let cost = blob.digest.bytes + 200;
+        if cost > client.batch / 2 {
+            let _room = client.room(blob.digest.bytes).await;
+            let content = blob.read()?;
+            Attempts::new(retries, tally).at(|| write(blob.digest, &content, client)).await?;
+            add(&tally.uploaded_blobs, 1);
+            add(&tally.uploaded_bytes, blob.digest.bytes);
+            continue;
+        }
+        if bytes + cost > client.batch {
+            send_batch(&std::mem::take(&mut batch), client, retries, tally).await?;
+            bytes = 0;
+        }
+        batch.push(blob);
+        bytes += cost;
+    }
+    send_batch(&batch, client, retries, tally).await
+}
+
+async fn send_batch(blobs: &[&Blob], client: &Client, retries: u32, tally: &Tally) -> Result<(), RemoteError> {
+    if blobs.is_empty() {
+        return Ok(());
+    }
+    let mut requests = Vec::with_capacity(blobs.len());
+    for blob in blobs {
+        let (digest, data) = (Some(blob.digest.to_api()), blob.read()?.to_vec());
+        requests.push(api::batch_update_blobs_request::Request { digest, data, compressor: 0 });
+    }
+    let bytes: u64 = blobs.iter().map(|blob| blob.digest.bytes).sum();
+    let request = api::BatchUpdateBlobsRequest {
+        instance_name: client.instance.clone(),
+        requests,
+        ..api::BatchUpdateBlobsRequest::default()
+    };
+    let update = || async {
+        let mut service = client.storage();
+        let answer = client.call("BatchUpdateBlobs", bytes, service.batch_update_blobs(request.clone())).await?;
+        let statuses = answer.responses.into_iter().filter_map(|response| response.status);
+        match statuses.into_iter().find(|status| status.code != 0) {
+            Some(status) => {
+                Err(client.error("BatchUpdateBlobs", &tonic::Status::new(status.code.into(), status.message)))
+            }
+            None => Ok(()),
+        }
+    };
+    Attempts::new(retries, tally).at(update).await?;
+    add(&tally.uploaded_blobs, blobs.len() as u64);
+    add(&tally.uploaded_bytes, bytes);
+    Ok(())
+}
+
+/// Sends one blob in pieces.
+async fn write(digest: Digest, content: &Arc<[u8]>, client: &Client) -> Result<(), RemoteError> {
+    let (kind, bytes): (_, Arc<[u8]>) = if client.is_zstd {
+        // Level 1: the wire is faster than higher levels.
+        let compressed = zstd::bulk::compress(content, 1).map_err(|error| RemoteError::Malformed {
+            expected: "to compress a blob for the server",
+            found: error.to_string(),
+        })?;
+        ("compressed-blobs/zstd", compressed.into())
+    } else {
+        ("blobs", Arc::clone(content))
+    };
+    let id = format!("{:016x}{:016x}", random(), random());
+    let (a, b, c, d, e) = (&id[..8], &id[8..12], &id[12..16], &id[16..20], &id[20..]);
+    let name = client.resource(&format!("uploads/{a}-{b}-{c}-{d}-{e}/{kind}/{}", digest.path()));
+    let (length, pieces) = (bytes.len(), bytes.len().div_ceil(PIECE).max(1));
+    let sent = Arc::clone(&bytes);
+    let requests = (0..pieces).map(move |piece| {
+        let (start, end) = (piece * PIECE, ((piece + 1) * PIECE).min(length));
+        api::WriteRequest {
+            // Only the first needs it.
+            resource_name: if piece == 0 { name.clone() } else { String::new() },
+            write_offset: start as i64,
+            finish_write: end == length,
+            data: sent.get(start..end).unwrap_or_default().to_vec(),
+        }
+    });
+    let mut service = api::ByteStreamClient::new(client.service());
+    let call = service.write(tokio_stream::iter(requests));
+    let answer = client.call("ByteStream.Write", length as u64, call).await?;
+    // -1 or the length of the blob: the server had it already, and read no further.
+    let committed = answer.committed_size;
+    if committed == length as i64 || committed == digest.bytes as i64 || committed == -1 {
+        return Ok(());
+    }
+    Err(RemoteError::Status {
+        call: "ByteStream.Write",
+        code: tonic::Code::DataLoss,
+        message: format!("{committed} bytes of {length} arrived"),
+    })
+}

@@ -1,0 +1,229 @@
+//! A server of the API in this process. It keeps everything in memory, runs actions in temporary folders without a sandbox,
+//! and misbehaves as it is told.
+
+use std::collections::HashMap;
+use std::fs;
+use std::net::{SocketAddr, TcpListener};
+use std::path::Path;
+use std::process::Command;
+use std::sync::{Arc, Mutex, MutexGuard};
+use std::thread;
+
+use bazel_remote_apis::build::bazel::remote::execution::v2 as re;
+use prost::Message;
+use re::action_cache_server::ActionCacheServer;
+use re::capabilities_server::CapabilitiesServer;
+use re::content_addressable_storage_server::ContentAddressableStorageServer;
+use re::execution_server::ExecutionServer;
+use sha2::{Digest as _, Sha256};
+use tokio::sync::oneshot;
+use tonic::{Code, Status};
+
+/// What a server does wrong, and how often.
+#[derive(Default)]
+pub struct Faults {
+    /// Calls of these names fail with UNAVAILABLE.
+    pub unavailable: HashMap<&'static str, u32>,
+    /// Executions whose stream breaks after the first message.
+    pub broken: u32,
+    /// Executions that break, and that nobody knows of afterwards.
+    pub lost: u32,
+    /// Executions before which all blobs of inputs vanish.
+    pub evicted: u32,
+    /// Results of executions are changed by this.
+    pub result: Option<fn(&State, re::ActionResult) -> re::ActionResult>,
+    /// Blobs that are read are changed by this.
+    pub read: Option<fn(Vec<u8>) -> Vec<u8>>,
+    /// Calls without this header are refused.
+    pub header: Option<(&'static str, &'static str)>,
+    /// What it says of itself is changed by this.
+    pub capabilities: Option<fn(&mut re::ServerCapabilities)>,
+}
+
+/// What a server has, and what was asked of it.
+#[derive(Default)]
+pub struct State {
+    pub blobs: Mutex<HashMap<String, Vec<u8>>>,
+    pub actions: Mutex<HashMap<String, re::ActionResult>>,
+    pub faults: Mutex<Faults>,
+    /// Executions that have ended.
+    pub operations: Mutex<super::services::Operations>,
+    /// How often each call was made, and each blob was written.
+    pub calls: Mutex<HashMap<String, u32>>,
+}
+
+/// A server; ends when it is dropped.
+pub struct Fake {
+    pub state: Arc<State>,
+    pub address: SocketAddr,
+    stop: Option<oneshot::Sender<()>>,
+    thread: Option<thread::JoinHandle<()>>,
+}
+
+impl Fake {
+    /// Starts one on a port that is free.
+    pub fn start() -> Self {
+        let state = Arc::new(State::default());
+        let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
+        listener.set_nonblocking(true).expect("a socket");
+        let address = listener.local_addr().expect("an address");
+        let (stop, stopped) = oneshot::channel();
+        let serving = Arc::clone(&state);
+        let thread = thread::spawn(move || {
+            let mut builder = tokio::runtime::Builder::new_multi_thread();
+            let runtime = builder.worker_threads(2).enable_all().build().expect("a runtime");
+            runtime.block_on(async {
+                let listener = tokio::net::TcpListener::from_std(listener).expect("a socket");
+                let incoming = tonic::transport::server::TcpIncoming::from(listener);
+                let server = tonic::transport::Server::builder()
+                    .add_service(CapabilitiesServer::from_arc(Arc::clone(&serving)))
+                    .add_service(ActionCacheServer::from_arc(Arc::clone(&serving)))
+                    .add_service(
+                        ContentAddressableStorageServer::from_arc(Arc::clone(&serving))
+                            .max_decoding_message_size(16 << 20),
+                    )
+                    .add_service(ExecutionServer::from_arc(Arc::clone(&serving)))
+                    .add_service(super::services::ByteStreamServer::from_arc(serving));
+                let ended = async {
+                    let _ = stopped.await;
+                };
+                server.serve_with_incoming_shutdown(incoming, ended).await.expect("a server");
+            });
+        });
+        Self { state, address, stop: Some(stop), thread: Some(thread) }
+    }
+
+    /// Where it is.
+    pub fn url(&self) -> String {
+        format!("grpc://{}", self.address)
+    }
+
+    /// How often `call` was made.
+    pub fn calls(&self, call: &str) -> u32 {
+        self.state.calls.lock().expect("calls").get(call).copied().unwrap_or(0)
+    }
+
+    /// Its faults, to be changed.
+    pub fn faults(&self) -> MutexGuard<'_, Faults> {
+        self.state.faults.lock().expect("faults")
+    }
+}
+
+impl Drop for Fake {
+    fn drop(&mut self) {
+        drop(self.stop.take());
+        let ended = self.thread.take().map(thread::JoinHandle::join);
+        assert!(ended.is_none_or(|ended| ended.is_ok()) || thread::panicking(), "the server panicked");
+    }
+}
+
+/// The API's name of `bytes`.
+pub fn digest(bytes: &[u8]) -> re::Digest {
+    let hash = Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect();
+    re::Digest { hash, size_bytes: bytes.len() as i64 }
+}
+
+impl State {
+    /// Counts a call, and fails it if that is asked for.
+    pub fn call<T>(&self, name: &'static str, request: &tonic::Request<T>) -> Result<(), Status> {
+        *self.calls.lock().expect("calls").entry(name.to_owned()).or_default() += 1;
+        let mut faults = self.faults.lock().expect("faults");
+        if let Some((header, value)) = faults.header
+            && request.metadata().get(header).and_then(|found| found.to_str().ok()) != Some(value)
+        {
+            let found = request.metadata().get(header).and_then(|found| found.to_str().ok()).unwrap_or("nothing");
+            return Err(Status::new(Code::Unauthenticated, format!("{header} is {found}")));
+        }
+        match faults.unavailable.get_mut(name) {
+            Some(left) if *left > 0 => {
+                *left -= 1;
+                Err(Status::unavailable("made to fail"))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Stores a blob.
+    pub fn put(&self, bytes: Vec<u8>) -> re::Digest {
+        let digest = digest(&bytes);
+        self.blobs.lock().expect("blobs").insert(digest.hash.clone(), bytes);
+        digest
+    }
+
+    /// A blob.
+    pub fn get(&self, hash: &str) -> Option<Vec<u8>> {
+        self.blobs.lock().expect("blobs").get(hash).cloned()
+    }
+
+    fn message<M: Message + Default>(&self, digest: Option<&re::Digest>) -> Result<M, Status> {
+        let missing = || Status::failed_precondition("a blob is missing");
+        let bytes = self.get(&digest.ok_or_else(missing)?.hash).ok_or_else(missing)?;
+        M::decode(bytes.as_slice()).map_err(|error| Status::invalid_argument(error.to_string()))
+    }
+
+    /// Runs an action.
+    pub fn run(&self, action: &re::Digest) -> Result<re::ActionResult, Status> {
+        let action: re::Action = self.message(Some(action))?;
+        let command: re::Command = self.message(action.command_digest.as_ref())?;
+        let folder = tempfile::tempdir().expect("a folder");
+        self.stage(action.input_root_digest.as_ref(), folder.path())?;
+        let mut words = command.arguments.iter();
+        let mut process = Command::new(folder.path().join(words.next().expect("a tool")));
+        let output = process.args(words).current_dir(folder.path()).env_clear().output().expect("the tool runs");
+        let mut result = re::ActionResult {
+            exit_code: output.status.code().unwrap_or(137),
+            stdout_raw: output.stdout,
+            stderr_raw: output.stderr,
+            ..re::ActionResult::default()
+        };
+        for path in &command.output_paths {
+            if folder.path().join(path).is_dir() {
+                let mut children = Vec::new();
+                let root = self.capture(&folder.path().join(path), &mut children);
+                let tree = re::Tree { root: Some(root), children };
+                let tree_digest = Some(self.put(tree.encode_to_vec()));
+                result.output_directories.push(re::OutputDirectory {
+                    path: path.clone(),
+                    tree_digest,
+                    ..re::OutputDirectory::default()
+                });
+            }
+        }
+        Ok(result)
+    }
+
+    fn stage(&self, folder: Option<&re::Digest>, to: &Path) -> Result<(), Status> {
+        let folder: re::Directory = self.message(folder)?;
+        fs::create_dir_all(to).expect("a folder");
+        for file in &folder.files {
+            let missing = || Status::failed_precondition("an input is missing");
+            let bytes = self.get(&file.digest.as_ref().ok_or_else(missing)?.hash).ok_or_else(missing)?;
+            fs::write(to.join(&file.name), bytes).expect("a file");
+            #[cfg(unix)]
+            if file.is_executable {
+                use std::os::unix::fs::PermissionsExt;
+                fs::set_permissions(to.join(&file.name), fs::Permissions::from_mode(0o755)).expect("a file");
+            }
+        }
+        folder.directories.iter().try_for_each(|below| self.stage(below.digest.as_ref(), &to.join(&below.name)))
+    }
+
+    fn capture(&self, from: &Path, children: &mut Vec<re::Directory>) -> re::Directory {
+        let mut entries: Vec<_> = fs::read_dir(from).expect("a folder").map(|entry| entry.expect("an entry")).collect();
+        entries.sort_by_key(fs::DirEntry::file_name);
+        let mut folder = re::Directory::default();
+        for entry in entries {
+            let name = entry.file_name().into_string().expect("a name");
+            if entry.path().is_dir() {
+                let child = self.capture(&entry.path(), children);
+                let digest = Some(digest(&child.encode_to_vec()));
+                children.push(child);
+                folder.directories.push(re::DirectoryNode { name, digest });
+            } else {
+                let digest = Some(self.put(fs::read(entry.path()).expect("a file")));
+                folder.files.push(re::FileNode { name, digest, ..re::FileNode::default() });
+            }
+        }
+        folder
+    }
+}

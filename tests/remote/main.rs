@@ -1,0 +1,11 @@
+//! `bake --remote` against a server in this process that misbehaves as it is told, and against buildbox-casd.
+#![cfg(unix)]
+
+mod casd;
+mod fake;
+mod faults;
+mod hostile;
+mod scene;
+mod secrets;
+mod services;
+mod work;

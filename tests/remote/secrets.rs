@@ -1,0 +1,61 @@
+//! Headers and certificates: what lets the caller in is shown to nobody else.
+
+use std::fs;
+
+use super::fake::Fake;
+use super::scene::{Run, Scene};
+
+const SECRET: &str = "hunter2-hunter2";
+
+fn hides_it(run: &Run) {
+    assert!(!run.out.contains(SECRET) && !run.err.contains(SECRET), "{}{}", run.out, run.err);
+}
+
+#[test]
+fn headers_let_the_caller_in_and_are_never_shown() {
+    let (scene, server) = (Scene::new(), Fake::start());
+    server.faults().header = Some(("authorization", SECRET));
+    let run = scene.bake(&server.url(), "");
+    assert_eq!(run.code, 2, "{}", run.err);
+    assert!(run.err.contains("UNAUTHENTICATED"), "{}", run.err);
+    // The server repeats what it was sent.
+    let run = scene.bake(&server.url(), &format!("--remote-header authorization={SECRET}-no"));
+    assert_eq!(run.code, 2);
+    hides_it(&run);
+    let run = scene.baked(&server.url(), &format!("--remote-header Authorization={SECRET} --report report.json"));
+    hides_it(&run);
+    assert!(!fs::read_to_string(scene.path("report.json")).expect("a report").contains(SECRET));
+    scene.clear();
+    let mut command = scene.command(&server.url(), "");
+    let run: Run =
+        command.env("ROUGHCAST_REMOTE_HEADER", format!("authorization={SECRET}\n")).output().expect("a run").into();
+    assert_eq!(run.code, 0, "{}", run.err);
+    fs::write(scene.path("headers"), format!("x=y\nauthorization = {SECRET}\n")).expect("a file");
+    hides_it(&scene.baked(&server.url(), "--remote-header-file headers"));
+}
+
+#[test]
+fn headers_that_are_none_are_not_shown_either() {
+    let (scene, server) = (Scene::new(), Fake::start());
+    let run = scene.bake(&server.url(), &format!("--remote-header {SECRET}"));
+    assert_eq!(run.code, 2);
+    assert!(run.err.contains("--remote-header: expected NAME=VALUE"), "{}", run.err);
+    hides_it(&run);
+    let run = scene.bake(&server.url(), &format!("--remote-header a={SECRET}\u{7f}"));
+    assert_eq!(run.code, 2, "{}", run.err);
+    hides_it(&run);
+}
+
+#[test]
+fn servers_that_cannot_do_it_are_refused_before_anything_is_sent() {
+    let scene = Scene::new();
+    for url in ["localhost:1", "http://localhost:1", "grpc://", "grpc://a b"] {
+        let run = scene.bake(&url.replace(' ', "%20"), "");
+        assert_eq!(run.code, 2, "{url}: {}", run.err);
+    }
+    let server = Fake::start();
+    server.faults().capabilities = Some(|capabilities| capabilities.execution_capabilities = None);
+    let run = scene.bake(&server.url(), "");
+    assert_eq!((run.code, server.calls("FindMissingBlobs")), (2, 0));
+    assert!(run.err.contains("expected a server that stores blobs and executes actions"), "{}", run.err);
+}

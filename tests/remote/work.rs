@@ -1,0 +1,124 @@
+//! A server that does what it should: bytes are those of a local bake, and nothing is sent or run twice.
+
+use std::fs;
+
+use bazel_remote_apis::build::bazel::remote::execution::v2 as re;
+use prost::Message;
+
+use super::fake::{Fake, digest};
+use super::scene::Scene;
+
+#[test]
+fn outputs_are_those_of_a_local_bake_and_are_made_once() {
+    let (scene, server) = (Scene::new(), Fake::start());
+    let first = scene.baked(&server.url(), "");
+    assert_eq!(first.statuses(), ["baked", "copied", "baked", "baked"]);
+    assert!(first.report()["assets"].as_array().expect("assets").iter().all(|asset| asset["remote"] == "executed"));
+    assert_eq!(
+        ["actions", "executed", "cached", "retries"].map(|name| first.count(name)),
+        [first.count("actions"), first.count("actions"), 0, 0]
+    );
+    assert!(first.count("actions") >= 3 && first.count("uploadedBlobs") > 0 && first.count("downloadedBlobs") > 0);
+    // The server's cache: another machine, or this one without its own.
+    scene.clear();
+    let second = scene.baked(&server.url(), "--cache cache");
+    assert_eq!(second.statuses(), ["cached"; 4]);
+    assert_eq!(["executed", "uploadedBlobs"].map(|name| second.count(name)), [0, 0]);
+    assert_eq!(second.count("cached"), first.count("actions"));
+    // The own cache: the server is not asked, even if it is gone.
+    let url = server.url();
+    drop(server);
+    scene.clear();
+    let third = scene.baked(&url, "--cache cache --remote-retries 0");
+    assert_eq!((third.count("actions"), third.statuses()), (0, vec!["cached".to_owned(); 4]));
+}
+
+#[test]
+fn concurrent_actions_send_a_blob_once() {
+    let (scene, server) = (Scene::new(), Fake::start());
+    scene.baked(&server.url(), "--remote-jobs 8");
+    let tool = digest(&fs::read(scene.path("tool")).expect("a tool"));
+    assert_eq!(server.calls(&tool.hash), 1);
+    let repeated: Vec<_> = server.state.calls.lock().expect("calls").clone().into_iter().collect();
+    assert!(repeated.iter().all(|(name, count)| name.len() != 64 || *count == 1), "{repeated:?}");
+}
+
+#[test]
+fn equal_assets_in_other_folders_are_the_same_actions() {
+    let (scene, server) = (Scene::new(), Fake::start());
+    scene.baked(&server.url(), "");
+    fs::rename(scene.path("assets"), scene.path("elsewhere")).expect("a folder");
+    fs::create_dir(scene.path("assets")).expect("a folder");
+    fs::rename(scene.path("elsewhere"), scene.path("assets/deep")).expect("a folder");
+    scene.clear();
+    let run = scene.bake(&server.url(), "");
+    assert_eq!((run.code, run.count("executed"), run.count("uploadedBlobs")), (0, 0, 0), "{}", run.err);
+}
+
+#[test]
+fn blobs_go_compressed_where_the_server_takes_them_so() {
+    let (scene, server) = (Scene::new(), Fake::start());
+    server.faults().capabilities = Some(|capabilities| {
+        let cache = capabilities.cache_capabilities.as_mut().expect("a cache");
+        cache.supported_compressors = vec![re::compressor::Value::Zstd as i32];
+    });
+    scene.baked(&server.url(), "");
+    assert!(server.calls("ByteStream.Write") > 0);
+}
+
+#[test]
+fn workers_are_asked_for_what_the_caller_says() {
+    let (scene, server) = (Scene::new(), Fake::start());
+    scene.baked(&server.url(), "--remote-platform b=2 --remote-platform a=1=1 --remote-timeout 100");
+    let blobs = server.state.blobs.lock().expect("blobs").clone();
+    let actions: Vec<re::Action> = server
+        .state
+        .actions
+        .lock()
+        .expect("actions")
+        .keys()
+        .map(|hash| re::Action::decode(blobs[hash].as_slice()).expect("an action"))
+        .collect();
+    for action in &actions {
+        let properties = action.platform.clone().expect("a platform").properties;
+        let properties: Vec<_> = properties.iter().map(|p| (p.name.as_str(), p.value.as_str())).collect();
+        assert_eq!(properties, [("a", "1=1"), ("b", "2")]);
+        assert_eq!(action.timeout.as_ref().map(|limit| limit.seconds), Some(100));
+    }
+    assert!(!actions.is_empty());
+}
+
+#[test]
+fn a_job_that_fails_reads_as_it_does_here_and_takes_no_other_with_it() {
+    let (scene, server) = (Scene::new(), Fake::start());
+    fs::write(scene.path("assets/waves/broken.gltf"), BROKEN).expect("a file");
+    let remote = scene.bake(&server.url(), "");
+    assert_eq!(remote.code, 1, "{}", remote.err);
+    assert_eq!(&scene.hashes(), super::scene::expected());
+    scene.clear();
+    let mut local = std::process::Command::new(super::scene::ROUGHCAST);
+    local.current_dir(scene.folder()).args(["bake", "assets", "-o", "out", "-q"]);
+    let local: super::scene::Run = local.output().expect("a run").into();
+    assert_eq!((local.code, local.err.lines().count()), (1, 1), "{}", local.err);
+    assert_eq!(remote.err, local.err);
+}
+
+/// A material whose normal map is not there.
+const BROKEN: &str = r#"{"asset":{"version":"2.0"},"images":[{"uri":"missing.png"}],"textures":[{"source":0}],
+    "materials":[{"normalTexture":{"index":0}}]}"#;
+
+#[test]
+fn a_job_that_kills_the_tool_takes_no_other_with_it() {
+    let (scene, server) = (Scene::new(), Fake::start());
+    fs::write(scene.path("assets/fatal.gltf"), r#"{"asset":{"version":"2.0","generator":"fatal"}}"#).expect("a file");
+    scene.tool("if grep -q fatal.gltf plan.json; then echo out of luck >&2; kill -9 $$; fi");
+    let run = scene.bake(&server.url(), "--remote-retries 1");
+    assert_eq!(run.code, 4);
+    assert!(
+        run.err.starts_with("error: assets/fatal.gltf: expected the tool to run") && run.err.lines().count() == 1,
+        "{}",
+        run.err
+    );
+    assert!(run.err.contains("out of luck"), "{}", run.err);
+    assert_eq!(&scene.hashes(), super::scene::expected());
+}
