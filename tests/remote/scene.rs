@@ -54,20 +54,16 @@ impl From<Output> for Run {
 }
 
 impl Scene {
-    /// Three fixtures, and a document without materials. `brushed` and `knobs` have an action each, since a buffer is long.
+    /// The assets alone.
+    pub fn bare() -> Self {
+        let scene = Self(tempfile::tempdir().expect("a folder"));
+        assets(scene.folder());
+        scene
+    }
+
+    /// The same with a tool for workers without a sandbox.
     pub fn new() -> Self {
-        let folder = tempfile::tempdir().expect("a folder");
-        let assets = folder.path().join("assets");
-        for asset in ["brushed", "knobs", "waves"] {
-            copy(&Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures").join(asset), &assets.join(asset));
-        }
-        for long in ["brushed/brushed.bin", "knobs/knobs.bin"] {
-            let mut bytes = fs::read(assets.join(long)).expect("a buffer");
-            bytes.resize(3 << 20, 0);
-            fs::write(assets.join(long), bytes).expect("a file");
-        }
-        fs::write(assets.join("flat.gltf"), r#"{"asset":{"version":"2.0"}}"#).expect("a file");
-        let scene = Self(folder);
+        let scene = Self::bare();
         scene.tool("");
         scene
     }
@@ -82,10 +78,18 @@ impl Scene {
         self.0.path().join(name)
     }
 
-    /// Makes the tool for workers without a sandbox one that does `first`, then is the command.
+    /// Makes the tool for workers without a sandbox one that does `first`, then is the command: with all assets in its
+    /// cache, since few tests are about baking.
     pub fn tool(&self, first: &str) {
+        let known = expected().1.display();
+        self.script(&format!("{first}\nmkdir cache && cp -r '{known}'/* cache"));
+    }
+
+    /// Makes it one that does `first`, then is the command.
+    pub fn script(&self, first: &str) {
         let path = self.path("tool");
-        fs::write(&path, format!("#!/bin/sh\n{first}\nexec '{ROUGHCAST}' \"$@\"\n")).expect("a file");
+        fs::write(&path, format!("#!/bin/sh\nPATH=/bin:/usr/bin\n{first}\nexec '{ROUGHCAST}' \"$@\"\n"))
+            .expect("a file");
         fs::set_permissions(path, fs::Permissions::from_mode(0o755)).expect("a file");
     }
 
@@ -106,7 +110,7 @@ impl Scene {
     pub fn baked(&self, url: &str, options: &str) -> Run {
         let run = self.bake(url, options);
         assert_eq!((run.code, run.err.as_str()), (0, ""), "{options}: {}", run.out);
-        assert_eq!(&self.hashes(), expected(), "{options}");
+        assert_eq!(self.hashes(), expected().0, "{options}");
         run
     }
 
@@ -121,20 +125,33 @@ impl Scene {
     }
 }
 
-/// What a local bake of the assets writes.
-pub fn expected() -> &'static BTreeMap<String, String> {
-    static EXPECTED: OnceLock<BTreeMap<String, String>> = OnceLock::new();
+/// Three fixtures below `folder`, and a document without materials. `brushed` and `knobs` have actions of their own, since a
+/// buffer is long.
+fn assets(folder: &Path) {
+    let assets = folder.join("assets");
+    for asset in ["brushed", "knobs", "waves"] {
+        copy(&Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures").join(asset), &assets.join(asset));
+    }
+    for long in ["brushed/brushed.bin", "knobs/knobs.bin"] {
+        let mut bytes = fs::read(assets.join(long)).expect("a buffer");
+        bytes.resize(3 << 20, 0);
+        fs::write(assets.join(long), bytes).expect("a file");
+    }
+    fs::write(assets.join("flat.gltf"), r#"{"asset":{"version":"2.0"}}"#).expect("a file");
+}
+
+/// What a local bake of the assets writes, and the cache that it fills: both of this build, in a folder that is kept.
+pub fn expected() -> &'static (BTreeMap<String, String>, PathBuf) {
+    static EXPECTED: OnceLock<(BTreeMap<String, String>, PathBuf)> = OnceLock::new();
     EXPECTED.get_or_init(|| {
-        let scene = Scene::new();
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("remote");
+        let _ = fs::remove_dir_all(&folder);
+        assets(&folder);
         let mut command = Command::new(ROUGHCAST);
-        let run: Run = command
-            .current_dir(scene.folder())
-            .args(["bake", "assets", "-o", "out", "-q"])
-            .output()
-            .expect("a run")
-            .into();
+        command.current_dir(&folder).args("bake assets -o out -q --cache cache".split(' '));
+        let run: Run = command.output().expect("a run").into();
         assert_eq!((run.code, run.err.as_str()), (0, ""));
-        scene.hashes()
+        (hashes(&folder.join("out")), folder.join("cache"))
     })
 }
 

@@ -6,11 +6,12 @@ use bazel_remote_apis::build::bazel::remote::execution::v2 as re;
 use prost::Message;
 
 use super::fake::{Fake, digest};
-use super::scene::Scene;
+use super::scene::{ROUGHCAST, Run, Scene, expected};
 
 #[test]
 fn outputs_are_those_of_a_local_bake_and_are_made_once() {
-    let (scene, server) = (Scene::new(), Fake::start());
+    let (scene, server) = (Scene::bare(), Fake::start());
+    scene.script("");
     let first = scene.baked(&server.url(), "");
     assert_eq!(first.statuses(), ["baked", "copied", "baked", "baked"]);
     assert!(first.report()["assets"].as_array().expect("assets").iter().all(|asset| asset["remote"] == "executed"));
@@ -94,11 +95,11 @@ fn a_job_that_fails_reads_as_it_does_here_and_takes_no_other_with_it() {
     fs::write(scene.path("assets/waves/broken.gltf"), BROKEN).expect("a file");
     let remote = scene.bake(&server.url(), "");
     assert_eq!(remote.code, 1, "{}", remote.err);
-    assert_eq!(&scene.hashes(), super::scene::expected());
+    assert_eq!(scene.hashes(), expected().0);
     scene.clear();
-    let mut local = std::process::Command::new(super::scene::ROUGHCAST);
+    let mut local = std::process::Command::new(ROUGHCAST);
     local.current_dir(scene.folder()).args(["bake", "assets", "-o", "out", "-q"]);
-    let local: super::scene::Run = local.output().expect("a run").into();
+    let local: Run = local.output().expect("a run").into();
     assert_eq!((local.code, local.err.lines().count()), (1, 1), "{}", local.err);
     assert_eq!(remote.err, local.err);
 }
@@ -120,5 +121,5 @@ fn a_job_that_kills_the_tool_takes_no_other_with_it() {
         run.err
     );
     assert!(run.err.contains("out of luck"), "{}", run.err);
-    assert_eq!(&scene.hashes(), super::scene::expected());
+    assert_eq!(scene.hashes(), expected().0);
 }
