@@ -60,9 +60,9 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
         Ok(Outcome::Usage)
     };
     let mut outcome = Outcome::Done;
-    let (planned, failed, settings, configs) = match args.jobs.planned() {
+    let (planned, failed, settings, configs, server) = match args.jobs.planned() {
         Some(Err(reason)) => return usage(err, &reason),
-        Some(Ok(planned)) => (planned, Vec::new(), Settings::default(), Vec::new()),
+        Some(Ok(planned)) => (planned, Vec::new(), Settings::default(), Vec::new(), None),
         None => {
             let selected = match args.selection.find(&args.inputs) {
                 Ok(selected) => selected,
@@ -78,7 +78,7 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
                 return Ok(so_far);
             }
             outcome = so_far;
-            (jobs::plan(&selected.assets), selected.errors, selected.settings, selected.configs)
+            (jobs::plan(&selected.assets), selected.errors, selected.settings, selected.configs, selected.remote)
         }
     };
     let planned = match args.jobs.choose(planned) {
@@ -86,7 +86,7 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
         Err(reason) => return usage(err, &reason),
     };
     let dependencies = depfile(planned.iter().filter_map(|planned| planned.job.as_ref().ok()), &configs);
-    let remote = match args.remote.options() {
+    let remote = match args.remote.options(server.as_ref()) {
         Ok(remote) => remote,
         Err(reason) => return usage(err, &reason),
     };

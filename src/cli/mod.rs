@@ -43,7 +43,8 @@ pub struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    Bake(bake::Args),
+    // Boxed for its many options.
+    Bake(Box<bake::Args>),
     Init(init::Args),
     Map(map::Args),
     Watch(watch::Args),

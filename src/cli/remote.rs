@@ -7,22 +7,29 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use crate::config::RemoteValues;
 use crate::remote::{Header, Options, Tls};
 
 /// The variable that headers are taken from, a line for each.
 const HEADERS: &str = "ROUGHCAST_REMOTE_HEADER";
+
+/// The most actions at a time: each has a thread, which waits.
+const MOST_JOBS: u32 = 4096;
 
 /// Where jobs are run.
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Remote options")]
 pub struct RemoteOptions {
     /// Have workers of this server of the Remote Execution API v2 bake: grpc://HOST:PORT, or grpcs:// with TLS. What --cache
-    /// has is not sent.
+    /// has is not sent. [default: `url` of [remote] in the roughcast.toml of the first input, which may say the rest, too]
     #[arg(long, value_name = "URL")]
     remote: Option<String>,
+    /// Bake here, whatever roughcast.toml says.
+    #[arg(long, conflicts_with = "remote")]
+    no_remote: bool,
     /// Instance of the server.
-    #[arg(long, value_name = "NAME", default_value = "", hide_default_value = true, requires = "remote")]
-    remote_instance: String,
+    #[arg(long, value_name = "NAME", requires = "remote")]
+    remote_instance: Option<String>,
     /// What workers must be, such as OSFamily=linux. May be given several times.
     #[arg(long, value_name = "NAME=VALUE", value_parser = pair, requires = "remote")]
     remote_platform: Vec<(String, String)>,
@@ -42,16 +49,16 @@ pub struct RemoteOptions {
     /// Its key (PEM).
     #[arg(long, value_name = "FILE", requires_all = ["remote", "remote_cert"])]
     remote_key: Option<PathBuf>,
-    /// The most actions at a time.
-    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=4096), requires = "remote")]
-    remote_jobs: u32,
+    /// The most actions at a time. [default: 64]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_JOBS)), requires = "remote")]
+    remote_jobs: Option<u32>,
     /// The longest that an action may take, from its upload to its result; also what the server is asked for. [default: what
     /// the server gives, and an hour]
     #[arg(long, value_name = "SECONDS", value_parser = clap::value_parser!(u64).range(1..), requires = "remote")]
     remote_timeout: Option<u64>,
-    /// How often something that may pass is tried again, ever more slowly: 8 times take half a minute.
-    #[arg(long, value_name = "N", default_value_t = 8, requires = "remote")]
-    remote_retries: u32,
+    /// How often something that may pass is tried again, ever more slowly: 8 times take half a minute. [default: 8]
+    #[arg(long, value_name = "N", requires = "remote")]
+    remote_retries: Option<u32>,
     /// The tool that workers run: a static build of this version for their system. [default: the one that is running]
     #[arg(long, value_name = "FILE", requires = "remote")]
     remote_tool: Option<PathBuf>,
@@ -96,28 +103,32 @@ pub enum RemoteOptionError {
 }
 
 impl RemoteOptions {
-    /// What is said of a server, if one is named.
+    /// What is said of a server, if one is named; `file` is what holds where flags say nothing.
     ///
     /// # Errors
     /// [`RemoteOptionError`].
-    pub fn options(&self) -> Result<Option<Options>, RemoteOptionError> {
-        let Some(url) = self.remote.clone() else { return Ok(None) };
-        let tool = match &self.remote_tool {
-            Some(tool) => tool.clone(),
+    pub fn options(&self, file: Option<&RemoteValues>) -> Result<Option<Options>, RemoteOptionError> {
+        let file = file.cloned().unwrap_or_default();
+        let Some(url) = self.remote.clone().or(file.url).filter(|_| !self.no_remote) else { return Ok(None) };
+        let tool = match self.remote_tool.clone().or(file.tool) {
+            Some(tool) => tool,
             None => env::current_exe().map_err(RemoteOptionError::Tool)?,
         };
+        let platform = match self.remote_platform.is_empty() {
+            true => file.platform.into_iter().flatten().collect(),
+            false => self.remote_platform.clone(),
+        };
+        let (cert, key) = (self.remote_cert.clone().or(file.cert), self.remote_key.clone().or(file.key));
+        let timeout = self.remote_timeout.or(file.timeout);
         Ok(Some(Options {
             url,
-            instance: self.remote_instance.clone(),
-            platform: self.remote_platform.clone(),
+            instance: self.remote_instance.clone().or(file.instance).unwrap_or_default(),
+            platform,
             headers: self.headers()?,
-            tls: Tls {
-                authority: self.remote_ca.clone(),
-                identity: self.remote_cert.clone().zip(self.remote_key.clone()),
-            },
-            jobs: self.remote_jobs as usize,
-            timeout: self.remote_timeout.map(Duration::from_secs),
-            retries: self.remote_retries,
+            tls: Tls { authority: self.remote_ca.clone().or(file.ca), identity: cert.zip(key) },
+            jobs: self.remote_jobs.or(file.jobs).unwrap_or(64).min(MOST_JOBS) as usize,
+            timeout: timeout.map(Duration::from_secs),
+            retries: self.remote_retries.or(file.retries).unwrap_or(8),
             tool,
         }))
     }

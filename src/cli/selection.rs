@@ -10,7 +10,7 @@ use super::inputs::{self, Input, InputError};
 use super::options::{DocumentOptions, LobeName, TextureOptions};
 use super::view::ViewOptions;
 use crate::bake::{Settings, read_file};
-use crate::config::{Config, ConfigError, FILE_NAME, Layer, Resolved, ValueError, Values, resolve};
+use crate::config::{Config, ConfigError, FILE_NAME, Layer, RemoteValues, Resolved, ValueError, Values, resolve};
 use crate::texture::EncodeError;
 
 /// Where outputs go and how they are made.
@@ -85,6 +85,8 @@ pub struct Selected {
     pub settings: Settings,
     /// Configurations that were read.
     pub configs: Vec<PathBuf>,
+    /// The server that the configuration of the first input names.
+    pub remote: Option<RemoteValues>,
 }
 
 impl Selected {
@@ -109,16 +111,12 @@ impl Selection {
     /// [`SelectionError`] when nothing can be done.
     pub fn find(&self, arguments: &[PathBuf]) -> Result<Selected, SelectionError> {
         let mut configs = Configs::default();
-        let output = match (&self.output, arguments.first()) {
-            (Some(output), _) => output.clone(),
-            (None, Some(first)) => {
-                let folder = if first.is_dir() { first.as_path() } else { first.parent().unwrap_or(Path::new("")) };
-                let config = self.settings.config(&mut configs, folder)?;
-                config.and_then(|c| c.output_folder()).ok_or(SelectionError::NoOutput)?
-            }
-            (None, None) => return Err(SelectionError::NoOutput),
-        };
-        let selected = self.settings.select(configs, arguments, &output)?;
+        let first = arguments.first().ok_or(SelectionError::NoOutput)?;
+        let folder = if first.is_dir() { first.as_path() } else { first.parent().unwrap_or(Path::new("")) };
+        let found = self.settings.config(&mut configs, folder)?;
+        let output = self.output.clone().or_else(|| found.and_then(Found::output_folder));
+        let (output, remote) = (output.ok_or(SelectionError::NoOutput)?, found.and_then(Found::remote));
+        let selected = Selected { remote, ..self.settings.select(configs, arguments, &output)? };
         for (_, resolved) in &selected.assets {
             resolved.settings.target.check_available()?;
         }
@@ -162,7 +160,7 @@ impl SettingOptions {
         }
         let settings = resolve(&[flags]).map_or_else(|_| Settings::default(), |resolved| resolved.settings);
         let configs = configs.0.into_values().flatten().map(|found| found.config.path).collect();
-        Ok(Selected { assets, output: output.to_owned(), errors, settings, configs })
+        Ok(Selected { assets, output: output.to_owned(), errors, settings, configs, remote: None })
     }
 
     fn config<'c>(&self, configs: &'c mut Configs, folder: &Path) -> Result<Option<&'c Found>, SelectionError> {
@@ -189,8 +187,16 @@ impl Found {
     }
 
     fn output_folder(&self) -> Option<PathBuf> {
-        let folder = self.config.path.parent().unwrap_or(Path::new(""));
-        self.config.output.as_ref().map(|output| folder.join(output))
+        self.config.output.as_ref().map(|output| self.folder().join(output))
+    }
+
+    fn remote(&self) -> Option<RemoteValues> {
+        self.config.remote.clone().map(|remote| remote.in_folder(self.folder()))
+    }
+
+    /// Its folder, as it was named.
+    fn folder(&self) -> &Path {
+        self.config.path.parent().unwrap_or(Path::new(""))
     }
 }
 

@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 use globset::{GlobBuilder, GlobMatcher};
 use serde_json::json;
 use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::{DeString, DeTable, DeValue};
 
 use super::layers::Layer;
+use super::remote::RemoteValues;
 use super::values::Values;
 
 /// What the file is called.
@@ -23,6 +24,8 @@ pub struct Config {
     pub path: PathBuf,
     /// Output folder, relative to the file's own.
     pub output: Option<PathBuf>,
+    /// The server that bakes, its files relative to the file's own folder.
+    pub remote: Option<RemoteValues>,
     defaults: Values,
     overrides: Vec<Override>,
 }
@@ -81,8 +84,9 @@ impl Config {
         let table =
             DeTable::parse(text).map_err(|e| ConfigError::Syntax { reason: e.to_string().trim_end().into() })?;
         let reader = Reader { text };
-        let (defaults, rest) = reader.values(table.get_ref(), &["output", "override"])?;
-        let mut config = Self { path: path.to_owned(), output: None, defaults, overrides: Vec::new() };
+        let (defaults, rest) = reader.values(table.get_ref(), &["output", "override", "remote"])?;
+        let (path, overrides) = (path.to_owned(), Vec::new());
+        let mut config = Self { path, output: None, remote: None, defaults, overrides };
         for (key, value) in rest {
             match (key, value.get_ref()) {
                 ("output", DeValue::String(folder)) => config.output = Some(PathBuf::from(folder.as_ref())),
@@ -91,6 +95,8 @@ impl Config {
                         config.overrides.push(reader.overriding(table)?);
                     }
                 }
+                ("remote", DeValue::Table(table)) => config.remote = Some(reader.remote(table)?),
+                ("remote", _) => return Err(reader.wrong(key, value, "not a table; write [remote]")),
                 ("output", _) => return Err(reader.wrong(key, value, "not a string")),
                 _ => return Err(reader.wrong(key, value, "not a list of tables; write [[override]]")),
             }
@@ -129,12 +135,7 @@ impl Reader<'_> {
                 continue;
             }
             if !names.iter().any(|n| n == name) {
-                let known = names.iter().map(String::as_str).chain(others.iter().copied());
-                return Err(ConfigError::UnknownKey {
-                    line: self.line(key.span().start),
-                    key: name.to_owned(),
-                    suggestion: most_like(name, known),
-                });
+                return Err(self.unknown(key, names.iter().map(String::as_str).chain(others.iter().copied())));
             }
             let json = to_json(value.get_ref()).ok_or_else(|| self.wrong(name, value, "no finite value"))?;
             // One by one, so that the line of the wrong one is known.
@@ -148,6 +149,23 @@ impl Reader<'_> {
         }
         let values = serde_json::from_value(said.into()).unwrap_or_default();
         Ok((values, rest))
+    }
+
+    /// What `[remote]` says.
+    fn remote(&self, table: &DeTable<'_>) -> Result<RemoteValues, ConfigError> {
+        let names = RemoteValues::names();
+        let mut said = serde_json::Map::new();
+        for (key, value) in table.iter() {
+            let name = key.get_ref().as_ref();
+            if !names.iter().any(|n| n == name) {
+                return Err(self.unknown(key, names.iter().map(String::as_str)));
+            }
+            let json = to_json(value.get_ref()).ok_or_else(|| self.wrong(name, value, "no finite value"))?;
+            serde_json::from_value::<RemoteValues>(json!({ name: json }))
+                .map_err(|e| self.wrong(name, value, &e.to_string()))?;
+            said.insert(name.to_owned(), json);
+        }
+        Ok(serde_json::from_value(said.into()).unwrap_or_default())
     }
 
     fn overriding<'t>(&self, table: &'t Spanned<DeValue<'t>>) -> Result<Override, ConfigError> {
@@ -176,6 +194,12 @@ impl Reader<'_> {
         Ok(Override { patterns, globs, values })
     }
 
+    fn unknown<'n>(&self, key: &Spanned<DeString<'_>>, known: impl Iterator<Item = &'n str>) -> ConfigError {
+        let name = key.get_ref().as_ref();
+        let line = self.line(key.span().start);
+        ConfigError::UnknownKey { line, key: name.to_owned(), suggestion: most_like(name, known) }
+    }
+
     fn wrong(&self, key: &str, value: &Spanned<DeValue<'_>>, reason: &str) -> ConfigError {
         ConfigError::Value { line: self.line(value.span().start), key: key.to_owned(), reason: reason.to_owned() }
     }
@@ -193,7 +217,13 @@ fn to_json(value: &DeValue<'_>) -> Option<serde_json::Value> {
         DeValue::Integer(number) => i64::from_str_radix(number.as_str(), number.radix()).ok()?.into(),
         DeValue::Float(number) => serde_json::Number::from_f64(number.as_str().parse().ok()?)?.into(),
         DeValue::Array(list) => list.iter().map(|v| to_json(v.get_ref())).collect::<Option<Vec<_>>>()?.into(),
-        DeValue::Table(_) | DeValue::Datetime(_) => return None,
+        DeValue::Table(table) => {
+            let member = |(key, value): (&Spanned<DeString<'_>>, &Spanned<DeValue<'_>>)| {
+                Some((key.get_ref().to_string(), to_json(value.get_ref())?))
+            };
+            table.iter().map(member).collect::<Option<serde_json::Map<_, _>>>()?.into()
+        }
+        DeValue::Datetime(_) => return None,
     })
 }
 

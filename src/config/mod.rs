@@ -5,8 +5,10 @@
 
 mod file;
 mod layers;
+mod remote;
 mod values;
 
 pub use file::{Config, ConfigError, FILE_NAME, TEMPLATE};
 pub use layers::{Layer, Resolved, resolve};
+pub use remote::RemoteValues;
 pub use values::{Engine, FrameName, ValueError, Values};

@@ -5,12 +5,13 @@ use std::path::{Path, PathBuf};
 use super::error::RunError;
 use super::job::{Job, JobInput, JobOutput, folded};
 use crate::bake::{read_file, survey};
+use crate::digest::digest;
 use crate::gltf::document::Document;
 
 /// A job below `in/<id>` and `out/<id>`.
 #[derive(Clone, Debug)]
 pub struct Moved {
-    /// The same job, its paths with `/`.
+    /// The same job.
     pub job: Job,
     /// Files that must be there, and where they are now.
     pub files: Vec<(PathBuf, PathBuf)>,
@@ -28,7 +29,7 @@ impl Job {
     pub fn moved(&self) -> Result<Moved, RunError> {
         let bytes = read_file(&self.source).map_err(RunError::Read)?;
         let planned = self.inputs.first().and_then(|input| input.blake3.as_deref());
-        if Some(blake3::hash(&bytes).to_hex().as_str()) != planned {
+        if Some(digest(&bytes).as_str()) != planned {
             return Err(RunError::Changed { path: self.source.clone() });
         }
         let survey = survey(&Document::parse(&bytes)?)?;

@@ -10,6 +10,7 @@ use super::error::RemoteError;
 use super::options::Options;
 use super::tree::Tree;
 use crate::bake::read_file;
+use crate::digest::digest;
 use crate::plan::{Moved, Plan};
 
 /// The folder that an action puts its results in: that of a cache.

@@ -8,7 +8,7 @@ use tokio::sync::watch;
 
 use super::error::RemoteError;
 use super::group::{Group, groups};
-use super::outcome::{Errand, JobFailure, Outcome, Wait};
+use super::outcome::{Errand, JobFailure, Origin, Outcome, Wait};
 use super::server::Remote;
 use super::tally::{Tally, add, take};
 
@@ -40,7 +40,6 @@ impl Remote {
                         // Nobody waits for what was given up.
                         let _ = sender.map(|sender| sender.send(outcome));
                     }
-                    (errand.changed)(self.tally.counts());
                 }
             };
             (0..threads).for_each(|_| drop(scope.spawn(work)));
@@ -73,6 +72,8 @@ impl Remote {
                 group.iter().map(|_| Err(JobFailure::from(&RemoteError::Cancelled))).collect()
             }
         };
+        let known = outcomes.iter().filter(|outcome| matches!(outcome, Ok(Origin::Cached))).count();
+        add(&self.tally.known, known as u64);
         advance(Stage::Done);
         outcomes
     }

@@ -42,6 +42,7 @@ const ROOM: u32 = 512;
 #[derive(Clone)]
 pub struct Client {
     service: Service,
+    url: String,
     secrets: Arc<[String]>,
     /// Instance of the server.
     pub instance: String,
@@ -62,14 +63,9 @@ impl Client {
         let service = InterceptedService::new(channel, headers);
         let (instance, batch, is_zstd) = (options.instance.clone(), BATCH, false);
         let room = Arc::new(Semaphore::new(ROOM as usize));
-        let client = Self { service, secrets, instance, batch, is_zstd, room };
-        let found = Attempts::new(options.retries, tally).at(|| client.capabilities()).await;
-        let found = found.map_err(|error| match error {
-            RemoteError::Status { code: tonic::Code::Unavailable, message, .. } => {
-                RemoteError::Unreachable { url: options.url.clone(), reason: message }
-            }
-            error => error,
-        })?;
+        let url = options.url.clone();
+        let client = Self { service, url, secrets, instance, batch, is_zstd, room };
+        let found = Attempts::new(options.retries, tally).at(|| client.capabilities()).await?;
         client.with(&found)
     }
 
@@ -153,8 +149,14 @@ impl Client {
         result.map_err(|status| self.error(name, &status))
     }
 
-    /// What a status tells, without the values of headers.
+    /// What a status tells, without the values of headers: of the connection, or of the server's refusal.
     pub fn error(&self, call: &'static str, status: &Status) -> RemoteError {
+        if let Some(error) = std::error::Error::source(status) {
+            // The innermost says why.
+            let causes = std::iter::successors(Some(error), |error| error.source());
+            let reason = causes.last().unwrap_or(error).to_string();
+            return RemoteError::Unreachable { url: self.url.clone(), reason };
+        }
         let hidden = |text: String, secret: &String| text.replace(secret.as_str(), "...");
         let secrets = self.secrets.iter().filter(|secret| !secret.is_empty());
         let message = secrets.fold(status.message().to_owned(), hidden);
@@ -165,6 +167,11 @@ impl Client {
 fn endpoint(options: &Options) -> Result<Endpoint, RemoteError> {
     let wrong =
         |reason: String| RemoteError::Options(format!("{}: expected grpc://host:port, found {reason}", options.url));
+    if options.url.contains('@') {
+        let reason =
+            "--remote: expected grpc://host:port, found a user or a password in it; --remote-header-file is for them";
+        return Err(RemoteError::Options(reason.to_owned()));
+    }
     let (scheme, rest) = options.url.split_once("://").ok_or_else(|| wrong("no scheme".into()))?;
     let is_tls = match scheme {
         "grpc" => false,

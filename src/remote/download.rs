@@ -1,8 +1,9 @@
 //! Fetching blobs, and believing none of them: length and SHA-256 must be what was asked for.
 
+use std::collections::HashMap;
 use std::io::Read;
 
-use tonic::{Code, Status};
+use tonic::Status;
 
 use super::api;
 use super::client::{Client, MAX_MESSAGE};
@@ -10,6 +11,9 @@ use super::digest::Digest;
 use super::error::RemoteError;
 use super::retry::Attempts;
 use super::tally::{Tally, add};
+
+/// Takes a blob.
+pub type Take<'t> = &'t mut dyn FnMut(Digest, &[u8]) -> Result<(), RemoteError>;
 
 /// Fetches `digests`, each named once, and gives each blob to `take` as soon as it is there.
 ///
@@ -20,7 +24,7 @@ pub async fn fetch(
     client: &Client,
     retries: u32,
     tally: &Tally,
-    take: &mut dyn FnMut(Digest, &[u8]) -> Result<(), RemoteError>,
+    take: Take<'_>,
 ) -> Result<(), RemoteError> {
     let mut took = |digest: Digest, content: &[u8]| {
         add(&tally.downloaded_blobs, 1);
@@ -65,7 +69,7 @@ async fn fetch_batch(
     client: &Client,
     retries: u32,
     tally: &Tally,
-    take: &mut dyn FnMut(Digest, &[u8]) -> Result<(), RemoteError>,
+    take: Take<'_>,
 ) -> Result<(), RemoteError> {
     if digests.is_empty() {
         return Ok(());
@@ -80,20 +84,17 @@ async fn fetch_batch(
     let ask = || async {
         let mut service = client.storage();
         let answer = client.call("BatchReadBlobs", bytes, service.batch_read_blobs(request.clone())).await?;
+        let responses = answer.responses.into_iter();
+        let mut found: HashMap<Digest, _> =
+            responses.filter_map(|response| Some((Digest::from_api(response.digest.as_ref()?)?, response))).collect();
         let mut blobs = Vec::with_capacity(digests.len());
         for digest in digests {
-            let wanted = digest.to_api();
-            let found = answer.responses.iter().find(|response| response.digest.as_ref() == Some(&wanted));
-            let status = match found.and_then(|response| response.status.as_ref()) {
-                Some(status) if status.code != 0 => Some((status.code.into(), status.message.clone())),
-                _ if found.is_none() => Some((Code::NotFound, "a blob is not in the answer".to_owned())),
-                _ => None,
-            };
-            if let Some((code, message)) = status {
-                return Err(client.error("BatchReadBlobs", &Status::new(code, message)));
+            let absent = || client.error("BatchReadBlobs", &Status::not_found("a blob is not in the answer"));
+            let response = found.remove(digest).ok_or_else(absent)?;
+            if let Some(status) = response.status.filter(|status| status.code != 0) {
+                return Err(client.error("BatchReadBlobs", &Status::new(status.code.into(), status.message)));
             }
-            let content = found.map(|response| response.data.clone()).unwrap_or_default();
-            blobs.push((*digest, verified(*digest, content)?));
+            blobs.push((*digest, verified(*digest, response.data)?));
         }
         Ok(blobs)
     };

@@ -138,7 +138,7 @@ impl RemoteError {
 
     /// Whether the server itself is out of reach.
     pub fn is_gone(&self) -> bool {
-        matches!(self, Self::Status { code: Code::Unavailable, .. } | Self::Unreachable { .. })
+        matches!(self, Self::Unreachable { .. })
     }
 }
 

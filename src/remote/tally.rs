@@ -13,6 +13,7 @@ pub struct Tally {
     pub(super) executed: AtomicU64,
     pub(super) cached: AtomicU64,
     pub(super) done: AtomicU64,
+    pub(super) known: AtomicU64,
     pub(super) retries: AtomicU64,
     pub(super) uploaded_blobs: AtomicU64,
     pub(super) uploaded_bytes: AtomicU64,
@@ -33,6 +34,9 @@ pub struct Counts {
     /// Jobs that are done, well or not.
     #[serde(skip)]
     pub done: u64,
+    /// Those of them that the server had.
+    #[serde(skip)]
+    pub known: u64,
     /// Actions that the jobs were grouped into.
     pub actions: u64,
     /// Executions, repetitions among them.
@@ -59,6 +63,7 @@ impl Tally {
             queued: now(&self.queued),
             running: now(&self.running),
             done: now(&self.done),
+            known: now(&self.known),
             actions: now(&self.actions),
             executed: now(&self.executed),
             cached: now(&self.cached),

@@ -1,7 +1,7 @@
 //! Sending blobs that a server does not have: the small together, the large in pieces, each once.
 
-use std::collections::HashMap;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::collections::{HashMap, HashSet};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use tokio::sync::watch;
 
@@ -101,7 +101,7 @@ impl Uploads {
         (Claim { uploads: self, blobs: mine, _ended: ended }, others)
     }
 
-    fn states(&self) -> std::sync::MutexGuard<'_, HashMap<Digest, State>> {
+    fn states(&self) -> MutexGuard<'_, HashMap<Digest, State>> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -117,7 +117,7 @@ async fn missing(blobs: &[Blob], client: &Client) -> Result<Vec<Blob>, RemoteErr
             ..api::FindMissingBlobsRequest::default()
         };
         let answer = client.call("FindMissingBlobs", 0, service.find_missing_blobs(request)).await?;
-        let digests: Vec<Digest> = answer.missing_blob_digests.iter().filter_map(Digest::from_api).collect();
+        let digests: HashSet<Digest> = answer.missing_blob_digests.iter().filter_map(Digest::from_api).collect();
         found.extend(part.iter().filter(|blob| digests.contains(&blob.digest)).cloned());
     }
     Ok(found)

@@ -172,7 +172,7 @@ fn a_server_that_is_killed_and_started_again() {
 
 #[test]
 fn two_nodes_one_of_which_is_killed() {
-    let Some(mut worker) = Node::start(&["--jobs=1"]) else { return };
+    let Some(mut worker) = Node::start(&["--jobs=1", "--log-level=info"]) else { return };
     let url = format!("http://127.0.0.1:{}", worker.port);
     let remotes = ["cas", "ac", "exec"].map(|service| format!("--{service}-remote={url}"));
     let [cas, ac, exec] = remotes.each_ref().map(String::as_str);
@@ -181,6 +181,7 @@ fn two_nodes_one_of_which_is_killed() {
     let mut command = scene.command(&front.url(), "--cache cache --model isotropic --remote-retries 3");
     let client = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the command starts");
     first_result(&scene);
+    assert!(worker.log().contains("Execute request"), "all is done by the other node");
     worker.kill();
     let run = Run::from(client.wait_with_output().expect("an exit"));
     assert!([0, 4].contains(&run.code), "{}", run.err);

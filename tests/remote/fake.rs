@@ -17,6 +17,7 @@ use re::content_addressable_storage_server::ContentAddressableStorageServer;
 use re::execution_server::ExecutionServer;
 use sha2::{Digest as _, Sha256};
 use tokio::sync::oneshot;
+use tonic::transport::Server;
 use tonic::{Code, Status};
 
 /// What a server does wrong, and how often.
@@ -63,6 +64,11 @@ pub struct Fake {
 impl Fake {
     /// Starts one on a port that is free.
     pub fn start() -> Self {
+        Self::start_as(Server::builder())
+    }
+
+    /// Starts one that is built so.
+    pub fn start_as(builder: Server) -> Self {
         let state = Arc::new(State::default());
         let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
         listener.set_nonblocking(true).expect("a socket");
@@ -70,12 +76,13 @@ impl Fake {
         let (stop, stopped) = oneshot::channel();
         let serving = Arc::clone(&state);
         let thread = thread::spawn(move || {
-            let mut builder = tokio::runtime::Builder::new_multi_thread();
-            let runtime = builder.worker_threads(2).enable_all().build().expect("a runtime");
+            let mut threads = tokio::runtime::Builder::new_multi_thread();
+            let runtime = threads.worker_threads(2).enable_all().build().expect("a runtime");
             runtime.block_on(async {
                 let listener = tokio::net::TcpListener::from_std(listener).expect("a socket");
                 let incoming = tonic::transport::server::TcpIncoming::from(listener);
-                let server = tonic::transport::Server::builder()
+                let mut builder = builder;
+                let server = builder
                     .add_service(CapabilitiesServer::from_arc(Arc::clone(&serving)))
                     .add_service(ActionCacheServer::from_arc(Arc::clone(&serving)))
                     .add_service(

@@ -2,6 +2,9 @@
 
 use std::fs;
 
+use rcgen::generate_simple_self_signed;
+use tonic::transport::{Certificate, Identity, Server, ServerTlsConfig};
+
 use super::fake::Fake;
 use super::scene::{Run, Scene};
 
@@ -58,4 +61,34 @@ fn servers_that_cannot_do_it_are_refused_before_anything_is_sent() {
     let run = scene.bake(&server.url(), "");
     assert_eq!((run.code, server.calls("FindMissingBlobs")), (2, 0));
     assert!(run.err.contains("expected a server that stores blobs and executes actions"), "{}", run.err);
+}
+
+#[test]
+fn certificates_are_checked_both_ways() {
+    let scene = Scene::new();
+    let [server, client] = ["server", "client"].map(|name| {
+        let made = generate_simple_self_signed(["127.0.0.1".to_owned()]).expect("a certificate");
+        let (certificate, key) = (made.cert.pem(), made.signing_key.serialize_pem());
+        fs::write(scene.path(&format!("{name}.pem")), &certificate).expect("a file");
+        fs::write(scene.path(&format!("{name}.key")), &key).expect("a file");
+        (certificate, key)
+    });
+    let tls = ServerTlsConfig::new().identity(Identity::from_pem(server.0, server.1));
+    let tls = tls.client_ca_root(Certificate::from_pem(client.0));
+    let server = Fake::start_as(Server::builder().tls_config(tls).expect("certificates"));
+    let url = server.url().replace("grpc:", "grpcs:");
+    let refused = [
+        "",
+        "--remote-ca client.pem",
+        "--remote-ca server.pem",
+        "--remote-ca server.pem --remote-cert server.pem --remote-key server.key",
+    ];
+    for options in refused {
+        let run = scene.bake(&url, &format!("--remote-retries 0 {options}"));
+        assert_eq!(run.code, 4, "{options}: {}", run.err);
+    }
+    scene.baked(&url, "--remote-ca server.pem --remote-cert client.pem --remote-key client.key");
+    let run = scene.bake(&url, "--remote-ca missing.pem");
+    assert_eq!(run.code, 2, "{}", run.err);
+    assert!(run.err.contains("expected a readable file at missing.pem"), "{}", run.err);
 }

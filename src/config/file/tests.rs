@@ -29,6 +29,20 @@ fn the_template_names_every_setting_with_its_default() {
         assert_eq!(said[&name], default, "{name}");
     }
     assert_eq!((config.overrides.len(), config.output), (1, Some(PathBuf::from("../baked"))));
+    let remote = serde_json::to_value(config.remote.expect("a server")).expect("JSON");
+    assert!(RemoteValues::names().iter().all(|name| !remote[name].is_null()), "{remote}");
+}
+
+#[test]
+fn a_server_is_named_by_a_table() {
+    let remote = parse("[remote]\nurl = 'grpc://a:1'\nplatform = { OSFamily = 'linux' }\n").expect("a server").remote;
+    assert_eq!(remote.expect("a server").platform.expect("a platform")["OSFamily"], "linux");
+    assert!(
+        message("[remote]\nurls = 'x'")
+            .starts_with("line 2: expected the name of a setting, found \"urls\"; did you mean \"url\"")
+    );
+    assert!(message("\n[remote]\njobs = -1").starts_with("line 3: jobs: expected another value"));
+    assert!(message("remote = 'grpc://a:1'").contains("not a table; write [remote]"));
 }
 
 #[test]
