@@ -107,7 +107,7 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
             let _ = File::open(output).and_then(|file| file.set_modified(SystemTime::now()));
         }
     }
-    let failed = failed.iter().map(|e| Asset::failed(e.path().display().to_string(), 0.0, e.to_string()));
+    let failed = failed.iter().map(|e| Asset::failed(e.path().display().to_string(), None, 0.0, e.to_string(), false));
     let report = Report {
         version: env!("CARGO_PKG_VERSION"),
         settings: settings.to_json(settings.model),

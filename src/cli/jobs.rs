@@ -1,14 +1,16 @@
 //! Which jobs a command line asks for: all of a selection, those of a plan, or some of either.
 
+use std::env;
 use std::io;
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
 use super::inputs::Input;
+use super::part::{Part, PartError};
 use crate::bake::read_file;
 use crate::config::Resolved;
-use crate::plan::{Job, Plan, RunError, Shard};
+use crate::plan::{Job, Plan, RunError};
 
 /// A job by its asset's name for a person, or why it cannot be planned.
 pub struct Planned {
@@ -40,9 +42,10 @@ pub struct JobOptions {
     /// Run the jobs of a file that `roughcast plan --json` wrote, in the same working folder.
     #[arg(long, value_name = "FILE", conflicts_with_all = NOT_WITH_A_PLAN)]
     plan: Option<PathBuf>,
-    /// Run the I-th of N parts, from 1.
-    #[arg(long, value_name = "I/N", value_parser = shard)]
-    shard: Option<Shard>,
+    /// Run the I-th of N parts that cost about the same, from 1. Without I (`/8`) it is the one that the index of an array
+    /// job names: SLURM_ARRAY_TASK_ID, AWS_BATCH_JOB_ARRAY_INDEX or JOB_COMPLETION_INDEX, which count from 0.
+    #[arg(long, value_name = "[I]/N")]
+    shard: Option<Part>,
 }
 
 /// Why there are no jobs.
@@ -64,6 +67,14 @@ pub enum JobsError {
         /// What the reader says.
         reason: String,
     },
+    /// The file is no report.
+    #[error("{}: expected a report as `bake --report` writes it, found: {reason}", path.display())]
+    NoReport {
+        /// The file.
+        path: PathBuf,
+        /// What the reader says.
+        reason: String,
+    },
     /// The plan is for another version, whose jobs these are not.
     #[error("{}: expected a plan of version {}, found one of {version}; plan again", path.display(), env!("CARGO_PKG_VERSION"))]
     OtherVersion {
@@ -78,6 +89,9 @@ pub enum JobsError {
         /// What was asked for.
         id: String,
     },
+    /// The part cannot be told.
+    #[error(transparent)]
+    Part(#[from] PartError),
 }
 
 impl JobOptions {
@@ -86,7 +100,8 @@ impl JobOptions {
     /// # Errors
     /// [`JobsError`].
     pub fn planned(&self) -> Option<Result<Vec<Planned>, JobsError>> {
-        self.plan.as_deref().map(read_plan)
+        let named = |job: Job| Planned { name: job.source.display().to_string(), job: Ok(job) };
+        self.plan.as_deref().map(|path| Ok(read_plan(path)?.jobs.into_iter().map(named).collect()))
     }
 
     /// Checks that a job of a plan is what its files make of it now.
@@ -100,40 +115,39 @@ impl JobOptions {
     /// Those of `planned` that are asked for. What cannot be planned has no id: it is told unless one job is asked for.
     ///
     /// # Errors
-    /// [`JobsError::NoJob`].
+    /// [`JobsError::NoJob`], [`JobsError::Part`].
     pub fn choose(&self, mut planned: Vec<Planned>) -> Result<Vec<Planned>, JobsError> {
+        if let Some(part) = self.shard {
+            let shard = part.shard(&|name| env::var(name).ok())?;
+            let jobs: Vec<&Job> = planned.iter().filter_map(|planned| planned.job.as_ref().ok()).collect();
+            let mut picks = shard.picks(&jobs).into_iter();
+            planned.retain(|planned| planned.job.is_err() || picks.next().unwrap_or(true));
+        }
         if let Some(id) = &self.job {
             planned.retain(|planned| planned.job.as_ref().is_ok_and(|job| job.id.starts_with(id)));
             if planned.is_empty() {
                 return Err(JobsError::NoJob { id: id.clone() });
             }
         }
-        if let Some(shard) = self.shard {
-            planned.retain(|planned| planned.job.as_ref().map_or(true, |job| shard.has(job)));
-        }
         Ok(planned)
     }
 }
 
-fn read_plan(path: &Path) -> Result<Vec<Planned>, JobsError> {
+/// Reads a plan of this version.
+///
+/// # Errors
+/// [`JobsError`].
+pub fn read_plan(path: &Path) -> Result<Plan, JobsError> {
     let bytes = read_file(path).map_err(|error| JobsError::Read { path: path.to_owned(), error })?;
     let plan: Plan = serde_json::from_slice(&bytes)
         .map_err(|error| JobsError::NoPlan { path: path.to_owned(), reason: error.to_string() })?;
     if plan.version != env!("CARGO_PKG_VERSION") {
         return Err(JobsError::OtherVersion { path: path.to_owned(), version: plan.version });
     }
-    Ok(plan.jobs.into_iter().map(|job| Planned { name: job.source.display().to_string(), job: Ok(job) }).collect())
+    Ok(plan)
 }
 
 fn job_id(text: &str) -> Result<String, String> {
     let is_id = (8..=64).contains(&text.len()) && text.bytes().all(|b| matches!(b, b'0'..=b'9' | b'a'..=b'f'));
     if is_id { Ok(text.to_owned()) } else { Err(format!("expected 8 to 64 hexadecimal digits, found {text:?}")) }
-}
-
-fn shard(text: &str) -> Result<Shard, String> {
-    let parts = text.split_once('/').and_then(|(i, n)| Some((i.parse().ok()?, n.parse().ok()?)));
-    match parts {
-        Some((index, count)) if 1 <= index && index <= count => Ok(Shard { index, count }),
-        _ => Err(format!("expected I/N with I from 1 to N, such as 2/8, found {text:?}")),
-    }
 }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use super::Outcome;
 use super::jobs::plan;
+use super::merge;
 use super::selection::Selection;
 use crate::plan::Plan;
 
@@ -13,9 +14,13 @@ use crate::plan::Plan;
 /// A job is one asset, named by all that decides on its outputs. Run a plan with `bake --plan FILE`, in parts with
 /// `--shard I/N`, on any machine that has the files at the same relative paths.
 #[derive(Debug, clap::Args)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true, disable_help_subcommand = true)]
 #[command(after_help = "Example:\n  roughcast plan assets -o baked --json > plan.json\n  \
-    roughcast bake --plan plan.json --shard 1/8")]
+    roughcast bake --plan plan.json --shard 1/8 --report reports/1.json\n  \
+    roughcast plan merge plan.json reports/*.json")]
 pub struct Args {
+    #[command(subcommand)]
+    command: Option<Command>,
     /// .gltf or .glb files, or folders that are searched for them, relative to the working folder.
     #[arg(required = true, value_name = "INPUT")]
     inputs: Vec<PathBuf>,
@@ -26,11 +31,19 @@ pub struct Args {
     selection: Selection,
 }
 
+#[derive(Debug, clap::Subcommand)]
+enum Command {
+    Merge(merge::Args),
+}
+
 /// Prints the plan.
 ///
 /// # Errors
 /// When `out` or `err` cannot be written to.
 pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<Outcome> {
+    if let Some(Command::Merge(args)) = &args.command {
+        return merge::run(args, out, err);
+    }
     let selected = match args.selection.find(&args.inputs) {
         Ok(selected) => selected,
         Err(reason) => {

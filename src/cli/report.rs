@@ -1,5 +1,7 @@
 //! The report of a run (`schemas/report.schema.json`) and its summary for a person.
 
+use std::ops::Not;
+
 use serde::Serialize;
 use serde_json::Value;
 
@@ -28,6 +30,9 @@ pub struct Report {
 #[derive(Debug, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Asset {
+    /// Id of its job, where it could be planned.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub job: Option<String>,
     /// The input file.
     pub input: String,
     /// The output document, where there is one.
@@ -48,6 +53,9 @@ pub struct Asset {
     /// What went wrong.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<String>,
+    /// Whether trying again may help.
+    #[serde(skip_serializing_if = "Not::not")]
+    pub retry: bool,
     /// Layers and textures.
     #[serde(flatten)]
     pub report: AssetReport,
@@ -81,8 +89,16 @@ impl Status {
 
 impl Asset {
     /// An input that was baked; `own` are its settings where they are not those of the run.
-    pub fn done(input: String, done: &Done, origin: Option<Origin>, seconds: f64, own: Option<Settings>) -> Self {
+    pub fn done(
+        input: String,
+        job: Option<String>,
+        done: &Done,
+        origin: Option<Origin>,
+        seconds: f64,
+        own: Option<Settings>,
+    ) -> Self {
         Self {
+            job,
             input,
             output: Some(done.output.display().to_string()),
             status: Status::of(done, origin),
@@ -91,13 +107,15 @@ impl Asset {
             seconds,
             bytes: done.bytes,
             error: None,
+            retry: false,
             report: done.report.clone(),
         }
     }
 
     /// An input that could not be baked.
-    pub fn failed(input: String, seconds: f64, error: String) -> Self {
+    pub fn failed(input: String, job: Option<String>, seconds: f64, error: String, retry: bool) -> Self {
         Self {
+            job,
             input,
             output: None,
             status: Status::Failed,
@@ -106,6 +124,7 @@ impl Asset {
             seconds,
             bytes: 0,
             error: Some(error),
+            retry,
             report: AssetReport::default(),
         }
     }

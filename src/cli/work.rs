@@ -130,18 +130,20 @@ impl Work<'_> {
             let result = prepared.and_then(|(job, origin, prepared)| {
                 let done = plan::finish(job, prepared, &mut places, cache, &mut warn);
                 let done = done.and_then(|done| Ok((job.typed_settings()?, done))).map_err(|error| told(&error))?;
-                Ok((origin, done))
+                Ok((job, origin, done))
             });
             let seconds = seconds + start.elapsed().as_secs_f64();
             let mut ended = Outcome::Done;
             let asset = match result {
-                Ok((origin, (own, done))) => {
-                    Asset::done(name.clone(), &done, origin, seconds, (own != *self.settings).then_some(own))
+                Ok((job, origin, (own, done))) => {
+                    let own = (own != *self.settings).then_some(own);
+                    Asset::done(name.clone(), Some(job.id.clone()), &done, origin, seconds, own)
                 }
                 Err(JobFailure { message, is_passing }) => {
                     ended = if is_passing { Outcome::Retry } else { Outcome::Failed };
                     progress.suspend(|| writeln!(err, "error: {name}: {message}"))?;
-                    Asset::failed(name.clone(), seconds, message)
+                    let job = planned[index].job.as_ref().ok().map(|job| job.id.clone());
+                    Asset::failed(name.clone(), job, seconds, message, is_passing)
                 }
             };
             progress.set(index, 1.0, name);

@@ -133,6 +133,15 @@ impl Job {
         Err(RunError::NotAsPlanned { planned: self.id.clone(), found: now.id, reason })
     }
 
+    /// The first declared output that is not there.
+    pub fn missing_output(&self) -> Option<&Path> {
+        let is_there = |output: &JobOutput| match output.kind {
+            OutputKind::File => output.path.is_file(),
+            OutputKind::Folder => output.path.is_dir(),
+        };
+        self.outputs.iter().find(|output| !is_there(output)).map(|output| output.path.as_path())
+    }
+
     /// Name of the asset without its extension; outputs are named after it.
     pub fn stem(&self) -> String {
         stem(&self.source)

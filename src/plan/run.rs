@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
 use super::error::RunError;
-use super::job::{Job, OutputKind, beside};
+use super::job::{Job, beside};
 use super::restore::{Lookup, restore};
 use crate::bake::report::AssetReport;
 use crate::bake::{Baked, Places, Source, bake, publish, read_file};
@@ -94,16 +94,10 @@ pub fn finish(
         // The entry is there, and what it names is not.
         (None, None) => written(job, &baked(job, &|_| ())?, places, cache, warn)?,
     };
-    for output in &job.outputs {
-        let is_there = match output.kind {
-            OutputKind::File => output.path.is_file(),
-            OutputKind::Folder => output.path.is_dir(),
-        };
-        if !is_there {
-            return Err(RunError::NoOutput { path: output.path.clone() });
-        }
+    match job.missing_output() {
+        None => Ok(done),
+        Some(path) => Err(RunError::NoOutput { path: path.to_owned() }),
     }
-    Ok(done)
 }
 
 fn baked(job: &Job, advance: &dyn Fn(f32)) -> Result<Baked, RunError> {

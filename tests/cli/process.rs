@@ -33,8 +33,18 @@ pub fn roughcast(arguments: impl IntoIterator<Item = impl AsRef<OsStr>>) -> Run 
 
 /// Runs it in `folder`. Help is wrapped at 100 columns.
 pub fn roughcast_in(folder: &Path, arguments: impl IntoIterator<Item = impl AsRef<OsStr>>) -> Run {
+    roughcast_with(&[], folder, arguments)
+}
+
+/// Runs it in `folder` with more `variables` in its environment.
+pub fn roughcast_with(
+    variables: &[(&str, &str)],
+    folder: &Path,
+    arguments: impl IntoIterator<Item = impl AsRef<OsStr>>,
+) -> Run {
     let mut command = Command::new(env!("CARGO_BIN_EXE_roughcast"));
     command.current_dir(folder).args(arguments).env("COLUMNS", "100").env_remove("CLICOLOR_FORCE");
+    command.envs(variables.iter().copied());
     command.output().expect("the command starts").into()
 }
 

@@ -51,6 +51,7 @@ fn help_of_each_command() {
     for command in ["bake", "init", "map", "watch", "check", "compare", "plan", "render", "completions", "man"] {
         transcript(&format!("help_{command}"), &[&format!("roughcast {command} --help")]);
     }
+    transcript("help_plan_merge", &["roughcast plan merge --help"]);
 }
 
 #[test]

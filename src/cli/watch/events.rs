@@ -117,7 +117,7 @@ impl<'w> Teller<'w> {
         self.has_news = true;
         self.changes.outputs.push(done.output.clone());
         if !self.is_json && !self.is_quiet {
-            self.out.write_all(Asset::done(name, done, None, seconds, None).summary().as_bytes())?;
+            self.out.write_all(Asset::done(name, None, done, None, seconds, None).summary().as_bytes())?;
             return self.out.flush();
         }
         let files = done.written.iter().map(|Written { path, .. }| path.as_path()).collect();

@@ -1,0 +1,142 @@
+//! Parts of a plan, and what is missing of them.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::{Value, json};
+use tempfile::{TempDir, tempdir};
+
+use super::process::{Run, copy, fixtures, hashes, roughcast_in, roughcast_with};
+
+const PARTS: usize = 3;
+
+/// A plan of three assets.
+fn planned() -> TempDir {
+    let folder = tempdir().expect("a folder");
+    for asset in ["brushed", "heights", "waves"] {
+        copy(&fixtures().join(asset), &folder.path().join("assets").join(asset));
+    }
+    fs::write(folder.path().join("plan.json"), done(folder.path(), "plan assets -o out --json")).expect("a file");
+    folder
+}
+
+/// The same, run in parts that wrote `0.json` to `2.json`.
+fn run_in_parts() -> TempDir {
+    let folder = planned();
+    for task in 0..PARTS {
+        let run = part(folder.path(), task, &format!("--report {task}.json"));
+        assert_eq!((run.code, run.err.as_str()), (0, ""));
+    }
+    folder
+}
+
+/// Runs a part as Slurm would.
+fn part(folder: &Path, task: usize, options: &str) -> Run {
+    let line = format!("bake --plan plan.json --shard /{PARTS} -q {options}");
+    roughcast_with(&[("SLURM_ARRAY_TASK_ID", &task.to_string())], folder, line.split_whitespace())
+}
+
+fn run(folder: &Path, line: &str) -> Run {
+    roughcast_in(folder, line.split_whitespace())
+}
+
+fn done(folder: &Path, line: &str) -> String {
+    let run = run(folder, line);
+    assert_eq!((run.code, run.err.as_str()), (0, ""), "{line}");
+    run.out
+}
+
+fn first_lines(run: &Run) -> (i32, Vec<&str>) {
+    (run.code, run.out.lines().collect())
+}
+
+#[test]
+fn tasks_of_an_array_do_the_whole_plan() {
+    let folder = run_in_parts();
+    assert_eq!(
+        done(folder.path(), "plan merge plan.json 0.json 1.json 2.json"),
+        "3 jobs: 3 done, 0 failed, 0 missing\n"
+    );
+    let parts = hashes(&folder.path().join("out"));
+    fs::remove_dir_all(folder.path().join("out")).expect("a folder");
+    done(folder.path(), "bake --plan plan.json -q");
+    assert_eq!(hashes(&folder.path().join("out")), parts);
+    let alone = part(folder.path(), PARTS, "");
+    assert_eq!(alone.code, 2);
+    assert!(alone.err.contains("expected 0 to 2 in SLURM_ARRAY_TASK_ID, found \"3\""), "{}", alone.err);
+    let none = run(folder.path(), "bake --plan plan.json --shard /3");
+    assert!(none.code == 2 && none.err.contains("found none of them set"), "{}", none.err);
+}
+
+#[test]
+fn what_no_part_did_is_missing_until_it_is_run() {
+    let folder = run_in_parts();
+    let folder = folder.path();
+    fs::remove_dir_all(folder.join("out/waves")).expect("a folder");
+    let lost = |folder: &Path, reports: &str| run(folder, &format!("plan merge plan.json {reports} --rest rest.json"));
+    let merged = lost(folder, "0.json 1.json 2.json");
+    let gone = "missing assets/waves/waves.glb: expected out/waves/waves.gltf, found nothing there";
+    assert_eq!(first_lines(&merged), (4, vec!["3 jobs: 2 done, 0 failed, 1 missing", gone]));
+    assert_eq!(first_lines(&lost(folder, "")), first_lines(&merged), "outputs alone tell it, too");
+    let reported = done(folder, "plan merge plan.json 0.json 1.json 2.json --no-outputs");
+    assert_eq!(reported, "3 jobs: 3 done, 0 failed, 0 missing\n");
+    lost(folder, "");
+    done(folder, "bake --plan rest.json -q --report more.json");
+    done(folder, "plan merge plan.json more.json 0.json 1.json 2.json --rest rest.json");
+    done(folder, "bake --plan rest.json");
+    let merged = lost(folder, "more.json");
+    let untold = |name: &str| format!("missing assets/{name}: no report tells of it");
+    let (brushed, heights) = (untold("brushed/brushed.gltf"), untold("heights/heights.gltf"));
+    assert_eq!(first_lines(&merged), (4, vec!["3 jobs: 1 done, 0 failed, 2 missing", &brushed, &heights]));
+}
+
+#[test]
+fn what_fails_for_good_is_told_apart_from_what_may_be_tried_again() {
+    let folder = planned();
+    let folder = folder.path();
+    fs::write(folder.join("assets/heights/heights.png"), "changed").expect("a file");
+    assert_eq!(run(folder, "bake --plan plan.json -q --report all.json").code, 1);
+    let merged = run(folder, "plan merge plan.json all.json --json --rest rest.json");
+    assert_eq!(merged.code, 1, "{}", merged.out);
+    let merged: Value = serde_json::from_str(&merged.out).expect("JSON");
+    assert_eq!((&merged["jobs"], &merged["done"], &merged["missing"]), (&json!(3), &json!(2), &json!([])));
+    let reason = merged["failed"][0]["reason"].as_str().expect("a reason");
+    assert!(reason.contains("heights.png is not as it was"), "{reason}");
+    let schema: Value = serde_json::from_str(include_str!("../../schemas/merge.schema.json")).expect("JSON");
+    assert!(jsonschema::is_valid(&schema, &merged), "{merged}");
+    let rest: Value = serde_json::from_slice(&fs::read(folder.join("rest.json")).expect("a file")).expect("JSON");
+    assert_eq!(rest["jobs"], json!([]), "what fails for good is not run again");
+
+    let mut report: Value = serde_json::from_slice(&fs::read(folder.join("all.json")).expect("a file")).expect("JSON");
+    let schema: Value = serde_json::from_str(include_str!("../../schemas/report.schema.json")).expect("JSON");
+    assert!(jsonschema::is_valid(&schema, &report));
+    report["assets"][1]["retry"] = json!(true);
+    assert!(jsonschema::is_valid(&schema, &report));
+    fs::write(folder.join("passing.json"), report.to_string()).expect("a file");
+    let passing = run(folder, "plan merge plan.json passing.json");
+    assert!(passing.code == 4 && passing.out.contains("\nmissing assets/heights/heights.gltf: "), "{}", passing.out);
+    let both = run(folder, "plan merge plan.json all.json passing.json");
+    assert_eq!(both.code, 1, "{}", both.out);
+}
+
+#[test]
+fn wrong_files_are_one_clear_message() {
+    let folder = run_in_parts();
+    let folder = folder.path();
+    fs::write(folder.join("bad.json"), "{}").expect("a file");
+    for (line, part) in [
+        ("plan merge", "<PLAN>"),
+        ("plan merge missing.json", "missing.json: expected a readable file"),
+        ("plan merge bad.json", "bad.json: expected a plan"),
+        ("plan merge plan.json bad.json", "bad.json: expected a report as `bake --report` writes it"),
+        ("plan merge plan.json missing.json", "missing.json: expected a readable file"),
+        ("plan merge plan.json --no-outputs", "<REPORT>"),
+    ] {
+        let run = run(folder, line);
+        assert!(run.code == 2 && run.err.contains(part), "{line}: {} {}", run.code, run.err);
+    }
+    done(folder, "bake assets/heights -o elsewhere -q --max-error 0.2 --report other.json");
+    let foreign = run(folder, "plan merge plan.json 0.json 1.json 2.json other.json");
+    let warning = "warning: other.json: expected a report of this plan, found none of its jobs there\n";
+    assert_eq!((foreign.code, foreign.err.as_str()), (0, warning));
+}
