@@ -1,0 +1,84 @@
+//! The jobs: what was measured of each kind, and how many of each a library has.
+
+use super::farm::Action;
+
+/// A kind of material, as measured (docs/scale.md has the commands).
+pub struct Kind {
+    pub name: &'static str,
+    /// Share of the materials of a library: an assumption.
+    pub share: f64,
+    /// Processor seconds of a bake, and of a run that finds it in the cache.
+    pub bake: f64,
+    pub cached: f64,
+    /// Bytes of its inputs, and of what the cache keeps of it.
+    pub inputs: f64,
+    pub kept: f64,
+}
+
+/// One texture set each, on one thread.
+pub const KINDS: [Kind; 4] = [
+    Kind { name: "128^2", share: 0.30, bake: 0.12, cached: 0.007, inputs: 59_810.0, kept: 79_676.0 },
+    Kind { name: "1024^2", share: 0.40, bake: 1.14, cached: 0.010, inputs: 2_454_732.0, kept: 4_254_525.0 },
+    Kind { name: "2048^2", share: 0.25, bake: 3.07, cached: 0.022, inputs: 5_167_064.0, kept: 11_382_637.0 },
+    Kind { name: "4096^2", share: 0.05, bake: 12.44, cached: 0.058, inputs: 10_806_764.0, kept: 42_719_283.0 },
+];
+
+/// Shorter actions are grouped, as `bake --remote` groups jobs.
+const LEAST_WORK: f64 = 0.5;
+
+/// What is known of a library.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Cache {
+    /// Nothing.
+    Cold,
+    /// Everything is in the store; the machines are new.
+    Warm,
+    /// Machines have their files and caches of the last run; one material in a hundred has changed.
+    Changed,
+}
+
+/// The actions for `count` materials, in an order that mixes their kinds as a hash would.
+pub fn actions(count: u64, cache: Cache) -> impl Iterator<Item = Action> {
+    let mut jobs = (0..count).map(move |index| job(index, cache));
+    std::iter::from_fn(move || {
+        let mut action = jobs.next()?;
+        while action.work < LEAST_WORK {
+            let Some(job) = jobs.next() else { break };
+            action = Action { down: action.down + job.down, work: action.work + job.work, up: action.up + job.up };
+        }
+        Some(action)
+    })
+}
+
+fn job(index: u64, cache: Cache) -> Action {
+    let random = scrambled(index);
+    let kind = kind((random >> 11) as f64 / (1_u64 << 53) as f64);
+    let is_cached = match cache {
+        Cache::Cold => false,
+        Cache::Warm => true,
+        Cache::Changed => !scrambled(random).is_multiple_of(100),
+    };
+    if !is_cached {
+        return Action { down: kind.inputs, work: kind.bake, up: kind.kept };
+    }
+    // Inputs are read in either case, since their digests name the job.
+    let down = if cache == Cache::Warm { kind.inputs + kind.kept } else { 0.0 };
+    Action { down, work: kind.cached, up: 0.0 }
+}
+
+fn kind(place: f64) -> &'static Kind {
+    let mut sum = 0.0;
+    let found = KINDS.iter().find(|kind| {
+        sum += kind.share;
+        place < sum
+    });
+    found.unwrap_or(&KINDS[KINDS.len() - 1])
+}
+
+/// SplitMix64 (G. Steele, D. Lea, C. Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014).
+fn scrambled(index: u64) -> u64 {
+    let mut z = index.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
