@@ -222,7 +222,7 @@ names! {
         Playcanvas,
         /// Filament: its glTF loader has no anisotropy
         Filament,
-        /// Bevy: refuses files that need KHR_texture_basisu
+        /// Bevy: refuses files that need KHR_texture_basisu, and its ellipses are too narrow
         Bevy,
         /// Godot: its glTF import has no anisotropy
         Godot,

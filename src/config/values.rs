@@ -61,7 +61,7 @@ pub enum Engine {
     Playcanvas,
     /// Filament, whose glTF loader has no anisotropy.
     Filament,
-    /// Bevy, which refuses files that need KHR_texture_basisu.
+    /// Bevy, which refuses files that need KHR_texture_basisu and squares the alphas of ellipses once more (docs/engines.md).
     Bevy,
     /// Godot, whose glTF import has no anisotropy.
     Godot,
@@ -72,7 +72,7 @@ impl Engine {
     pub fn values(self) -> Values {
         let (gltf, model) = match self {
             Self::Three | Self::Babylon | Self::Playcanvas => (Form::Fallback, None),
-            Self::Bevy => (Form::Dual, None),
+            Self::Bevy => (Form::Dual, Some(Model::Isotropic)),
             Self::Filament | Self::Godot => (Form::Fallback, Some(Model::Isotropic)),
         };
         Values { target: Some(Target::Basis), gltf: Some(gltf), model, ..Values::default() }
