@@ -43,11 +43,11 @@ pub struct Args {
     #[command(flatten)]
     cache: CacheOptions,
     #[command(flatten)]
-    remote: RemoteOptions,
-    #[command(flatten)]
     jobs: JobOptions,
     #[command(flatten)]
     selection: Selection,
+    #[command(flatten)]
+    remote: RemoteOptions,
 }
 
 /// Bakes what `args` name.

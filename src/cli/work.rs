@@ -89,7 +89,7 @@ impl Work<'_> {
         if let Some(cache) = cache.filter(|_| is_local) {
             self.cache.trim(&cache, err)?;
         }
-        let counts = remote.map_or_else(Counts::default, |(remote, _)| remote.tally().counts());
+        let counts = remote.map_or_else(Counts::default, |(remote, _)| remote.counts());
         Ok(Worked { assets, outcome, remote: self.remote.as_ref().map(|_| counts) })
     }
 

@@ -160,7 +160,11 @@ impl Reader<'_> {
             if !names.iter().any(|n| n == name) {
                 return Err(self.unknown(key, names.iter().map(String::as_str)));
             }
-            let json = to_json(value.get_ref()).ok_or_else(|| self.wrong(name, value, "no finite value"))?;
+            let json = match value.get_ref() {
+                DeValue::Table(table) => members(table),
+                single => to_json(single),
+            };
+            let json = json.ok_or_else(|| self.wrong(name, value, "no finite value"))?;
             serde_json::from_value::<RemoteValues>(json!({ name: json }))
                 .map_err(|e| self.wrong(name, value, &e.to_string()))?;
             said.insert(name.to_owned(), json);
@@ -209,7 +213,13 @@ impl Reader<'_> {
     }
 }
 
-/// As JSON; `None` where JSON has no such value.
+/// The table's members as JSON.
+fn members(table: &DeTable<'_>) -> Option<serde_json::Value> {
+    let pairs = table.iter().map(|(key, value)| Some((key.get_ref().to_string(), to_json(value.get_ref())?)));
+    pairs.collect::<Option<serde_json::Map<_, _>>>().map(Into::into)
+}
+
+/// As JSON; `None` for tables, and where JSON has no such value.
 fn to_json(value: &DeValue<'_>) -> Option<serde_json::Value> {
     Some(match value {
         DeValue::String(text) => text.as_ref().into(),
@@ -217,13 +227,7 @@ fn to_json(value: &DeValue<'_>) -> Option<serde_json::Value> {
         DeValue::Integer(number) => i64::from_str_radix(number.as_str(), number.radix()).ok()?.into(),
         DeValue::Float(number) => serde_json::Number::from_f64(number.as_str().parse().ok()?)?.into(),
         DeValue::Array(list) => list.iter().map(|v| to_json(v.get_ref())).collect::<Option<Vec<_>>>()?.into(),
-        DeValue::Table(table) => {
-            let member = |(key, value): (&Spanned<DeString<'_>>, &Spanned<DeValue<'_>>)| {
-                Some((key.get_ref().to_string(), to_json(value.get_ref())?))
-            };
-            table.iter().map(member).collect::<Option<serde_json::Map<_, _>>>()?.into()
-        }
-        DeValue::Datetime(_) => return None,
+        DeValue::Table(_) | DeValue::Datetime(_) => return None,
     })
 }
 

@@ -1,8 +1,7 @@
 //! What takes the place of a server in a build without the feature `remote`.
 
 use super::options::Options;
-use super::outcome::{Errand, Wait};
-use super::tally::Tally;
+use super::outcome::{Counts, Errand, Wait};
 
 /// A server, of which there is none.
 pub enum Remote {}
@@ -31,7 +30,7 @@ impl Remote {
     }
 
     /// What was done so far.
-    pub fn tally(&self) -> &Tally {
+    pub fn counts(&self) -> Counts {
         match *self {}
     }
 

@@ -93,12 +93,16 @@ mod tests {
         let jobs: Vec<Job> = (0..1000).map(|number| job(number, 1000)).collect();
         let before: BTreeSet<Vec<&str>> = grouped(&jobs).into_iter().collect();
         assert!((30..100).contains(&before.len()), "{}", before.len());
+        let mut all_changed = 0;
         for number in 1000..1100 {
             let new = job(number, 1000);
             let all: Vec<Job> = jobs.iter().chain([&new]).cloned().collect();
             let after: BTreeSet<Vec<&str>> = grouped(&all).into_iter().collect();
             let changed = before.iter().filter(|group| !after.contains(*group)).count();
-            assert!(changed <= 1, "{changed}");
+            // Two where the bounds cut.
+            assert!(changed <= 2, "{changed}");
+            all_changed += changed;
         }
+        assert!(all_changed <= 110, "{all_changed}");
     }
 }

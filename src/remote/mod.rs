@@ -7,7 +7,6 @@
 
 mod options;
 mod outcome;
-mod tally;
 
 #[cfg(not(feature = "remote"))]
 mod absent;
@@ -39,13 +38,14 @@ mod retry;
 #[cfg(feature = "remote")]
 mod server;
 #[cfg(feature = "remote")]
+mod tally;
+#[cfg(feature = "remote")]
 mod tree;
 #[cfg(feature = "remote")]
 mod upload;
 
 pub use options::{Header, Options, Tls};
-pub use outcome::{Errand, JobFailure, Origin, Outcome, Wait};
-pub use tally::{Counts, Tally};
+pub use outcome::{Counts, Errand, JobFailure, Origin, Outcome, Wait};
 
 #[cfg(not(feature = "remote"))]
 pub use absent::{Remote, RemoteError};

@@ -2,7 +2,6 @@
 
 use serde::Serialize;
 
-use super::tally::Counts;
 use crate::cache::Cache;
 use crate::plan::{Job, RunError};
 
@@ -48,3 +47,37 @@ pub type Outcome = Result<Origin, JobFailure>;
 
 /// What became of the job of an index; waits for it. `None` for jobs that were not sent.
 pub type Wait<'a> = &'a (dyn Fn(usize) -> Option<Outcome> + Sync);
+
+/// What a server did so far, in numbers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct Counts {
+    /// Jobs that wait for a worker.
+    #[serde(skip)]
+    pub queued: u64,
+    /// Jobs on workers.
+    #[serde(skip)]
+    pub running: u64,
+    /// Jobs that are done, well or not.
+    #[serde(skip)]
+    pub done: u64,
+    /// Those of them that the server had.
+    #[serde(skip)]
+    pub known: u64,
+    /// Actions that the jobs were grouped into.
+    pub actions: u64,
+    /// Executions, repetitions among them.
+    pub executed: u64,
+    /// Actions whose result the server had.
+    pub cached: u64,
+    /// Times that something was tried again.
+    pub retries: u64,
+    /// Blobs sent.
+    pub uploaded_blobs: u64,
+    /// Their bytes, before compression.
+    pub uploaded_bytes: u64,
+    /// Blobs fetched.
+    pub downloaded_blobs: u64,
+    /// Their bytes, after decompression.
+    pub downloaded_bytes: u64,
+}

@@ -9,6 +9,7 @@ use super::client::Client;
 use super::digest::Blob;
 use super::error::RemoteError;
 use super::options::Options;
+use super::outcome::Counts;
 use super::tally::Tally;
 use super::upload::Uploads;
 
@@ -44,7 +45,7 @@ impl Remote {
     }
 
     /// What was done so far.
-    pub fn tally(&self) -> &Tally {
-        &self.tally
+    pub fn counts(&self) -> Counts {
+        self.tally.counts()
     }
 }

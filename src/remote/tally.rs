@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use serde::Serialize;
+use super::outcome::Counts;
 
 /// Numbers that any thread adds to.
 #[derive(Debug, Default)]
@@ -19,40 +19,6 @@ pub struct Tally {
     pub(super) uploaded_bytes: AtomicU64,
     pub(super) downloaded_blobs: AtomicU64,
     pub(super) downloaded_bytes: AtomicU64,
-}
-
-/// The numbers at one time.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "camelCase")]
-pub struct Counts {
-    /// Jobs that wait for a worker.
-    #[serde(skip)]
-    pub queued: u64,
-    /// Jobs on workers.
-    #[serde(skip)]
-    pub running: u64,
-    /// Jobs that are done, well or not.
-    #[serde(skip)]
-    pub done: u64,
-    /// Those of them that the server had.
-    #[serde(skip)]
-    pub known: u64,
-    /// Actions that the jobs were grouped into.
-    pub actions: u64,
-    /// Executions, repetitions among them.
-    pub executed: u64,
-    /// Actions whose result the server had.
-    pub cached: u64,
-    /// Times that something was tried again.
-    pub retries: u64,
-    /// Blobs sent.
-    pub uploaded_blobs: u64,
-    /// Their bytes, before compression.
-    pub uploaded_bytes: u64,
-    /// Blobs fetched.
-    pub downloaded_blobs: u64,
-    /// Their bytes, after decompression.
-    pub downloaded_bytes: u64,
 }
 
 impl Tally {

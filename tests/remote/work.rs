@@ -1,6 +1,7 @@
 //! A server that does what it should: bytes are those of a local bake, and nothing is sent or run twice.
 
 use std::fs;
+use std::process::Command;
 
 use bazel_remote_apis::build::bazel::remote::execution::v2 as re;
 use prost::Message;
@@ -90,6 +91,25 @@ fn workers_are_asked_for_what_the_caller_says() {
 }
 
 #[test]
+fn a_server_may_be_named_in_the_configuration() {
+    let (scene, server) = (Scene::new(), Fake::start());
+    let text = format!("[remote]\nurl = '{}'\ntool = '../tool'\njobs = 2\nplatform = {{ a = 'b' }}\n", server.url());
+    fs::write(scene.path("assets/roughcast.toml"), text).expect("a file");
+    let bake = |options: &str| -> Run {
+        let line = format!("bake assets -o out --json {options}");
+        let mut command = Command::new(ROUGHCAST);
+        command.current_dir(scene.folder()).args(line.split_whitespace()).output().expect("a run").into()
+    };
+    let run = bake("");
+    assert_eq!((run.code, run.err.as_str()), (0, ""));
+    assert!(run.count("executed") > 0);
+    assert_eq!(scene.hashes(), expected().0);
+    let cache = expected().1.display();
+    let run = bake(&format!("--no-remote --cache {cache}"));
+    assert_eq!((run.code, run.report()["remote"].is_null()), (0, true), "{}", run.err);
+}
+
+#[test]
 fn a_job_that_fails_reads_as_it_does_here_and_takes_no_other_with_it() {
     let (scene, server) = (Scene::new(), Fake::start());
     fs::write(scene.path("assets/waves/broken.gltf"), BROKEN).expect("a file");
@@ -97,7 +117,7 @@ fn a_job_that_fails_reads_as_it_does_here_and_takes_no_other_with_it() {
     assert_eq!(remote.code, 1, "{}", remote.err);
     assert_eq!(scene.hashes(), expected().0);
     scene.clear();
-    let mut local = std::process::Command::new(ROUGHCAST);
+    let mut local = Command::new(ROUGHCAST);
     local.current_dir(scene.folder()).args(["bake", "assets", "-o", "out", "-q"]);
     let local: Run = local.output().expect("a run").into();
     assert_eq!((local.code, local.err.lines().count()), (1, 1), "{}", local.err);
