@@ -1,9 +1,10 @@
 //! What is known of a job that was run.
 
-use std::path::{Component, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use crate::bake::Baked;
 use crate::bake::report::AssetReport;
 use crate::digest::digest;
 
@@ -25,26 +26,46 @@ pub struct Entry {
 }
 
 impl Entry {
-    /// Reads what [`Self::to_bytes`] wrote; `None` for anything else, and where a file belongs elsewhere.
-    pub fn parse(bytes: &[u8]) -> Option<Self> {
-        let (named, json) = bytes.split_at_checked(DIGEST_LENGTH)?;
-        let is_whole = digest(json).as_bytes() == named;
-        let entry = is_whole.then(|| serde_json::from_slice::<Self>(json).ok())?;
-        entry.filter(Self::is_contained)
+    /// What was baked as `document`.
+    pub fn new(document: &Path, baked: &Baked) -> Self {
+        let name = document.file_name().map(PathBuf::from).unwrap_or_default();
+        let stored = |path: &Path, bytes: &[u8]| Stored {
+            path: path.to_owned(),
+            blake3: digest(bytes),
+            bytes: bytes.len() as u64,
+        };
+        Self {
+            document: stored(&name, &baked.document),
+            files: baked.files.iter().map(|file| stored(&file.path, &file.bytes)).collect(),
+            copies: baked.copies.clone(),
+            report: baked.report.clone(),
+        }
     }
 
-    /// The file that holds it: a BLAKE3 of the rest in hex, and JSON.
+    /// All stored files, the document last: whoever sees it sees everything that it names.
+    pub fn stored(&self) -> impl Iterator<Item = &Stored> {
+        self.files.iter().chain([&self.document])
+    }
+
+    /// As it is kept: a digest, then JSON.
     ///
     /// # Errors
-    /// None in practice: names that are not UTF-8.
-    pub fn to_bytes(&self) -> Result<Vec<u8>, serde_json::Error> {
+    /// Where a path is not UTF-8.
+    pub fn to_bytes(&self) -> serde_json::Result<Vec<u8>> {
         let json = serde_json::to_vec(self)?;
         Ok([digest(&json).as_bytes(), &json].concat())
     }
 
+    /// The entry that `bytes` keep; `None` if they are not what was written.
+    pub fn parse(bytes: &[u8]) -> Option<Self> {
+        let (_, json) =
+            bytes.split_at_checked(DIGEST_LENGTH).filter(|(named, rest)| digest(rest).as_bytes() == *named)?;
+        serde_json::from_slice::<Self>(json).ok().filter(Self::is_contained)
+    }
+
     /// Whether all stored files belong below the output folder: nobody's cache writes elsewhere.
-    pub fn is_contained(&self) -> bool {
-        let mut parts = self.files.iter().chain([&self.document]).flat_map(|stored| stored.path.components());
+    fn is_contained(&self) -> bool {
+        let mut parts = self.stored().flat_map(|stored| stored.path.components());
         parts.all(|part| matches!(part, Component::Normal(_)))
     }
 }

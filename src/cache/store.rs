@@ -1,176 +1,133 @@
-//! The folder of a cache: `jobs/<id>` and `blobs/<digest>`, in folders by their first two digits.
+//! A folder, a store that machines share, or the one in front of the other.
 
-use std::fs::{self, File};
-use std::io;
-use std::path::{Path, PathBuf};
-use std::time::{Duration, SystemTime};
-
-use walkdir::WalkDir;
+use std::path::Path;
+use std::sync::Arc;
 
 use super::entry::{Entry, Stored};
-use crate::bake::{Baked, write_unsynced};
-use crate::digest::digest;
+use super::error::CacheError;
+use super::folder::Folder;
+use super::shared::Shared;
+use crate::bake::Baked;
 
-/// A cache in a folder.
-#[derive(Clone, Debug)]
+/// A cache. What is found in the store is kept in the folder, and what is baked is put into both.
+#[derive(Clone, Debug, Default)]
 pub struct Cache {
-    root: PathBuf,
+    folder: Option<Folder>,
+    shared: Option<Arc<Shared>>,
+    /// Largest size of the folder.
+    limit: u64,
 }
 
-/// What is wrong with a cache. No reason for a job to fail.
-#[derive(Debug, thiserror::Error)]
-pub enum CacheError {
-    /// Other bytes than were written. The file is gone now.
-    #[error("{}: expected the bytes that were stored there, found others; dropped it, and bake again", path.display())]
-    Damaged {
-        /// The file.
-        path: PathBuf,
-    },
-    /// The file system refused.
-    #[error("{}: expected a cache that can be read and written, found: {error}", path.display())]
-    Io {
-        /// The file.
-        path: PathBuf,
-        /// The system's error.
-        error: io::Error,
-    },
-}
+/// Who is told what is wrong.
+pub type Warn<'w> = &'w mut dyn FnMut(CacheError);
 
 impl Cache {
-    /// The cache in `root`, which is made when something is stored.
-    pub fn new(root: &Path) -> Self {
-        Self { root: root.to_owned() }
+    /// The cache in `folder` with at most `limit` bytes, the store at `url`, or both. Neither is asked anything yet.
+    ///
+    /// # Errors
+    /// [`CacheError`] where `url` names no store, or its settings in the environment are wrong.
+    pub fn new(folder: Option<&Path>, url: Option<&str>, limit: u64) -> Result<Self, CacheError> {
+        Ok(Self { folder: folder.map(Folder::new), shared: url.map(Shared::open).transpose()?.map(Arc::new), limit })
+    }
+
+    /// The folder, if there is one.
+    pub fn folder(&self) -> Option<&Folder> {
+        self.folder.as_ref()
+    }
+
+    /// The same with `folder` in front of the store.
+    pub fn with_folder(self, folder: &Path) -> Self {
+        Self { folder: Some(Folder::new(folder)), ..self }
     }
 
     /// The outputs of the job `id`, if it was run.
-    ///
-    /// # Errors
-    /// [`CacheError`] where the entry is there but of no use.
-    pub fn entry(&self, id: &str) -> Result<Option<Entry>, CacheError> {
-        let path = self.path("jobs", id);
-        let Some(bytes) = read(&path)? else { return Ok(None) };
-        Entry::parse(&bytes).map(Some).ok_or_else(|| dropped(path))
-    }
-
-    /// The bytes of a blob, if it is there.
-    ///
-    /// # Errors
-    /// [`CacheError`] where they are not what they were.
-    pub fn blob(&self, name: &str) -> Result<Option<Vec<u8>>, CacheError> {
-        let path = self.path("blobs", name);
-        match read(&path)? {
-            Some(bytes) if digest(&bytes) == name => Ok(Some(bytes)),
-            Some(_) => Err(dropped(path)),
-            None => Ok(None),
+    pub fn entry(&self, id: &str, warn: Warn<'_>) -> Option<Entry> {
+        if let Some(folder) = &self.folder
+            && let Some(entry) = told(folder.entry(id), warn)
+        {
+            return Some(entry);
         }
-    }
-
-    /// Stores what the job `id` baked as `document`: blobs first, so that an entry's blobs are there.
-    ///
-    /// # Errors
-    /// [`CacheError::Io`].
-    pub fn put(&self, id: &str, document: &Path, baked: &Baked) -> Result<(), CacheError> {
-        let name = document.file_name().map(PathBuf::from).unwrap_or_default();
-        let mut files = Vec::with_capacity(baked.files.len());
-        for file in &baked.files {
-            files.push(self.put_blob(&file.path, &file.bytes)?);
+        let entry = told(self.shared.as_ref()?.entry(id), warn)?;
+        if let Some(folder) = &self.folder {
+            warned(folder.put_entry(id, &entry), warn);
         }
-        let document = self.put_blob(&name, &baked.document)?;
-        let entry = Entry { document, files, copies: baked.copies.clone(), report: baked.report.clone() };
-        self.put_entry(id, &entry)
+        Some(entry)
     }
 
-    /// Stores what is known of the job `id`, whose blobs are there.
-    ///
-    /// # Errors
-    /// [`CacheError::Io`].
-    pub fn put_entry(&self, id: &str, entry: &Entry) -> Result<(), CacheError> {
-        let path = self.path("jobs", id);
-        let bytes = entry.to_bytes().map_err(|e| failed(&path)(e.into()))?;
-        write_unsynced(&path, &bytes).map_err(failed(&path))
-    }
-
-    /// Stores the bytes of the output `name`.
-    ///
-    /// # Errors
-    /// [`CacheError::Io`].
-    pub fn put_blob(&self, name: &Path, bytes: &[u8]) -> Result<Stored, CacheError> {
-        let blake3 = digest(bytes);
-        let path = self.path("blobs", &blake3);
-        // Also over a blob that is there: it may be damaged.
-        write_unsynced(&path, bytes).map_err(failed(&path))?;
-        Ok(Stored { path: name.to_owned(), blake3, bytes: bytes.len() as u64 })
-    }
-
-    /// Marks the entry of the job `id` and its blobs as used, unless that was done within the hour: a run that has nothing
-    /// to do would write more than it reads.
-    pub fn touch(&self, id: &str, entry: &Entry) {
-        let now = SystemTime::now();
-        let marked = fs::metadata(self.path("jobs", id)).and_then(|facts| facts.modified());
-        if marked.is_ok_and(|marked| now.duration_since(marked).is_ok_and(|age| age < MARK_AGE)) {
-            return;
-        }
-        let blobs = entry.files.iter().chain([&entry.document]).map(|stored| self.path("blobs", &stored.blake3));
-        for path in blobs.chain([self.path("jobs", id)]) {
-            // Only the order of eviction depends on it.
-            let _ = File::open(path).and_then(|file| file.set_modified(now));
-        }
-    }
-
-    /// Removes what was not used for longest until at most `limit` bytes are left.
-    ///
-    /// # Errors
-    /// [`CacheError::Io`] where the folder cannot be listed.
-    pub fn trim(&self, limit: u64) -> Result<(), CacheError> {
-        let mut files = Vec::new();
-        for kind in ["jobs", "blobs"].map(|kind| self.root.join(kind)).iter().filter(|kind| kind.exists()) {
-            for entry in WalkDir::new(kind) {
-                // Other processes remove files too.
-                let Ok(entry) = entry else { continue };
-                let Ok(facts) = entry.metadata() else { continue };
-                if facts.is_file() {
-                    let used = facts.modified().map_err(failed(entry.path()))?;
-                    files.push((used, entry.into_path(), facts.len()));
+    /// The bytes of each of `wanted`, if all are there.
+    pub fn blobs(&self, wanted: &[&Stored], warn: Warn<'_>) -> Option<Vec<Vec<u8>>> {
+        let mut blobs = vec![None; wanted.len()];
+        if let Some(folder) = &self.folder {
+            for (blob, stored) in blobs.iter_mut().zip(wanted) {
+                *blob = told(folder.blob(&stored.blake3), warn);
+                if blob.is_none() && self.shared.is_none() {
+                    return None;
                 }
             }
         }
-        files.sort();
-        let mut total: u64 = files.iter().map(|(_, _, length)| length).sum();
-        for (_, path, length) in files {
-            if total <= limit {
-                break;
+        if let Some(shared) = &self.shared {
+            let missing: Vec<&Stored> =
+                wanted.iter().zip(&blobs).filter(|(_, b)| b.is_none()).map(|(s, _)| *s).collect();
+            let mut found = shared.blobs(&missing).into_iter();
+            for (blob, stored) in blobs.iter_mut().zip(wanted).filter(|(blob, _)| blob.is_none()) {
+                *blob = found.next().and_then(|found| told(found, warn));
+                if let (Some(folder), Some(bytes)) = (&self.folder, &blob) {
+                    warned(folder.put_blob(stored, bytes), warn);
+                }
             }
-            let _ = fs::remove_file(path);
-            total -= length;
         }
-        Ok(())
+        blobs.into_iter().collect()
     }
 
-    fn path(&self, kind: &str, name: &str) -> PathBuf {
-        self.root.join(kind).join(name.get(..2).unwrap_or("")).join(name)
+    /// Stores what the job `id` baked as `document`: blobs first, so that an entry's blobs are there.
+    pub fn put(&self, id: &str, document: &Path, baked: &Baked, warn: Warn<'_>) {
+        let entry = Entry::new(document, baked);
+        let blobs: Vec<&[u8]> =
+            baked.files.iter().map(|file| file.bytes.as_slice()).chain([baked.document.as_slice()]).collect();
+        if let Some(folder) = &self.folder {
+            let put = entry.stored().zip(&blobs).try_for_each(|(stored, bytes)| folder.put_blob(stored, bytes));
+            warned(put.and_then(|()| folder.put_entry(id, &entry)), warn);
+        }
+        if let Some(shared) = &self.shared {
+            warned(shared.put(id, &entry, &blobs), warn);
+        }
+    }
+
+    /// Puts what the folder has of the job `id` into the store, too.
+    pub fn share(&self, id: &str, entry: &Entry, warn: Warn<'_>) {
+        let (Some(folder), Some(shared)) = (&self.folder, &self.shared) else { return };
+        let blobs: Option<Vec<Vec<u8>>> =
+            entry.stored().map(|stored| told(folder.blob(&stored.blake3), warn)).collect();
+        if let Some(blobs) = blobs {
+            warned(shared.put(id, entry, &blobs.iter().map(Vec::as_slice).collect::<Vec<_>>()), warn);
+        }
+    }
+
+    /// Marks the entry of the job `id` and its blobs as used.
+    pub fn touch(&self, id: &str, entry: &Entry) {
+        if let Some(folder) = &self.folder {
+            folder.touch(id, entry);
+        }
+    }
+
+    /// Removes from the folder what was not used for longest until it has its size. What the store keeps is its own matter.
+    pub fn trim(&self, warn: Warn<'_>) {
+        if let Some(folder) = &self.folder {
+            warned(folder.trim(self.limit), warn);
+        }
     }
 }
 
-/// How exactly the order of eviction is known.
-const MARK_AGE: Duration = Duration::from_secs(3600);
+/// What was found; `warn` is told why nothing was.
+fn told<T>(found: Result<Option<T>, CacheError>, warn: Warn<'_>) -> Option<T> {
+    found.unwrap_or_else(|error| {
+        warn(error);
+        None
+    })
+}
 
-fn read(path: &Path) -> Result<Option<Vec<u8>>, CacheError> {
-    match fs::read(path) {
-        Ok(bytes) => Ok(Some(bytes)),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
-        Err(error) => Err(failed(path)(error)),
+fn warned(result: Result<(), CacheError>, warn: Warn<'_>) {
+    if let Err(error) = result {
+        warn(error);
     }
 }
-
-fn dropped(path: PathBuf) -> CacheError {
-    let _ = fs::remove_file(&path);
-    CacheError::Damaged { path }
-}
-
-fn failed(path: &Path) -> impl Fn(io::Error) -> CacheError {
-    let path = path.to_owned();
-    move |error| CacheError::Io { path: path.clone(), error }
-}
-
-#[cfg(test)]
-mod tests;

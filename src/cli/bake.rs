@@ -59,6 +59,10 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
         writeln!(err, "error: {reason}")?;
         Ok(Outcome::Usage)
     };
+    let cache = match args.cache.open() {
+        Ok(cache) => cache,
+        Err(reason) => return usage(err, &reason),
+    };
     let mut outcome = Outcome::Done;
     let (planned, failed, settings, configs, server) = match args.jobs.planned() {
         Some(Err(reason)) => return usage(err, &reason),
@@ -91,7 +95,7 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
         Err(reason) => return usage(err, &reason),
     };
     let work = Work {
-        cache: &args.cache,
+        cache: cache.as_ref(),
         settings: &settings,
         remote,
         check: &|job| args.jobs.check(job),

@@ -6,7 +6,6 @@ use std::time::Instant;
 use rayon::prelude::*;
 
 use super::Outcome;
-use super::cached::CacheOptions;
 use super::jobs::Planned;
 use super::progress::Progress;
 use super::report::Asset;
@@ -28,7 +27,7 @@ pub struct Worked {
 /// How jobs are run.
 pub struct Work<'a> {
     /// The cache.
-    pub cache: &'a CacheOptions,
+    pub cache: Option<&'a Cache>,
     /// Settings of the run: an asset tells its own where they are others.
     pub settings: &'a Settings,
     /// The server that bakes, if it is not this machine.
@@ -50,12 +49,21 @@ impl Work<'_> {
         err: &mut dyn Write,
         tell: &mut dyn FnMut(&Asset, &mut dyn Write) -> io::Result<()>,
     ) -> io::Result<Worked> {
-        // What a server bakes goes through a cache, be it for this run only.
-        let is_local = self.remote.is_none() || self.cache.cache.is_some();
-        let folder = if is_local { None } else { Some(tempfile::tempdir()?) };
-        let cache = folder.as_ref().map(|folder| Cache::new(folder.path())).or_else(|| self.cache.cache());
-        let errand =
-            self.remote.as_ref().zip(cache.as_ref()).map(|(options, cache)| (options, unknown(&planned, cache)));
+        // What a server bakes goes through a folder, be it for this run only.
+        let is_local = self.remote.is_none() || self.cache.is_some_and(|cache| cache.folder().is_some());
+        let scratch = if is_local { None } else { Some(tempfile::tempdir()?) };
+        let cache = match &scratch {
+            None => self.cache.cloned(),
+            Some(scratch) => Some(self.cache.cloned().unwrap_or_default().with_folder(scratch.path())),
+        };
+        let errand = match self.remote.as_ref().zip(cache.as_ref()) {
+            None => None,
+            Some((options, cache)) => {
+                let (jobs, warnings) = unknown(&planned, cache);
+                warnings.iter().try_for_each(|error| writeln!(err, "warning: {error}"))?;
+                Some((options, jobs))
+            }
+        };
         let remote = match errand.filter(|(_, jobs)| !jobs.is_empty()) {
             None => None,
             Some((options, jobs)) => match Remote::connect(options.clone()) {
@@ -77,17 +85,17 @@ impl Work<'_> {
                 Ok(())
             })
         };
-        match (&remote, &cache) {
-            (Some((remote, jobs)), Some(cache)) => {
+        match (&remote, cache.as_ref().and_then(Cache::folder)) {
+            (Some((remote, jobs)), Some(folder)) => {
                 let changed = |counts: Counts| progress.count(counts);
-                let errand = Errand { jobs: jobs.clone(), cache, check: self.check, changed: &changed };
+                let errand = Errand { jobs: jobs.clone(), folder, check: self.check, changed: &changed };
                 remote.ahead(&errand, publish)?;
             }
             _ => publish(&|_| None)?,
         }
         progress.finish();
         if let Some(cache) = cache.filter(|_| is_local) {
-            self.cache.trim(&cache, err)?;
+            cache.trim(&mut |error| drop(writeln!(err, "warning: {error}")));
         }
         let counts = remote.map_or_else(Counts::default, |(remote, _)| remote.counts());
         Ok(Worked { assets, outcome, remote: self.remote.as_ref().map(|_| counts) })
@@ -114,21 +122,24 @@ impl Work<'_> {
                 if origin.is_none() {
                     (self.check)(job).map_err(|error| told(&error))?;
                 }
-                let lookup = cache.map(|cache| Lookup::new(job, cache));
-                let prepared = plan::prepare(job, lookup, &|share| progress.set(index, share, name));
-                Ok((job, origin, prepared.map_err(|error| told(&error))?))
+                let mut lookup = cache.map(|cache| Lookup::new(job, cache));
+                if let Some(lookup) = lookup.as_mut().filter(|_| origin.is_some()) {
+                    lookup.share(job);
+                }
+                Ok((job, origin, plan::prepare(job, lookup, &|share| progress.set(index, share, name))))
             });
             (prepared, start.elapsed().as_secs_f64())
         };
         plan::in_order(planned.len(), rayon::current_num_threads(), prepare, |index, (prepared, seconds)| {
             let start = Instant::now();
             let name = &planned[index].name;
-            let mut warn = |error: &CacheError| {
+            let mut warn = |error: CacheError| {
+                let whose = if error.is_general() { String::new() } else { format!("{name}: ") };
                 // The bake does not depend on who reads this.
-                let _ = progress.suspend(|| writeln!(err, "warning: {name}: {error}"));
+                let _ = progress.suspend(|| writeln!(err, "warning: {whose}{error}"));
             };
             let result = prepared.and_then(|(job, origin, prepared)| {
-                let done = plan::finish(job, prepared, &mut places, cache, &mut warn);
+                let done = plan::finish(job, prepared, &mut places, &mut warn);
                 let done = done.and_then(|done| Ok((job.typed_settings()?, done))).map_err(|error| told(&error))?;
                 Ok((job, origin, done))
             });
@@ -152,8 +163,14 @@ impl Work<'_> {
     }
 }
 
-/// The jobs that `cache` does not know, with their indexes.
-fn unknown<'p>(planned: &'p [Planned], cache: &Cache) -> Vec<(usize, &'p Job)> {
+/// The jobs that `cache` does not know, with their indexes, and what is wrong with it.
+fn unknown<'p>(planned: &'p [Planned], cache: &Cache) -> (Vec<(usize, &'p Job)>, Vec<CacheError>) {
     let jobs = planned.par_iter().enumerate().filter_map(|(index, planned)| Some((index, planned.job.as_ref().ok()?)));
-    jobs.filter(|(_, job)| !matches!(cache.entry(&job.id), Ok(Some(_)))).collect()
+    let looked_up = jobs.map(|(index, job)| {
+        let mut warnings = Vec::new();
+        let is_known = cache.entry(&job.id, &mut |error| warnings.push(error)).is_some();
+        ((!is_known).then_some((index, job)), warnings)
+    });
+    let (jobs, warnings): (Vec<_>, Vec<_>) = looked_up.unzip();
+    (jobs.into_iter().flatten().collect(), warnings.into_iter().flatten().collect())
 }

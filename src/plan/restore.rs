@@ -1,6 +1,7 @@
 //! Outputs from the cache. What is in place already stays untouched.
 
-use std::path::Path;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
 use super::error::RunError;
 use super::job::{Job, JobInput, beside};
@@ -8,34 +9,57 @@ use super::run::{Done, Written};
 use crate::bake::{Places, PublishError, claim, read_file, write_file};
 use crate::cache::{Cache, CacheError, Entry, Stored};
 
-/// What a cache knows of a job.
+/// What a cache knows of a job, before anything is fetched.
 #[derive(Debug)]
-pub struct Lookup {
-    entry: Result<Option<Entry>, CacheError>,
-    /// Whether the outputs are there already.
-    is_in_place: bool,
+pub struct Lookup<'c> {
+    pub(super) cache: &'c Cache,
+    /// The entry, and which of its outputs are to be written.
+    entry: Option<(Entry, Vec<PathBuf>)>,
+    pub(super) warnings: Vec<CacheError>,
 }
 
-impl Lookup {
+/// All that a job is to write.
+#[derive(Debug)]
+pub struct Found {
+    entry: Entry,
+    /// Which of its outputs are not in place.
+    absent: Vec<PathBuf>,
+    /// The bytes of those that are no copies.
+    contents: BTreeMap<PathBuf, Vec<u8>>,
+}
+
+impl<'c> Lookup<'c> {
     /// Looks `job` up and hashes outputs that are there. Jobs may be looked up side by side.
-    pub fn new(job: &Job, cache: &Cache) -> Self {
-        let entry = cache.entry(&job.id);
-        let is_in_place = entry.as_ref().is_ok_and(|entry| entry.as_ref().is_some_and(|entry| is_in_place(job, entry)));
-        Self { entry, is_in_place }
+    pub fn new(job: &Job, cache: &'c Cache) -> Self {
+        let mut warnings = Vec::new();
+        let entry = cache.entry(&job.id, &mut |error| warnings.push(error));
+        let entry = entry.and_then(|entry| {
+            let digests: Option<Vec<&str>> = entry.copies.iter().map(|copy| digest(job, copy)).collect();
+            let copies = entry.copies.iter().zip(digests?);
+            let outputs = copies.chain(entry.stored().map(|stored| (&stored.path, stored.blake3.as_str())));
+            let absent = outputs.filter(|(path, digest)| !holds(&job.output.join(path), digest));
+            let absent = absent.map(|(path, _)| path.clone()).collect();
+            Some((entry, absent))
+        });
+        Self { cache, entry, warnings }
     }
 
-    /// Whether the cache has an entry of use.
-    pub fn is_found(&self) -> bool {
-        matches!(self.entry, Ok(Some(_)))
+    /// Puts what was found into the store that machines share: somebody else has baked it.
+    pub fn share(&mut self, job: &Job) {
+        if let Some((entry, _)) = &self.entry {
+            self.cache.share(&job.id, entry, &mut |error| self.warnings.push(error));
+        }
     }
-}
 
-fn is_in_place(job: &Job, entry: &Entry) -> bool {
-    let copies = entry.copies.iter().all(|copy| {
-        let digest = input(job, copy).and_then(|input| input.blake3.as_deref());
-        digest.is_some_and(|digest| holds(&job.output.join(copy), digest))
-    });
-    copies && entry.files.iter().chain([&entry.document]).all(|file| holds(&job.output.join(&file.path), &file.blake3))
+    /// Fetches what is to be written, if the cache has it all.
+    pub(super) fn fetch(&mut self, job: &Job) -> Option<Found> {
+        let (entry, absent) = self.entry.take()?;
+        let wanted: Vec<&Stored> = entry.stored().filter(|stored| absent.contains(&stored.path)).collect();
+        let blobs = self.cache.blobs(&wanted, &mut |error| self.warnings.push(error))?;
+        let contents = wanted.iter().map(|stored| stored.path.clone()).zip(blobs).collect();
+        self.cache.touch(&job.id, &entry);
+        Some(Found { entry, absent, contents })
+    }
 }
 
 /// The input that the document refers to as `file`.
@@ -44,60 +68,35 @@ fn input<'j>(job: &'j Job, file: &Path) -> Option<&'j JobInput> {
     job.inputs.iter().find(|input| input.path == path)
 }
 
-/// The outputs of `job`, if the cache has them all.
-pub fn restore(
-    job: &Job,
-    places: &mut Places,
-    cache: &Cache,
-    lookup: Lookup,
-    warn: &mut dyn FnMut(&CacheError),
-) -> Result<Option<Done>, RunError> {
-    let entry = match lookup.entry {
-        Ok(Some(entry)) => entry,
-        Ok(None) => return Ok(None),
-        Err(error) => {
-            warn(&error);
-            return Ok(None);
-        }
-    };
+fn digest<'j>(job: &'j Job, file: &Path) -> Option<&'j str> {
+    input(job, file)?.blake3.as_deref()
+}
+
+/// Writes what was `found` of `job`.
+pub fn restore(job: &Job, places: &mut Places, found: Found) -> Result<Done, RunError> {
+    let Found { entry, absent, contents } = found;
     let document = job.output.join(&entry.document.path);
     let files: Vec<&Path> = entry.files.iter().map(|file| file.path.as_path()).collect();
     claim(&files, &entry.copies, &document, &job.source, places)?;
-    let mut bytes = 0;
-    for copy in &entry.copies {
+    for copy in entry.copies.iter().filter(|copy| absent.contains(copy)) {
         let (from, to) = (beside(&job.source, copy), job.output.join(copy));
-        let Some((input, digest)) = input(job, copy).and_then(|input| Some((input, input.blake3.as_deref()?))) else {
-            return Ok(None);
-        };
-        bytes += input.bytes;
-        if !lookup.is_in_place && !holds(&to, digest) {
-            let content = read_file(&from).map_err(|error| PublishError::Copy { path: from.clone(), error })?;
-            if blake3::hash(&content).to_hex().as_str() != digest {
-                return Err(RunError::Changed { path: from });
-            }
-            write_file(&to, &content)?;
+        let content = read_file(&from).map_err(|error| PublishError::Copy { path: from.clone(), error })?;
+        if digest(job, copy) != Some(blake3::hash(&content).to_hex().as_str()) {
+            return Err(RunError::Changed { path: from });
+        }
+        write_file(&to, &content)?;
+    }
+    for stored in entry.stored() {
+        if let Some(content) = contents.get(&stored.path) {
+            write_file(&job.output.join(&stored.path), content)?;
         }
     }
-    // The document comes last: whoever sees it sees everything that it names.
-    for Stored { path, blake3, bytes: length } in entry.files.iter().chain([&entry.document]) {
-        let to = job.output.join(path);
-        bytes += length;
-        if !lookup.is_in_place && !holds(&to, blake3) {
-            match cache.blob(blake3) {
-                Ok(Some(content)) => write_file(&to, &content)?,
-                Ok(None) => return Ok(None),
-                Err(error) => {
-                    warn(&error);
-                    return Ok(None);
-                }
-            };
-        }
-    }
-    cache.touch(&job.id, &entry);
+    let copied: u64 = entry.copies.iter().filter_map(|copy| input(job, copy)).map(|input| input.bytes).sum();
+    let stored: u64 = entry.stored().map(|stored| stored.bytes).sum();
     let copies = entry.copies.iter().map(|copy| Written::copy(job, copy));
-    let files = entry.files.iter().chain([&entry.document]);
-    let written = copies.chain(files.map(|file| Written::new(job, &file.path, file.blake3.clone()))).collect();
-    Ok(Some(Done { output: document, bytes, written, report: entry.report, is_cached: true }))
+    let files = entry.stored().map(|file| Written::new(job, &file.path, file.blake3.clone()));
+    let written = copies.chain(files).collect();
+    Ok(Done { output: document, bytes: copied + stored, written, report: entry.report, is_cached: true })
 }
 
 /// Whether the file at `path` has these bytes.

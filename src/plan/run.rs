@@ -7,10 +7,10 @@ use std::sync::Mutex;
 
 use super::error::RunError;
 use super::job::{Job, beside};
-use super::restore::{Lookup, restore};
+use super::restore::{Found, Lookup, restore};
 use crate::bake::report::AssetReport;
 use crate::bake::{Baked, Places, Source, bake, publish, read_file};
-use crate::cache::{Cache, CacheError};
+use crate::cache::{CacheError, Warn};
 use crate::digest::digest;
 use crate::gltf::document::{Container, Document};
 
@@ -58,41 +58,39 @@ impl Written {
 
 /// The part of a job that needs neither the places of outputs nor other jobs.
 pub struct Prepared {
-    /// What a cache knows, if there is one.
-    lookup: Option<Lookup>,
-    /// What was baked, unless the cache has it.
-    baked: Option<Baked>,
+    outputs: Result<Outputs, RunError>,
+    warnings: Vec<CacheError>,
 }
 
-/// Bakes `job` in memory, unless its `lookup` found it. Jobs may be prepared side by side; `advance` is as in [`bake`].
-///
-/// # Errors
-/// [`RunError`]; other jobs are not concerned.
-pub fn prepare(job: &Job, lookup: Option<Lookup>, advance: &dyn Fn(f32)) -> Result<Prepared, RunError> {
-    let is_known = lookup.as_ref().is_some_and(Lookup::is_found);
-    Ok(Prepared { baked: if is_known { None } else { Some(baked(job, advance)?) }, lookup })
+enum Outputs {
+    Found(Box<Found>),
+    Baked(Box<Baked>),
 }
 
-/// Writes what was prepared; `warn` is told of entries of the cache that were dropped.
-///
-/// # Errors
-/// [`RunError`]; other jobs are not concerned.
-pub fn finish(
-    job: &Job,
-    prepared: Prepared,
-    places: &mut Places,
-    cache: Option<&Cache>,
-    warn: &mut dyn FnMut(&CacheError),
-) -> Result<Done, RunError> {
-    let restored = match cache.zip(prepared.lookup) {
-        None => None,
-        Some((cache, lookup)) => restore(job, places, cache, lookup, warn)?,
+/// Fetches the outputs of `job` if its `lookup` found it, and else bakes them and puts them into the cache, all in memory. Jobs
+/// may be prepared side by side; `advance` is as in [`bake`].
+pub fn prepare(job: &Job, mut lookup: Option<Lookup<'_>>, advance: &dyn Fn(f32)) -> Prepared {
+    let outputs = match lookup.as_mut().and_then(|lookup| lookup.fetch(job)) {
+        Some(found) => Ok(Outputs::Found(Box::new(found))),
+        None => baked(job, advance).map(|baked| {
+            if let Some(Lookup { cache, warnings, .. }) = &mut lookup {
+                cache.put(&job.id, &document(job, &baked), &baked, &mut |error| warnings.push(error));
+            }
+            Outputs::Baked(Box::new(baked))
+        }),
     };
-    let done = match (restored, prepared.baked) {
-        (Some(done), _) => done,
-        (None, Some(baked)) => written(job, &baked, places, cache, warn)?,
-        // The entry is there, and what it names is not.
-        (None, None) => written(job, &baked(job, &|_| ())?, places, cache, warn)?,
+    Prepared { outputs, warnings: lookup.map(|lookup| lookup.warnings).unwrap_or_default() }
+}
+
+/// Writes what was prepared; `warn` is told what is wrong with the cache.
+///
+/// # Errors
+/// [`RunError`], also of the bake; other jobs are not concerned.
+pub fn finish(job: &Job, prepared: Prepared, places: &mut Places, warn: Warn<'_>) -> Result<Done, RunError> {
+    prepared.warnings.into_iter().for_each(warn);
+    let done = match prepared.outputs? {
+        Outputs::Found(found) => restore(job, places, *found)?,
+        Outputs::Baked(baked) => written(job, &baked, places)?,
     };
     match job.missing_output() {
         None => Ok(done),
@@ -116,21 +114,15 @@ fn baked(job: &Job, advance: &dyn Fn(f32)) -> Result<Baked, RunError> {
     }
 }
 
-fn written(
-    job: &Job,
-    baked: &Baked,
-    places: &mut Places,
-    cache: Option<&Cache>,
-    warn: &mut dyn FnMut(&CacheError),
-) -> Result<Done, RunError> {
+/// Where the document goes.
+fn document(job: &Job, baked: &Baked) -> PathBuf {
     let extension = if baked.container == Container::Glb { "glb" } else { "gltf" };
-    let output = job.output.join(format!("{}.{extension}", job.stem()));
+    job.output.join(format!("{}.{extension}", job.stem()))
+}
+
+fn written(job: &Job, baked: &Baked, places: &mut Places) -> Result<Done, RunError> {
+    let output = document(job, baked);
     let bytes = publish(baked, &output, &job.source, places)?;
-    if let Some(cache) = cache
-        && let Err(error) = cache.put(&job.id, &output, baked)
-    {
-        warn(&error);
-    }
     let copies = baked.copies.iter().map(|copy| Written::copy(job, copy));
     let files = baked.files.iter().map(|file| Written::new(job, &file.path, digest(&file.bytes)));
     let document = Written { path: output.clone(), source: output.clone(), blake3: digest(&baked.document) };

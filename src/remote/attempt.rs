@@ -85,7 +85,7 @@ impl Remote {
         let attempts = || Attempts::new(retries, tally);
         let mut skip_cache = false;
         if let Some(result) = attempts().at(|| known(action.digest, client)).await? {
-            match collect(&result, sent, errand.cache, client, retries, tally).await {
+            match collect(&result, sent, errand.folder, client, retries, tally).await {
                 Ok(failures) if result.exit_code != PASSING => {
                     add(&tally.cached, 1);
                     return Ok((Origin::Cached, failures));
@@ -127,7 +127,7 @@ impl Remote {
         };
         add(number, 1);
         let result = response.result.unwrap_or_default();
-        let failures = collect(&result, sent, errand.cache, client, retries, tally).await?;
+        let failures = collect(&result, sent, errand.folder, client, retries, tally).await?;
         Ok((origin, failures))
     }
 }

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::cache::Cache;
+use crate::cache::Folder;
 use crate::plan::{Job, RunError};
 
 /// Jobs for a server.
@@ -10,7 +10,7 @@ pub struct Errand<'a> {
     /// The jobs, each with its index.
     pub jobs: Vec<(usize, &'a Job)>,
     /// Where their outputs are put.
-    pub cache: &'a Cache,
+    pub folder: &'a Folder,
     /// Whether a job may be run.
     pub check: &'a (dyn Fn(&Job) -> Result<(), RunError> + Sync),
     /// Told when numbers change.

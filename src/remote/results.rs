@@ -14,7 +14,8 @@ use super::download::{fetch, fetch_one};
 use super::error::RemoteError;
 use super::outcome::JobFailure;
 use super::tally::Tally;
-use crate::cache::{Cache, Entry};
+use crate::cache::{Entry, Folder, Stored};
+use crate::digest::digest;
 use crate::plan::{Job, Moved, OutputKind};
 
 /// A job of an action.
@@ -28,14 +29,14 @@ pub struct Sent<'a> {
 /// The longest list of files, entry or text of a tool that is read.
 const MOST: u64 = 64 << 20;
 
-/// Puts what `result` has of `jobs` into `cache`. Returns why jobs failed that are not in it, in the order of `jobs`.
+/// Puts what `result` has of `jobs` into the cache in `folder`. Returns why jobs failed that are not in it, in the order of `jobs`.
 ///
 /// # Errors
 /// [`RemoteError`] where not every job has its outputs or a reason.
 pub async fn collect(
     result: &api::ActionResult,
     jobs: &[Sent<'_>],
-    cache: &Cache,
+    folder: &Folder,
     client: &Client,
     retries: u32,
     tally: &Tally,
@@ -70,23 +71,25 @@ pub async fn collect(
             (None, Some(reason)) => Some(JobFailure { message: here(reason, sent), is_passing: result.exit_code == 4 }),
         });
     }
-    let mut blobs: BTreeMap<Digest, (&str, &Path)> = BTreeMap::new();
-    for stored in entries.iter().flatten().flat_map(|entry| entry.files.iter().chain([&entry.document])) {
-        let digest = left.blobs.get(&stored.blake3).filter(|digest| digest.bytes == stored.bytes);
-        blobs.insert(*digest.ok_or(RemoteError::NoOutputs)?, (&stored.blake3, &stored.path));
+    let mut blobs: BTreeMap<Digest, &Stored> = BTreeMap::new();
+    for stored in entries.iter().flatten().flat_map(|entry| entry.stored()) {
+        let sent = left.blobs.get(&stored.blake3).filter(|sent| sent.bytes == stored.bytes);
+        blobs.insert(*sent.ok_or(RemoteError::NoOutputs)?, stored);
     }
     let digests: Vec<Digest> = blobs.keys().copied().collect();
     let kept = |error: crate::cache::CacheError| RemoteError::Cache(error.to_string());
-    let mut keep = |digest: Digest, content: &[u8]| {
-        let Some((blake3, path)) = blobs.get(&digest) else { return Ok(()) };
-        let stored = cache.put_blob(path, content).map_err(kept)?;
-        if stored.blake3 == *blake3 { Ok(()) } else { Err(RemoteError::Damaged { digest: (*blake3).to_owned() }) }
+    let mut keep = |sent: Digest, content: &[u8]| {
+        let Some(stored) = blobs.get(&sent) else { return Ok(()) };
+        if digest(content) != stored.blake3 {
+            return Err(RemoteError::Damaged { digest: stored.blake3.clone() });
+        }
+        folder.put_blob(stored, content).map_err(kept)
     };
     fetch(&digests, client, retries, tally, &mut keep).await?;
     // Entries come last: whoever finds one finds its blobs.
     for (sent, entry) in jobs.iter().zip(&entries) {
         if let Some(entry) = entry {
-            cache.put_entry(&sent.job.id, entry).map_err(kept)?;
+            folder.put_entry(&sent.job.id, entry).map_err(kept)?;
         }
     }
     Ok(failures)

@@ -188,3 +188,10 @@ fn a_cache_that_cannot_be_written_does_not_stop_a_bake() {
         run.err
     );
 }
+
+#[test]
+#[cfg(not(feature = "object-store"))]
+fn a_build_without_stores_says_so() {
+    let run = roughcast_in(scene().path(), "bake assets -o out --cache s3://bucket/prefix".split(' '));
+    assert!(run.code == 2 && run.err.contains("build it with --features object-store"), "{}", run.err);
+}

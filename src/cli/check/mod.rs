@@ -263,8 +263,15 @@ impl Args {
                 return Ok(Outcome::Usage);
             }
         }
-        let settings = Settings::default();
-        let work = Work { cache: &self.cache, settings: &settings, remote: None, check: &|_| Ok(()), is_quiet: false };
+        let cache = match self.cache.open() {
+            Ok(cache) => cache,
+            Err(error) => {
+                writeln!(err, "error: {error}")?;
+                return Ok(Outcome::Usage);
+            }
+        };
+        let (cache, settings) = (cache.as_ref(), Settings::default());
+        let work = Work { cache, settings: &settings, remote: None, check: &|_| Ok(()), is_quiet: false };
         let worked = work.run(jobs::plan(&assets), err, &mut |asset, err| match &asset.output {
             Some(output) if asset.status != Status::Failed => {
                 writeln!(err, "baked again: {} -> {output}", asset.input)

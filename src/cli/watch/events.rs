@@ -159,11 +159,6 @@ impl<'w> Teller<'w> {
         writeln!(self.err, "warning: {warning}")
     }
 
-    /// Where complaints go.
-    pub fn err(&mut self) -> &mut dyn Write {
-        self.err
-    }
-
     /// What changed since the last time, if anything.
     pub fn take_changes(&mut self) -> Option<Changes> {
         let changes = std::mem::take(&mut self.changes);

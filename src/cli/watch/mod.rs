@@ -80,6 +80,13 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
             return Ok(Outcome::Usage);
         }
     };
+    let cache = match args.cache.open() {
+        Ok(cache) => cache,
+        Err(reason) => {
+            writeln!(err, "error: {reason}")?;
+            return Ok(Outcome::Usage);
+        }
+    };
     let (wake, woken) = Wake::channel();
     let stop = Arc::new(AtomicBool::new(false));
     let (told, waking) = (stop.clone(), wake.clone());
@@ -95,7 +102,7 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
     let mut poll = args.poll.map(Duration::from_millis);
     let mut wakes = None;
     let hook = args.on_change.as_deref().map(|command| Hook::new(command, args.json));
-    let mut round = Round::new(args, output);
+    let mut round = Round::new(args, output, cache);
     let mut is_first = true;
     loop {
         // First watch, then look: nothing happens in between.

@@ -47,12 +47,12 @@ pub struct Next {
 }
 
 impl Round {
-    /// Nothing is known yet; outputs go to `output`.
-    pub fn new(args: &Args, output: PathBuf) -> Self {
+    /// Nothing is known yet; outputs go to `output` and are kept in `cache`.
+    pub fn new(args: &Args, output: PathBuf, cache: Option<Cache>) -> Self {
         let window = Duration::from_millis(args.settle);
         let mut round = Self {
             output,
-            cache: args.cache.cache(),
+            cache,
             window,
             settling: Settling::new(window),
             assets: BTreeMap::new(),
@@ -101,7 +101,7 @@ impl Round {
                 baking = start.elapsed();
                 teller.removed(&self.ledger.sweep())?;
                 if let Some(cache) = &self.cache {
-                    args.cache.trim(cache, teller.err())?;
+                    cache.trim(&mut |error| drop(teller.warn(&error)));
                 }
             }
             if !is_same_scope {
@@ -119,7 +119,7 @@ impl Round {
     }
 
     fn current_scope(&self, args: &Args) -> Scope {
-        let ours: Vec<&Path> = [self.output.as_path()].into_iter().chain(args.cache.cache.as_deref()).collect();
+        let ours: Vec<&Path> = [self.output.as_path()].into_iter().chain(args.cache.folder()).collect();
         let files = self.assets.values().flat_map(|asset| &asset.seen).map(|(path, _)| path.as_path());
         Scope::new(&args.folder, &ours, files.chain(self.configs.keys().map(PathBuf::as_path)))
     }
@@ -239,13 +239,14 @@ impl Round {
             }
             let (start, name) = (Instant::now(), input.path.display().to_string());
             let id = job.as_ref().ok().map(|job| job.id.clone());
-            let mut warn = |error: &CacheError| {
+            let mut warn = |error: CacheError| {
+                let whose = if error.is_general() { String::new() } else { format!("{name}: ") };
                 // The bake does not depend on who reads this.
-                let _ = teller.warn(&format_args!("{name}: {error}"));
+                let _ = teller.warn(&format_args!("{whose}{error}"));
             };
             let result = job.and_then(|job| {
-                let prepared = plan::prepare(&job, lookup, &|_| ())?;
-                plan::finish(&job, prepared, &mut places, self.cache.as_ref(), &mut warn)
+                let prepared = plan::prepare(&job, lookup, &|_| ());
+                plan::finish(&job, prepared, &mut places, &mut warn)
             });
             let state = match result {
                 Ok(done) => {

@@ -1,6 +1,6 @@
 use super::*;
-use crate::bake::NewFile;
 use crate::bake::report::AssetReport;
+use crate::bake::{Baked, NewFile};
 use crate::gltf::document::Container;
 
 fn baked(content: &[u8]) -> Baked {
@@ -13,10 +13,18 @@ fn baked(content: &[u8]) -> Baked {
     }
 }
 
-fn filled() -> (tempfile::TempDir, Cache, Entry) {
+fn put(folder: &Folder, id: &str, document: &str, content: &[u8]) {
+    let baked = baked(content);
+    let entry = Entry::new(Path::new(document), &baked);
+    folder.put_blob(&entry.files[0], content).expect("a writable folder");
+    folder.put_blob(&entry.document, &baked.document).expect("a writable folder");
+    folder.put_entry(id, &entry).expect("a writable folder");
+}
+
+fn filled() -> (tempfile::TempDir, Folder, Entry) {
     let folder = tempfile::tempdir().expect("a folder");
-    let cache = Cache::new(folder.path());
-    cache.put("0123", Path::new("out/a.gltf"), &baked(b"texels")).expect("a writable folder");
+    let cache = Folder::new(folder.path());
+    put(&cache, "0123", "out/a.gltf", b"texels");
     let entry = cache.entry("0123").expect("an entry").expect("an entry");
     (folder, cache, entry)
 }
@@ -66,7 +74,7 @@ fn no_entry_writes_outside_the_output_folder() {
 #[test]
 fn what_was_not_used_for_longest_goes_first() {
     let (folder, cache, first) = filled();
-    cache.put("4567", Path::new("out/b.gltf"), &baked(b"other texels")).expect("a writable folder");
+    put(&cache, "4567", "out/b.gltf", b"other texels");
     let second = cache.entry("4567").expect("an entry").expect("an entry");
     let old = SystemTime::now() - 2 * MARK_AGE;
     for entry in WalkDir::new(folder.path()).into_iter().flatten().filter(|e| e.file_type().is_file()) {
@@ -87,5 +95,5 @@ fn what_was_not_used_for_longest_goes_first() {
     assert!(gone && cache.entry("0123").expect("an entry").is_some());
     cache.trim(0).expect("a folder");
     assert!(cache.entry("0123").expect("no damage").is_none());
-    assert!(Cache::new(&folder.path().join("missing")).trim(0).is_ok());
+    assert!(Folder::new(&folder.path().join("missing")).trim(0).is_ok());
 }
