@@ -29,8 +29,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         for input in &job.inputs {
             println!("cargo::rerun-if-changed={}", input.path.display());
         }
-        let prepared = prepare(&job, None, &|_| {})?;
-        finish(&job, prepared, &mut places, None, &mut |_| {})?;
+        let prepared = prepare(&job, None, &|_| {});
+        finish(&job, prepared, &mut places, &mut |_| {})?;
     }
     Ok(())
 }

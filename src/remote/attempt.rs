@@ -86,12 +86,12 @@ impl Remote {
         let mut skip_cache = false;
         if let Some(result) = attempts().at(|| known(action.digest, client)).await? {
             match collect(&result, sent, errand.folder, client, retries, tally).await {
-                Ok(failures) if result.exit_code != PASSING => {
+                Ok(failures) if !failures.iter().flatten().any(|failure| failure.is_passing) => {
                     add(&tally.cached, 1);
                     return Ok((Origin::Cached, failures));
                 }
                 Err(error @ RemoteError::Cache(_)) => return Err(error),
-                // Blobs that are gone, or a result of no use: a worker makes another.
+                // Blobs that are gone, failures that may pass, or a result of no use: a worker makes another.
                 _ => skip_cache = true,
             }
         }
@@ -134,9 +134,6 @@ impl Remote {
 
 /// What an action may take where the caller does not say.
 const LIMIT: std::time::Duration = std::time::Duration::from_secs(3600);
-
-/// The exit code of a tool that failed and may not fail again.
-const PASSING: i32 = 4;
 
 /// The outcomes of `jobs` jobs.
 fn told(results: Result<Results, RemoteError>, jobs: usize) -> Vec<Outcome> {

@@ -68,7 +68,9 @@ pub async fn collect(
         failures.push(match (entry, reason) {
             (Some(_), _) => None,
             (None, None) => return Err(RemoteError::NoOutputs),
-            (None, Some(reason)) => Some(JobFailure { message: here(reason, sent), is_passing: result.exit_code == 4 }),
+            (None, Some(reason)) => {
+                Some(JobFailure { message: here(&reason.message, sent), is_passing: reason.is_passing })
+            }
         });
     }
     let mut blobs: BTreeMap<Digest, &Stored> = BTreeMap::new();
@@ -159,7 +161,7 @@ fn is_of(entry: &Entry, moved: &Moved) -> bool {
 }
 
 /// Why jobs failed, by their sources: what the report of the tool says.
-fn reasons(report: &[u8]) -> Result<HashMap<String, String>, RemoteError> {
+fn reasons(report: &[u8]) -> Result<HashMap<String, JobFailure>, RemoteError> {
     #[derive(Deserialize)]
     struct Report {
         assets: Vec<Asset>,
@@ -168,10 +170,13 @@ fn reasons(report: &[u8]) -> Result<HashMap<String, String>, RemoteError> {
     struct Asset {
         input: String,
         error: Option<String>,
+        #[serde(default)]
+        retry: bool,
     }
     let report: Report = serde_json::from_slice(report)
         .map_err(|error| RemoteError::Malformed { expected: "the report of the tool", found: error.to_string() })?;
-    Ok(report.assets.into_iter().filter_map(|asset| Some((asset.input, asset.error?))).collect())
+    let reason = |asset: Asset| Some((asset.input, JobFailure { message: asset.error?, is_passing: asset.retry }));
+    Ok(report.assets.into_iter().filter_map(reason).collect())
 }
 
 /// `reason` with the paths that the files have here.

@@ -17,7 +17,7 @@ fn baked(content: &[u8]) -> Baked {
 }
 
 fn shared(folder: &Path) -> Shared {
-    Shared::open(&url::Url::from_file_path(folder).expect("an absolute path").to_string()).expect("a folder")
+    Shared::open(url::Url::from_file_path(folder).expect("an absolute path").as_ref()).expect("a folder")
 }
 
 fn put(shared: &Shared, id: &str, content: &[u8]) -> Entry {
