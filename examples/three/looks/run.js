@@ -11,6 +11,9 @@ export const KINDS = ['plane', 'sphere'];
 /** In units of a sphere of radius 1; the plane's side is 4. */
 export const DISTANCES = [3, 5, 8, 13, 21, 34];
 
+/** $MODEL, for the portable bake. */
+const PORTABLE = process.env.MODEL ? ['--model', process.env.MODEL] : [];
+
 const DATA = path.join(repository, '../shared/data/maps');
 /** Bare maps, with a metal's roughness. */
 const MAPS = { aluminium: ['aluminium_normal.png', 0.316], wool: ['wool_normal.png', 0.45], water: ['water_normals.png', 0.2] };
@@ -52,7 +55,8 @@ export async function forEach(folder, chosen, use) {
   for (const [name, source] of chosen) {
     mkdirSync(path.join(folder, name));
     for (const profile of ['portable', 'pyramid', 'both']) {
-      roughcast('bake', source, '-o', path.join(folder, name, profile), '--profile', profile, '--gltf', 'strict', '--quiet');
+      const model = profile === 'portable' ? PORTABLE : [];
+      roughcast('bake', source, '-o', path.join(folder, name, profile), '--profile', profile, ...model, '--gltf', 'strict', '--quiet');
     }
   }
   const folders = Object.fromEntries(['looks', 'page', 'plugin'].map((name) => [name, path.join(example, name)]));
