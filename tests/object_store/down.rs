@@ -5,7 +5,8 @@ use std::net::{TcpListener, TcpStream};
 use std::thread;
 
 use super::machine::{Bake, Machine, alone};
-use super::moto::{Moto, URL, free_port};
+use super::moto::{Moto, URL};
+use super::ports::free_port;
 
 /// A server that treats each connection as `treat` does; returns where it is.
 fn server(treat: impl Fn(TcpStream) + Send + 'static) -> String {

@@ -5,4 +5,6 @@ mod down;
 mod folder;
 mod machine;
 mod moto;
+#[path = "../common/ports.rs"]
+mod ports;
 mod sharing;

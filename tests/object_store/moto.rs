@@ -1,11 +1,13 @@
 //! moto's S3 server on loopback, and just enough of HTTP to look into its buckets.
 
 use std::io::{Read, Write};
-use std::net::{TcpListener, TcpStream};
+use std::net::TcpStream;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
+
+use super::ports::free_port;
 
 /// Of every test, on a server of its own.
 pub const URL: &str = "s3://bucket/some/prefix";
@@ -87,9 +89,4 @@ impl Drop for Moto {
     fn drop(&mut self) {
         self.kill();
     }
-}
-
-/// Where nothing listens.
-pub fn free_port() -> u16 {
-    TcpListener::bind("127.0.0.1:0").and_then(|listener| listener.local_addr()).expect("a port").port()
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::env;
 use std::fs::{self, File};
 use std::io::{self, Write};
-use std::net::TcpListener;
+use std::net::TcpStream;
 use std::os::unix::process::CommandExt as _;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
@@ -13,6 +13,7 @@ use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
 
+use super::ports::free_port;
 use super::scene::{ROUGHCAST, Run, Scene, hashes};
 
 /// A node, killed when this is dropped.
@@ -34,14 +35,24 @@ impl Node {
         }
         let folder = tempfile::tempdir().expect("a folder");
         let options: Vec<String> = options.iter().map(|&option| option.to_owned()).collect();
-        // Who takes the port in between makes the test fail, and not pass.
-        let port = TcpListener::bind("127.0.0.1:0").and_then(|port| port.local_addr()).expect("a port").port();
+        let port = free_port();
         let process = spawn(&folder, port, &options);
-        Some(Self { process, port, options, folder })
+        let mut node = Self { process, port, options, folder };
+        node.wait();
+        Some(node)
     }
 
     fn url(&self) -> String {
         format!("grpc://127.0.0.1:{}", self.port)
+    }
+
+    /// Waits until it answers: a node with another behind it ends if that one does not answer within 9 seconds.
+    fn wait(&mut self) {
+        while TcpStream::connect(("127.0.0.1", self.port)).is_err() {
+            let exit = self.process.try_wait().expect("a process");
+            assert!(exit.is_none(), "casd ended with {exit:?}: {}", self.log());
+            sleep(Duration::from_millis(20));
+        }
     }
 
     /// What it says.
@@ -53,6 +64,7 @@ impl Node {
     fn restart(&mut self) {
         self.kill();
         self.process = spawn(&self.folder, self.port, &self.options);
+        self.wait();
     }
 
     fn kill(&mut self) {
@@ -146,10 +158,20 @@ fn many() -> (Scene, BTreeMap<String, String>) {
     (scene, local)
 }
 
-/// Waits until the caller's cache has the results of a job.
-fn first_result(scene: &Scene) {
+/// A run whose cache is in `cache`.
+fn start(scene: &Scene, url: &str, options: &str) -> Child {
+    let mut command = scene.command(url, &format!("--cache cache --model isotropic {options}"));
+    command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the command starts")
+}
+
+/// Waits until that cache has the results of a job.
+fn first_result(scene: &Scene, client: &mut Child) {
     let start = Instant::now();
     while hashes(&scene.path("cache/jobs")).is_empty() {
+        if client.try_wait().expect("a process").is_some() {
+            let said = client.stderr.take().map(io::read_to_string);
+            panic!("the run ended without results: {said:?}");
+        }
         assert!(start.elapsed() < Duration::from_secs(300), "no job ends");
         sleep(Duration::from_millis(20));
     }
@@ -159,9 +181,8 @@ fn first_result(scene: &Scene) {
 fn a_server_that_is_killed_and_started_again() {
     let Some(mut node) = Node::start(&["--jobs=1"]) else { return };
     let (scene, expected) = many();
-    let mut command = scene.command(&node.url(), "--cache cache --model isotropic");
-    let client = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the command starts");
-    first_result(&scene);
+    let mut client = start(&scene, &node.url(), "");
+    first_result(&scene, &mut client);
     node.restart();
     let run = Run::from(client.wait_with_output().expect("an exit"));
     // It waits half a minute for a server.
@@ -176,11 +197,12 @@ fn two_nodes_one_of_which_is_killed() {
     let url = format!("http://127.0.0.1:{}", worker.port);
     let remotes = ["cas", "ac", "exec"].map(|service| format!("--{service}-remote={url}"));
     let [cas, ac, exec] = remotes.each_ref().map(String::as_str);
-    let Some(front) = Node::start(&[cas, ac, exec, "--exec-hybrid-queue-limit=1", "--jobs=1"]) else { return };
+    // Each of its calls to a node that is gone would take 9 seconds.
+    let options = [cas, ac, exec, "--exec-hybrid-queue-limit=1", "--jobs=1", "--retry-limit=1", "--retry-delay=100"];
+    let Some(front) = Node::start(&options) else { return };
     let (scene, expected) = many();
-    let mut command = scene.command(&front.url(), "--cache cache --model isotropic --remote-retries 3");
-    let client = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the command starts");
-    first_result(&scene);
+    let mut client = start(&scene, &front.url(), "--remote-retries 3");
+    first_result(&scene, &mut client);
     assert!(worker.log().contains("Execute request"), "all is done by the other node");
     worker.kill();
     let run = Run::from(client.wait_with_output().expect("an exit"));

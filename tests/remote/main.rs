@@ -5,6 +5,8 @@ mod casd;
 mod fake;
 mod faults;
 mod hostile;
+#[path = "../common/ports.rs"]
+mod ports;
 mod scene;
 mod secrets;
 mod services;

@@ -1,0 +1,18 @@
+//! Ports of servers that cannot choose one themselves.
+
+use std::net::TcpListener;
+use std::process;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+/// A port of loopback where nothing listens, another one on each call. It is below those that systems give to callers, so
+/// that no connection of a test takes it before the server does.
+pub fn free_port() -> u16 {
+    static CALLS: AtomicU32 = AtomicU32::new(0);
+    loop {
+        let call = CALLS.fetch_add(1, Ordering::Relaxed);
+        let port = 20_000 + (process::id().wrapping_mul(64).wrapping_add(call) % 12_000) as u16;
+        if TcpListener::bind(("127.0.0.1", port)).is_ok() {
+            return port;
+        }
+    }
+}
