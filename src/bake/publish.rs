@@ -151,27 +151,26 @@ pub fn claim(
 }
 
 /// Writes `baked` to `document`, and its files beside it. Files that it only refers to are copied from the folder of
-/// `source`. The document comes last: whoever sees it sees everything that it names. Returns the bytes written.
+/// `source`. The document comes last: whoever sees it sees everything that it names.
 ///
 /// # Errors
 /// [`PublishError`]; `source` is never overwritten, nor any file that is copied: see [`claim`].
-pub fn publish(baked: &Baked, document: &Path, source: &Path, places: &mut Places) -> Result<u64, PublishError> {
+pub fn publish(baked: &Baked, document: &Path, source: &Path, places: &mut Places) -> Result<(), PublishError> {
     let files: Vec<&Path> = baked.files.iter().map(|file| file.path.as_path()).collect();
     claim(&files, &baked.copies, document, source, places)?;
     let source_folder = source.parent().unwrap_or(Path::new(""));
     let folder = document.parent().unwrap_or(Path::new(""));
     let below: BTreeSet<&Path> = files.iter().filter_map(|file| file.parent()).chain([Path::new("")]).collect();
     below.iter().for_each(|below| sweep(&Path::new(".").join(folder).join(below)));
-    let mut total = 0;
     for copy in &baked.copies {
         let path = source_folder.join(copy);
         let bytes = read_file(&path).map_err(|error| PublishError::Copy { path, error })?;
-        total += write_file(&folder.join(copy), &bytes)?;
+        write_file(&folder.join(copy), &bytes)?;
     }
     for NewFile { path, bytes } in &baked.files {
-        total += write_file(&folder.join(path), bytes)?;
+        write_file(&folder.join(path), bytes)?;
     }
-    Ok(total + write_file(document, &baked.document)?)
+    write_file(document, &baked.document)
 }
 
 /// Largest input file: no map within the limits on texels is as large.
@@ -204,13 +203,12 @@ pub fn check_file(path: &Path) -> io::Result<u64> {
     Ok(facts.len())
 }
 
-/// Writes a file whole or not at all, making its folder; returns its length.
+/// Writes a file whole or not at all, making its folder.
 ///
 /// # Errors
 /// [`PublishError::Write`].
-pub fn write_file(path: &Path, bytes: &[u8]) -> Result<u64, PublishError> {
-    put(path, bytes, true).map_err(|error| PublishError::Write { path: path.to_owned(), error })?;
-    Ok(bytes.len() as u64)
+pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), PublishError> {
+    put(path, bytes, true).map_err(|error| PublishError::Write { path: path.to_owned(), error })
 }
 
 /// The same for what is verified when it is read: it need not survive the machine.

@@ -79,17 +79,16 @@ impl Cache {
         blobs.into_iter().collect()
     }
 
-    /// Stores what the job `id` baked as `document`: blobs first, so that an entry's blobs are there.
-    pub fn put(&self, id: &str, document: &Path, baked: &Baked, warn: Warn<'_>) {
-        let entry = Entry::new(document, baked);
+    /// Stores `entry`, which is what the job `id` baked: blobs first, so that an entry's blobs are there.
+    pub fn put(&self, id: &str, entry: &Entry, baked: &Baked, warn: Warn<'_>) {
         let blobs: Vec<&[u8]> =
             baked.files.iter().map(|file| file.bytes.as_slice()).chain([baked.document.as_slice()]).collect();
         if let Some(folder) = &self.folder {
             let put = entry.stored().zip(&blobs).try_for_each(|(stored, bytes)| folder.put_blob(stored, bytes));
-            warned(put.and_then(|()| folder.put_entry(id, &entry)), warn);
+            warned(put.and_then(|()| folder.put_entry(id, entry)), warn);
         }
         if let Some(shared) = &self.shared {
-            warned(shared.put(id, &entry, &blobs), warn);
+            warned(shared.put(id, entry, &blobs), warn);
         }
     }
 

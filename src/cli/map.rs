@@ -223,8 +223,8 @@ fn bake(args: &Args, settings: &Settings) -> Result<Written, MapCommandError> {
     }
     let mut written = Vec::new();
     for (path, bytes) in files {
-        let length = write_file(&path, &bytes)?;
-        written.push((path, length));
+        write_file(&path, &bytes)?;
+        written.push((path, bytes.len() as u64));
     }
     Ok(Written { baked, files: written })
 }

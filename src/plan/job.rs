@@ -142,6 +142,12 @@ impl Job {
         self.outputs.iter().find(|output| !is_there(output)).map(|output| output.path.as_path())
     }
 
+    /// The input that the document refers to as `file`.
+    pub fn input(&self, file: &Path) -> Option<&JobInput> {
+        let path = beside(&self.source, file);
+        self.inputs.iter().find(|input| input.path == path)
+    }
+
     /// Name of the asset without its extension; outputs are named after it.
     pub fn stem(&self) -> String {
         stem(&self.source)

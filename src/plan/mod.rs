@@ -19,7 +19,7 @@ pub use in_order::in_order;
 pub use job::{Job, JobInput, JobOutput, OutputKind, folded};
 pub use merge::{Merged, Open, Told};
 pub use moved::Moved;
-pub use restore::Lookup;
+pub use restore::{Lookup, holds};
 pub use run::{Done, Prepared, Written, finish, prepare};
 pub use shard::Shard;
 

@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use super::error::RunError;
-use super::job::{Job, JobInput, beside};
-use super::run::{Done, Written};
+use super::job::{Job, beside};
 use crate::bake::{Places, PublishError, claim, read_file, write_file};
 use crate::cache::{Cache, CacheError, Entry, Stored};
+use crate::digest::digest;
 
 /// What a cache knows of a job, before anything is fetched.
 #[derive(Debug)]
@@ -34,7 +34,7 @@ impl<'c> Lookup<'c> {
         let mut warnings = Vec::new();
         let entry = cache.entry(&job.id, &mut |error| warnings.push(error));
         let entry = entry.and_then(|entry| {
-            let digests: Option<Vec<&str>> = entry.copies.iter().map(|copy| digest(job, copy)).collect();
+            let digests: Option<Vec<&str>> = entry.copies.iter().map(|copy| planned(job, copy)).collect();
             let copies = entry.copies.iter().zip(digests?);
             let outputs = copies.chain(entry.stored().map(|stored| (&stored.path, stored.blake3.as_str())));
             let absent = outputs.filter(|(path, digest)| !holds(&job.output.join(path), digest));
@@ -62,18 +62,8 @@ impl<'c> Lookup<'c> {
     }
 }
 
-/// The input that the document refers to as `file`.
-fn input<'j>(job: &'j Job, file: &Path) -> Option<&'j JobInput> {
-    let path = beside(&job.source, file);
-    job.inputs.iter().find(|input| input.path == path)
-}
-
-fn digest<'j>(job: &'j Job, file: &Path) -> Option<&'j str> {
-    input(job, file)?.blake3.as_deref()
-}
-
-/// Writes what was `found` of `job`.
-pub fn restore(job: &Job, places: &mut Places, found: Found) -> Result<Done, RunError> {
+/// Writes what was `found` of `job`; returns what was known of it.
+pub fn restore(job: &Job, places: &mut Places, found: Found) -> Result<Entry, RunError> {
     let Found { entry, absent, contents } = found;
     let document = job.output.join(&entry.document.path);
     let files: Vec<&Path> = entry.files.iter().map(|file| file.path.as_path()).collect();
@@ -81,7 +71,7 @@ pub fn restore(job: &Job, places: &mut Places, found: Found) -> Result<Done, Run
     for copy in entry.copies.iter().filter(|copy| absent.contains(copy)) {
         let (from, to) = (beside(&job.source, copy), job.output.join(copy));
         let content = read_file(&from).map_err(|error| PublishError::Copy { path: from.clone(), error })?;
-        if digest(job, copy) != Some(blake3::hash(&content).to_hex().as_str()) {
+        if planned(job, copy) != Some(digest(&content).as_str()) {
             return Err(RunError::Changed { path: from });
         }
         write_file(&to, &content)?;
@@ -91,15 +81,15 @@ pub fn restore(job: &Job, places: &mut Places, found: Found) -> Result<Done, Run
             write_file(&job.output.join(&stored.path), content)?;
         }
     }
-    let copied: u64 = entry.copies.iter().filter_map(|copy| input(job, copy)).map(|input| input.bytes).sum();
-    let stored: u64 = entry.stored().map(|stored| stored.bytes).sum();
-    let copies = entry.copies.iter().map(|copy| Written::copy(job, copy));
-    let files = entry.stored().map(|file| Written::new(job, &file.path, file.blake3.clone()));
-    let written = copies.chain(files).collect();
-    Ok(Done { output: document, bytes: copied + stored, written, report: entry.report, is_cached: true })
+    Ok(entry)
 }
 
-/// Whether the file at `path` has these bytes.
-fn holds(path: &Path, digest: &str) -> bool {
-    read_file(path).is_ok_and(|bytes| blake3::hash(&bytes).to_hex().as_str() == digest)
+/// BLAKE3 of what the document refers to as `file`, as it was when the job was planned.
+fn planned<'j>(job: &'j Job, file: &Path) -> Option<&'j str> {
+    job.input(file)?.blake3.as_deref()
+}
+
+/// Whether the file at `path` has the bytes whose BLAKE3 in hex is `blake3`.
+pub fn holds(path: &Path, blake3: &str) -> bool {
+    read_file(path).is_ok_and(|bytes| digest(&bytes) == blake3)
 }

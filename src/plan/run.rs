@@ -10,7 +10,7 @@ use super::job::{Job, beside};
 use super::restore::{Found, Lookup, restore};
 use crate::bake::report::AssetReport;
 use crate::bake::{Baked, Places, Source, bake, publish, read_file};
-use crate::cache::{CacheError, Warn};
+use crate::cache::{CacheError, Entry, Warn};
 use crate::digest::digest;
 use crate::gltf::document::{Container, Document};
 
@@ -40,19 +40,21 @@ pub struct Written {
     pub blake3: String,
 }
 
-impl Written {
-    /// A new file in the job's output folder.
-    pub fn new(job: &Job, path: &Path, blake3: String) -> Self {
-        let path = job.output.join(path);
-        Self { source: path.clone(), path, blake3 }
-    }
-
-    /// A copy of what the document refers to as `file`.
-    pub fn copy(job: &Job, file: &Path) -> Self {
-        let source = beside(&job.source, file);
-        let input = job.inputs.iter().find(|input| input.path == source);
-        let blake3 = input.and_then(|input| input.blake3.clone()).unwrap_or_default();
-        Self { path: job.output.join(file), source, blake3 }
+impl Done {
+    /// What is written: the files that `entry` lists.
+    fn new(job: &Job, entry: Entry, is_cached: bool) -> Self {
+        let copies = entry.copies.iter().map(|copy| {
+            let (blake3, bytes) = job.input(copy).map_or((None, 0), |input| (input.blake3.clone(), input.bytes));
+            let (path, source) = (job.output.join(copy), beside(&job.source, copy));
+            (Written { path, source, blake3: blake3.unwrap_or_default() }, bytes)
+        });
+        let files = entry.stored().map(|stored| {
+            let path = job.output.join(&stored.path);
+            (Written { source: path.clone(), path, blake3: stored.blake3.clone() }, stored.bytes)
+        });
+        let (written, bytes): (Vec<Written>, Vec<u64>) = copies.chain(files).unzip();
+        let output = job.output.join(&entry.document.path);
+        Self { output, bytes: bytes.iter().sum(), written, report: entry.report, is_cached }
     }
 }
 
@@ -64,7 +66,7 @@ pub struct Prepared {
 
 enum Outputs {
     Found(Box<Found>),
-    Baked(Box<Baked>),
+    Baked(Box<(Entry, Baked)>),
 }
 
 /// Fetches the outputs of `job` if its `lookup` found it, and else bakes them and puts them into the cache, all in memory. Jobs
@@ -73,10 +75,11 @@ pub fn prepare(job: &Job, mut lookup: Option<Lookup<'_>>, advance: &dyn Fn(f32))
     let outputs = match lookup.as_mut().and_then(|lookup| lookup.fetch(job)) {
         Some(found) => Ok(Outputs::Found(Box::new(found))),
         None => baked(job, advance).map(|baked| {
+            let entry = Entry::new(&name(job, &baked), &baked);
             if let Some(Lookup { cache, warnings, .. }) = &mut lookup {
-                cache.put(&job.id, &document(job, &baked), &baked, &mut |error| warnings.push(error));
+                cache.put(&job.id, &entry, &baked, &mut |error| warnings.push(error));
             }
-            Outputs::Baked(Box::new(baked))
+            Outputs::Baked(Box::new((entry, baked)))
         }),
     };
     Prepared { outputs, warnings: lookup.map(|lookup| lookup.warnings).unwrap_or_default() }
@@ -89,8 +92,12 @@ pub fn prepare(job: &Job, mut lookup: Option<Lookup<'_>>, advance: &dyn Fn(f32))
 pub fn finish(job: &Job, prepared: Prepared, places: &mut Places, warn: Warn<'_>) -> Result<Done, RunError> {
     prepared.warnings.into_iter().for_each(warn);
     let done = match prepared.outputs? {
-        Outputs::Found(found) => restore(job, places, *found)?,
-        Outputs::Baked(baked) => written(job, &baked, places)?,
+        Outputs::Found(found) => Done::new(job, restore(job, places, *found)?, true),
+        Outputs::Baked(baked) => {
+            let (entry, baked) = *baked;
+            publish(&baked, &job.output.join(&entry.document.path), &job.source, places)?;
+            Done::new(job, entry, false)
+        }
     };
     match job.missing_output() {
         None => Ok(done),
@@ -114,20 +121,10 @@ fn baked(job: &Job, advance: &dyn Fn(f32)) -> Result<Baked, RunError> {
     }
 }
 
-/// Where the document goes.
-fn document(job: &Job, baked: &Baked) -> PathBuf {
+/// The name of the document.
+fn name(job: &Job, baked: &Baked) -> PathBuf {
     let extension = if baked.container == Container::Glb { "glb" } else { "gltf" };
-    job.output.join(format!("{}.{extension}", job.stem()))
-}
-
-fn written(job: &Job, baked: &Baked, places: &mut Places) -> Result<Done, RunError> {
-    let output = document(job, baked);
-    let bytes = publish(baked, &output, &job.source, places)?;
-    let copies = baked.copies.iter().map(|copy| Written::copy(job, copy));
-    let files = baked.files.iter().map(|file| Written::new(job, &file.path, digest(&file.bytes)));
-    let document = Written { path: output.clone(), source: output.clone(), blake3: digest(&baked.document) };
-    let written = copies.chain(files).chain([document]).collect();
-    Ok(Done { output, bytes, written, report: baked.report.clone(), is_cached: false })
+    format!("{}.{extension}", job.stem()).into()
 }
 
 /// The files of a job: what is read must be what was hashed.

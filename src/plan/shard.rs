@@ -65,7 +65,7 @@ mod tests {
 
     fn job(name: usize, cost: u64) -> Job {
         Job {
-            id: blake3::hash(&name.to_le_bytes()).to_hex().to_string(),
+            id: crate::digest::digest(&name.to_le_bytes()),
             source: PathBuf::from(format!("{name}.gltf")),
             output: PathBuf::new(),
             settings: Map::new(),

@@ -4,8 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::bake::read_file;
-use crate::plan::{Written, folded};
+use crate::plan::{Written, folded, holds};
 
 /// Who has which outputs.
 #[derive(Debug, Default)]
@@ -68,8 +67,7 @@ impl Ledger {
         let mut removed = Vec::new();
         for (path, asset) in std::mem::take(&mut self.orphans) {
             let Some(Output { blake3, base, .. }) = self.outputs.remove(&path) else { continue };
-            let is_ours = read_file(&path).is_ok_and(|bytes| blake3::hash(&bytes).to_hex().as_str() == blake3);
-            if !is_ours || fs::remove_file(&path).is_err() {
+            if !holds(&path, &blake3) || fs::remove_file(&path).is_err() {
                 continue;
             }
             let base = folded(&base);
