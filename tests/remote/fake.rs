@@ -4,12 +4,15 @@
 use std::collections::HashMap;
 use std::fs;
 use std::net::{SocketAddr, TcpListener};
+use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 use std::process::Command;
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::thread;
 
 use bazel_remote_apis::build::bazel::remote::execution::v2 as re;
+use bazel_remote_apis::google::bytestream::byte_stream_server::ByteStreamServer;
+use bazel_remote_apis::google::longrunning::Operation;
 use prost::Message;
 use re::action_cache_server::ActionCacheServer;
 use re::capabilities_server::CapabilitiesServer;
@@ -17,8 +20,8 @@ use re::content_addressable_storage_server::ContentAddressableStorageServer;
 use re::execution_server::ExecutionServer;
 use sha2::{Digest as _, Sha256};
 use tokio::sync::oneshot;
+use tonic::Status;
 use tonic::transport::Server;
-use tonic::{Code, Status};
 
 /// What a server does wrong, and how often.
 #[derive(Default)]
@@ -47,8 +50,8 @@ pub struct State {
     pub blobs: Mutex<HashMap<String, Vec<u8>>>,
     pub actions: Mutex<HashMap<String, re::ActionResult>>,
     pub faults: Mutex<Faults>,
-    /// Executions that have ended.
-    pub operations: Mutex<super::services::Operations>,
+    /// Executions that have ended, by their names.
+    pub operations: Mutex<HashMap<String, Operation>>,
     /// How often each call was made, and each blob was written.
     pub calls: Mutex<HashMap<String, u32>>,
 }
@@ -90,7 +93,7 @@ impl Fake {
                             .max_decoding_message_size(16 << 20),
                     )
                     .add_service(ExecutionServer::from_arc(Arc::clone(&serving)))
-                    .add_service(super::services::ByteStreamServer::from_arc(serving));
+                    .add_service(ByteStreamServer::from_arc(serving));
                 let ended = async {
                     let _ = stopped.await;
                 };
@@ -135,11 +138,11 @@ impl State {
     pub fn call<T>(&self, name: &'static str, request: &tonic::Request<T>) -> Result<(), Status> {
         *self.calls.lock().expect("calls").entry(name.to_owned()).or_default() += 1;
         let mut faults = self.faults.lock().expect("faults");
-        if let Some((header, value)) = faults.header
-            && request.metadata().get(header).and_then(|found| found.to_str().ok()) != Some(value)
-        {
+        if let Some((header, value)) = faults.header {
             let found = request.metadata().get(header).and_then(|found| found.to_str().ok()).unwrap_or("nothing");
-            return Err(Status::new(Code::Unauthenticated, format!("{header} is {found}")));
+            if found != value {
+                return Err(Status::unauthenticated(format!("{header} is {found}")));
+            }
         }
         match faults.unavailable.get_mut(name) {
             Some(left) if *left > 0 => {
@@ -162,10 +165,14 @@ impl State {
         self.blobs.lock().expect("blobs").get(hash).cloned()
     }
 
+    /// A blob that an execution needs.
+    fn input(&self, digest: Option<&re::Digest>) -> Result<Vec<u8>, Status> {
+        let found = digest.and_then(|digest| self.get(&digest.hash));
+        found.ok_or_else(|| Status::failed_precondition("a blob is missing"))
+    }
+
     fn message<M: Message + Default>(&self, digest: Option<&re::Digest>) -> Result<M, Status> {
-        let missing = || Status::failed_precondition("a blob is missing");
-        let bytes = self.get(&digest.ok_or_else(missing)?.hash).ok_or_else(missing)?;
-        M::decode(bytes.as_slice()).map_err(|error| Status::invalid_argument(error.to_string()))
+        M::decode(self.input(digest)?.as_slice()).map_err(|error| Status::invalid_argument(error.to_string()))
     }
 
     /// Runs an action.
@@ -203,12 +210,8 @@ impl State {
         let folder: re::Directory = self.message(folder)?;
         fs::create_dir_all(to).expect("a folder");
         for file in &folder.files {
-            let missing = || Status::failed_precondition("an input is missing");
-            let bytes = self.get(&file.digest.as_ref().ok_or_else(missing)?.hash).ok_or_else(missing)?;
-            fs::write(to.join(&file.name), bytes).expect("a file");
-            #[cfg(unix)]
+            fs::write(to.join(&file.name), self.input(file.digest.as_ref())?).expect("a file");
             if file.is_executable {
-                use std::os::unix::fs::PermissionsExt;
                 fs::set_permissions(to.join(&file.name), fs::Permissions::from_mode(0o755)).expect("a file");
             }
         }

@@ -1,7 +1,5 @@
 //! The calls of the API, as the server in this process answers them.
 
-use std::collections::HashMap;
-
 use bazel_remote_apis::build::bazel::remote::execution::v2 as re;
 use bazel_remote_apis::google::bytestream::byte_stream_server::ByteStream;
 use bazel_remote_apis::google::bytestream::{
@@ -14,9 +12,7 @@ use prost::Message;
 use tokio_stream::{Empty, Iter};
 use tonic::{Request, Response, Status, Streaming, async_trait};
 
-use super::fake::State;
-
-pub use bazel_remote_apis::google::bytestream::byte_stream_server::ByteStreamServer;
+use super::fake::{Faults, State};
 
 type Answer<T> = Result<Response<T>, Status>;
 
@@ -197,7 +193,7 @@ impl re::execution_server::Execution for State {
         let broken = || known(vec![Ok(queued.clone()), Err(Status::unavailable("the connection broke"))]);
         let (is_lost, is_broken, is_evicted) = {
             let mut faults = self.faults.lock().expect("faults");
-            let mut once = |left: fn(&mut super::fake::Faults) -> &mut u32| {
+            let mut once = |left: fn(&mut Faults) -> &mut u32| {
                 let left = left(&mut faults);
                 let is_due = *left > 0;
                 *left -= u32::from(is_due);
@@ -211,7 +207,7 @@ impl re::execution_server::Execution for State {
         if is_evicted {
             self.blobs.lock().expect("blobs").clear();
         }
-        let change = self.faults.lock().expect("faults").result;
+        let change = self.faults.lock().expect("faults").result.unwrap_or(|_, result| result);
         let response = match tokio::task::block_in_place(|| self.run(&digest)) {
             Err(status) => re::ExecuteResponse {
                 status: Some(rpc::Status {
@@ -222,7 +218,7 @@ impl re::execution_server::Execution for State {
                 ..re::ExecuteResponse::default()
             },
             Ok(result) => {
-                let result = change.map_or(Ok(result.clone()), |change| Ok::<_, Status>(change(self, result)))?;
+                let result = change(self, result);
                 if result.exit_code == 0 {
                     self.actions.lock().expect("actions").insert(digest.hash.clone(), result.clone());
                 }
@@ -253,10 +249,7 @@ impl State {
 
     /// A blob that a client reads.
     fn read_blob(&self, hash: &str) -> Option<Vec<u8>> {
-        let change = self.faults.lock().expect("faults").read;
-        self.get(hash).map(|bytes| change.map_or(bytes.clone(), |change| change(bytes)))
+        let change = self.faults.lock().expect("faults").read.unwrap_or(|bytes| bytes);
+        self.get(hash).map(change)
     }
 }
-
-/// What is known of executions, by their names.
-pub type Operations = HashMap<String, Operation>;

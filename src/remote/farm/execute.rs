@@ -7,8 +7,6 @@ use super::api;
 use super::client::{Client, MAX_MESSAGE};
 use super::digest::Digest;
 use super::error::RemoteError;
-use super::retry::Attempts;
-use super::tally::Tally;
 
 /// What the server knows of `action` already.
 ///
@@ -40,8 +38,6 @@ pub async fn execute(
     action: Digest,
     skip_cache_lookup: bool,
     client: &Client,
-    retries: u32,
-    tally: &Tally,
     running: &(dyn Fn() + Sync),
 ) -> Result<api::ExecuteResponse, RemoteError> {
     let mut service = api::ExecutionClient::new(client.service()).max_decoding_message_size(MAX_MESSAGE);
@@ -55,7 +51,7 @@ pub async fn execute(
     };
     let failed = |call| move |status: Status| client.error(call, &status);
     let mut stream = service.execute(request).await.map_err(failed("Execute"))?.into_inner();
-    let mut attempts = Attempts::new(retries, tally);
+    let mut attempts = client.attempts();
     let mut name = String::new();
     loop {
         let broken = match stream.message().await {

@@ -8,9 +8,8 @@ use tokio::sync::watch;
 
 use super::error::RemoteError;
 use super::group::{Group, groups};
-use super::outcome::{Errand, JobFailure, Origin, Outcome, Wait};
 use super::server::Remote;
-use super::tally::{Tally, add, take};
+use crate::remote::{Counts, Errand, JobFailure, Origin, Outcome, Wait};
 
 impl Remote {
     /// Runs the jobs of `errand` while `then` runs, which may wait for each. When `then` ends, what is left is given up.
@@ -21,7 +20,7 @@ impl Remote {
             senders.insert(*index, sender);
             receivers.insert(*index, Mutex::new(receiver));
         }
-        add(&self.tally.queued, errand.jobs.len() as u64);
+        self.client.count(|counts| counts.queued += errand.jobs.len() as u64);
         let groups = groups(&errand.jobs);
         let threads = self.options.jobs.clamp(1, groups.len().max(1));
         let queue = Mutex::new((groups.into_iter(), senders));
@@ -59,10 +58,12 @@ impl Remote {
         let advance = |to: Stage| {
             let mut stage = stage.lock().unwrap_or_else(PoisonError::into_inner);
             if *stage != to {
-                stage.leave(&self.tally, group.len() as u64);
-                to.enter(&self.tally, group.len() as u64);
+                self.client.count(|counts| {
+                    *stage.number(counts) -= group.len() as u64;
+                    *to.number(counts) += group.len() as u64;
+                });
                 *stage = to;
-                (errand.changed)(self.tally.counts());
+                (errand.changed)(self.counts());
             }
         };
         let running = || advance(Stage::Running);
@@ -73,7 +74,7 @@ impl Remote {
             }
         };
         let known = outcomes.iter().filter(|outcome| matches!(outcome, Ok(Origin::Cached))).count();
-        add(&self.tally.known, known as u64);
+        self.client.count(|counts| counts.known += known as u64);
         advance(Stage::Done);
         outcomes
     }
@@ -97,19 +98,12 @@ enum Stage {
 }
 
 impl Stage {
-    fn enter(self, tally: &Tally, jobs: u64) {
+    /// How many jobs are there.
+    fn number(self, counts: &mut Counts) -> &mut u64 {
         match self {
-            Self::Queued => add(&tally.queued, jobs),
-            Self::Running => add(&tally.running, jobs),
-            Self::Done => add(&tally.done, jobs),
-        }
-    }
-
-    fn leave(self, tally: &Tally, jobs: u64) {
-        match self {
-            Self::Queued => take(&tally.queued, jobs),
-            Self::Running => take(&tally.running, jobs),
-            Self::Done => take(&tally.done, jobs),
+            Self::Queued => &mut counts.queued,
+            Self::Running => &mut counts.running,
+            Self::Done => &mut counts.done,
         }
     }
 }

@@ -7,11 +7,11 @@ use std::sync::{Mutex, PoisonError};
 use super::api;
 use super::digest::{Blob, Digest};
 use super::error::RemoteError;
-use super::options::Options;
 use super::tree::Tree;
 use crate::bake::read_file;
 use crate::digest::digest;
 use crate::plan::{Moved, Plan};
+use crate::remote::Options;
 
 /// The folder that an action puts its results in: that of a cache.
 pub const RESULTS: &str = "cache";

@@ -3,8 +3,8 @@
 use std::future::Future;
 use std::time::Duration;
 
+use super::client::Client;
 use super::error::RemoteError;
-use super::tally::{Tally, add};
 
 /// How long to wait before the second attempt.
 const FIRST: Duration = Duration::from_millis(250);
@@ -13,16 +13,16 @@ const FIRST: Duration = Duration::from_millis(250);
 const LONGEST: Duration = Duration::from_secs(15);
 
 /// Attempts at something.
-pub struct Attempts<'t> {
+pub struct Attempts<'c> {
     left: u32,
     wait: Duration,
-    tally: &'t Tally,
+    client: &'c Client,
 }
 
-impl<'t> Attempts<'t> {
-    /// The first, and at most `retries` more.
-    pub fn new(retries: u32, tally: &'t Tally) -> Self {
-        Self { left: retries, wait: FIRST, tally }
+impl<'c> Attempts<'c> {
+    /// The first, and at most `retries` more, which `client` counts.
+    pub fn new(retries: u32, client: &'c Client) -> Self {
+        Self { left: retries, wait: FIRST, client }
     }
 
     /// Waits for the next attempt after `error`.
@@ -34,7 +34,7 @@ impl<'t> Attempts<'t> {
             return Err(error);
         }
         self.left -= 1;
-        add(&self.tally.retries, 1);
+        self.client.count(|counts| counts.retries += 1);
         // Callers that were refused together do not come back together.
         let wait = self.wait.mul_f64(0.5 + 0.5 * fraction());
         self.wait = (2 * self.wait).min(LONGEST);

@@ -4,11 +4,9 @@ use super::action::{Action, assemble};
 use super::error::RemoteError;
 use super::execute::{execute, known};
 use super::group::Group;
-use super::outcome::{Errand, JobFailure, Origin, Outcome};
 use super::results::{Sent, collect};
-use super::retry::Attempts;
 use super::server::Remote;
-use super::tally::add;
+use crate::remote::{Errand, JobFailure, Origin, Outcome};
 
 /// Where results come from, and for each job why it has none.
 type Results = (Origin, Vec<Option<JobFailure>>);
@@ -80,14 +78,13 @@ impl Remote {
         action: &Action,
         running: &(dyn Fn() + Sync),
     ) -> Result<Results, RemoteError> {
-        let (client, tally, retries) = (&self.client, &self.tally, self.options.retries);
-        add(&tally.actions, 1);
-        let attempts = || Attempts::new(retries, tally);
+        let client = &self.client;
+        client.count(|counts| counts.actions += 1);
         let mut skip_cache = false;
-        if let Some(result) = attempts().at(|| known(action.digest, client)).await? {
-            match collect(&result, sent, errand.folder, client, retries, tally).await {
+        if let Some(result) = client.attempts().at(|| known(action.digest, client)).await? {
+            match collect(&result, sent, errand.folder, client).await {
                 Ok(failures) if !failures.iter().flatten().any(|failure| failure.is_passing) => {
-                    add(&tally.cached, 1);
+                    client.count(|counts| counts.cached += 1);
                     return Ok((Origin::Cached, failures));
                 }
                 Err(error @ RemoteError::Cache(_)) => return Err(error),
@@ -95,7 +92,7 @@ impl Remote {
                 _ => skip_cache = true,
             }
         }
-        let mut attempts = attempts();
+        let mut attempts = client.attempts();
         loop {
             let error = match self.run(errand, sent, action, &mut skip_cache, running).await {
                 Ok(results) => return Ok(results),
@@ -116,18 +113,18 @@ impl Remote {
         skip_cache: &mut bool,
         running: &(dyn Fn() + Sync),
     ) -> Result<Results, RemoteError> {
-        let (client, tally, retries) = (&self.client, &self.tally, self.options.retries);
-        self.uploads.send(&action.blobs, client, retries, tally).await?;
-        let response = execute(action.digest, *skip_cache, client, retries, tally, running).await?;
+        let client = &self.client;
+        self.uploads.send(&action.blobs, client).await?;
+        let response = execute(action.digest, *skip_cache, client, running).await?;
         // Whatever is wrong with this result: the next is to be another.
         *skip_cache = true;
-        let (origin, number) = match response.cached_result {
-            true => (Origin::Cached, &tally.cached),
-            false => (Origin::Executed, &tally.executed),
-        };
-        add(number, 1);
+        let origin = if response.cached_result { Origin::Cached } else { Origin::Executed };
+        client.count(|counts| match origin {
+            Origin::Cached => counts.cached += 1,
+            Origin::Executed => counts.executed += 1,
+        });
         let result = response.result.unwrap_or_default();
-        let failures = collect(&result, sent, errand.folder, client, retries, tally).await?;
+        let failures = collect(&result, sent, errand.folder, client).await?;
         Ok((origin, failures))
     }
 }

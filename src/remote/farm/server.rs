@@ -8,10 +8,8 @@ use super::action::Digests;
 use super::client::Client;
 use super::digest::Blob;
 use super::error::RemoteError;
-use super::options::Options;
-use super::outcome::Counts;
-use super::tally::Tally;
 use super::upload::Uploads;
+use crate::remote::{Counts, Options};
 
 /// A server, and what it has been sent.
 pub struct Remote {
@@ -22,7 +20,6 @@ pub struct Remote {
     pub(super) tool: Blob,
     pub(super) digests: Digests,
     pub(super) uploads: Uploads,
-    pub(super) tally: Tally,
     /// Why the server is taken to be gone, once it is: what was not begun by then need not find out again.
     pub(super) gone: OnceLock<RemoteError>,
 }
@@ -38,14 +35,13 @@ impl Remote {
         // These move bytes; everything else is done by the threads that wait for it.
         let mut builder = Builder::new_multi_thread();
         let runtime = builder.worker_threads(2).enable_all().build().map_err(|e| RemoteError::Start(e.into()))?;
-        let tally = Tally::default();
-        let client = runtime.block_on(Client::connect(&options, &tally))?;
+        let client = runtime.block_on(Client::connect(&options))?;
         let (digests, uploads) = (Digests::default(), Uploads::default());
-        Ok(Self { runtime, client, options, tool, digests, uploads, tally, gone: OnceLock::new() })
+        Ok(Self { runtime, client, options, tool, digests, uploads, gone: OnceLock::new() })
     }
 
     /// What was done so far.
     pub fn counts(&self) -> Counts {
-        self.tally.counts()
+        self.client.count(|counts| *counts)
     }
 }

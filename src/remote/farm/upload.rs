@@ -9,8 +9,7 @@ use super::api;
 use super::client::Client;
 use super::digest::{Blob, Digest};
 use super::error::RemoteError;
-use super::retry::{Attempts, random};
-use super::tally::{Tally, add};
+use super::retry::random;
 
 /// Digests per question: a message of 4 MiB holds some 50 000.
 const QUESTION: usize = 10_000;
@@ -49,12 +48,12 @@ impl Drop for Claim<'_> {
 
 impl Uploads {
     /// Sees to it that the server has all of `blobs`. Returns when it has them, whoever sent them.
-    pub async fn send(&self, blobs: &[Blob], client: &Client, retries: u32, tally: &Tally) -> Result<(), RemoteError> {
+    pub async fn send(&self, blobs: &[Blob], client: &Client) -> Result<(), RemoteError> {
         loop {
             let (claim, others) = self.claim(blobs);
             if !claim.blobs.is_empty() {
-                let missing = Attempts::new(retries, tally).at(|| missing(&claim.blobs, client)).await?;
-                send(&missing, client, retries, tally).await?;
+                let missing = client.attempts().at(|| missing(&claim.blobs, client)).await?;
+                send(&missing, client).await?;
                 let mut states = self.states();
                 for blob in claim.blobs.iter().filter(|blob| blob.is_file()) {
                     states.insert(blob.digest, State::There);
@@ -123,7 +122,7 @@ async fn missing(blobs: &[Blob], client: &Client) -> Result<Vec<Blob>, RemoteErr
     Ok(found)
 }
 
-async fn send(blobs: &[Blob], client: &Client, retries: u32, tally: &Tally) -> Result<(), RemoteError> {
+async fn send(blobs: &[Blob], client: &Client) -> Result<(), RemoteError> {
     let (mut batch, mut bytes) = (Vec::new(), 0);
     for blob in blobs {
         // A digest and framing besides.
@@ -131,22 +130,24 @@ async fn send(blobs: &[Blob], client: &Client, retries: u32, tally: &Tally) -> R
         if cost > client.batch / 2 {
             let _room = client.room(blob.digest.bytes).await;
             let content = blob.read()?;
-            Attempts::new(retries, tally).at(|| write(blob.digest, &content, client)).await?;
-            add(&tally.uploaded_blobs, 1);
-            add(&tally.uploaded_bytes, blob.digest.bytes);
+            client.attempts().at(|| write(blob.digest, &content, client)).await?;
+            client.count(|counts| {
+                counts.uploaded_blobs += 1;
+                counts.uploaded_bytes += blob.digest.bytes;
+            });
             continue;
         }
         if bytes + cost > client.batch {
-            send_batch(&std::mem::take(&mut batch), client, retries, tally).await?;
+            send_batch(&std::mem::take(&mut batch), client).await?;
             bytes = 0;
         }
         batch.push(blob);
         bytes += cost;
     }
-    send_batch(&batch, client, retries, tally).await
+    send_batch(&batch, client).await
 }
 
-async fn send_batch(blobs: &[&Blob], client: &Client, retries: u32, tally: &Tally) -> Result<(), RemoteError> {
+async fn send_batch(blobs: &[&Blob], client: &Client) -> Result<(), RemoteError> {
     if blobs.is_empty() {
         return Ok(());
     }
@@ -172,9 +173,11 @@ async fn send_batch(blobs: &[&Blob], client: &Client, retries: u32, tally: &Tall
             None => Ok(()),
         }
     };
-    Attempts::new(retries, tally).at(update).await?;
-    add(&tally.uploaded_blobs, blobs.len() as u64);
-    add(&tally.uploaded_bytes, bytes);
+    client.attempts().at(update).await?;
+    client.count(|counts| {
+        counts.uploaded_blobs += blobs.len() as u64;
+        counts.uploaded_bytes += bytes;
+    });
     Ok(())
 }
 

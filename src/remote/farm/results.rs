@@ -12,11 +12,10 @@ use super::client::Client;
 use super::digest::Digest;
 use super::download::{fetch, fetch_one};
 use super::error::RemoteError;
-use super::outcome::JobFailure;
-use super::tally::Tally;
 use crate::cache::{Entry, Folder, Stored};
 use crate::digest::digest;
 use crate::plan::{Job, Moved, OutputKind};
+use crate::remote::JobFailure;
 
 /// A job of an action.
 pub struct Sent<'a> {
@@ -38,16 +37,12 @@ pub async fn collect(
     jobs: &[Sent<'_>],
     folder: &Folder,
     client: &Client,
-    retries: u32,
-    tally: &Tally,
 ) -> Result<Vec<Option<JobFailure>>, RemoteError> {
     let text = |raw: &[u8], digest: &Option<api::Digest>| {
         let (raw, digest) = (raw.to_vec(), digest.as_ref().and_then(Digest::from_api));
         async move {
             match digest {
-                Some(digest) if raw.is_empty() && digest.bytes <= MOST => {
-                    fetch_one(digest, client, retries, tally).await
-                }
+                Some(digest) if raw.is_empty() && digest.bytes <= MOST => fetch_one(digest, client).await,
                 _ => Ok(raw),
             }
         }
@@ -60,8 +55,8 @@ pub async fn collect(
             return Err(RemoteError::Tool { code, text: end(&text) });
         }
     };
-    let left = left(result, client, retries, tally).await?;
-    let entries = entries(&left, jobs, client, retries, tally).await?;
+    let left = left(result, client).await?;
+    let entries = entries(&left, jobs, client).await?;
     let mut failures = Vec::with_capacity(jobs.len());
     for (sent, entry) in jobs.iter().zip(&entries) {
         let reason = reasons.get(sent.moved.job.source.to_string_lossy().as_ref());
@@ -87,7 +82,7 @@ pub async fn collect(
         }
         folder.put_blob(stored, content).map_err(kept)
     };
-    fetch(&digests, client, retries, tally, &mut keep).await?;
+    fetch(&digests, client, &mut keep).await?;
     // Entries come last: whoever finds one finds its blobs.
     for (sent, entry) in jobs.iter().zip(&entries) {
         if let Some(entry) = entry {
@@ -104,11 +99,11 @@ struct Left {
     blobs: HashMap<String, Digest>,
 }
 
-async fn left(result: &api::ActionResult, client: &Client, retries: u32, tally: &Tally) -> Result<Left, RemoteError> {
+async fn left(result: &api::ActionResult, client: &Client) -> Result<Left, RemoteError> {
     let folder = result.output_directories.iter().find(|folder| folder.path == RESULTS);
     let digest = folder.and_then(|folder| folder.tree_digest.as_ref()).and_then(Digest::from_api);
     let Some(digest) = digest.filter(|digest| digest.bytes <= MOST) else { return Ok(Left::default()) };
-    let bytes = fetch_one(digest, client, retries, tally).await?;
+    let bytes = fetch_one(digest, client).await?;
     let tree = api::Tree::decode(bytes.as_slice())
         .map_err(|error| RemoteError::Malformed { expected: "a tree of outputs", found: error.to_string() })?;
     let folders: HashMap<Digest, &api::Directory> =
@@ -129,13 +124,7 @@ async fn left(result: &api::ActionResult, client: &Client, retries: u32, tally: 
 }
 
 /// What the worker knows of each job. Entries that are none, or of another job, count as absent.
-async fn entries(
-    left: &Left,
-    jobs: &[Sent<'_>],
-    client: &Client,
-    retries: u32,
-    tally: &Tally,
-) -> Result<Vec<Option<Entry>>, RemoteError> {
+async fn entries(left: &Left, jobs: &[Sent<'_>], client: &Client) -> Result<Vec<Option<Entry>>, RemoteError> {
     let digest_of = |sent: &Sent<'_>| left.jobs.get(&sent.job.id).copied().filter(|digest| digest.bytes <= MOST);
     let digests: BTreeSet<Digest> = jobs.iter().filter_map(digest_of).collect();
     let mut found = HashMap::new();
@@ -143,7 +132,7 @@ async fn entries(
         found.extend(Entry::parse(content).map(|entry| (digest, entry)));
         Ok(())
     };
-    fetch(&digests.into_iter().collect::<Vec<_>>(), client, retries, tally, &mut take).await?;
+    fetch(&digests.into_iter().collect::<Vec<_>>(), client, &mut take).await?;
     let entry_of = |sent: &Sent<'_>| found.get(&digest_of(sent)?).filter(|entry| is_of(entry, sent.moved)).cloned();
     Ok(jobs.iter().map(entry_of).collect())
 }

@@ -1,9 +1,9 @@
-//! The connection: headers, TLS, what the server can do, and how long a call may take.
+//! The connection: headers, TLS, what the server can do, how long a call may take, and what was done through it.
 
 use std::fs;
 use std::future::Future;
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use prost::Message;
@@ -16,9 +16,8 @@ use tonic::{Request, Response, Status};
 
 use super::api;
 use super::error::RemoteError;
-use super::options::Options;
 use super::retry::{Attempts, random};
-use super::tally::Tally;
+use crate::remote::{Counts, Options};
 
 /// What calls go through.
 pub type Service = InterceptedService<Channel, Headers>;
@@ -39,11 +38,10 @@ const BATCH: u64 = 3 << 20;
 const ROOM: u32 = 512;
 
 /// A connection.
-#[derive(Clone)]
 pub struct Client {
     service: Service,
     url: String,
-    secrets: Arc<[String]>,
+    secrets: Vec<String>,
     /// Instance of the server.
     pub instance: String,
     /// The most bytes in a batch of blobs.
@@ -51,21 +49,29 @@ pub struct Client {
     /// Whether blobs go compressed.
     pub is_zstd: bool,
     /// MiB that blobs on their way may take.
-    room: Arc<Semaphore>,
+    room: Semaphore,
+    /// How often something is tried again.
+    retries: u32,
+    /// What was done.
+    counts: Mutex<Counts>,
 }
 
 impl Client {
     /// Connects and asks what the server can do.
-    pub async fn connect(options: &Options, tally: &Tally) -> Result<Self, RemoteError> {
+    pub async fn connect(options: &Options) -> Result<Self, RemoteError> {
         let channel = endpoint(options)?.connect_lazy();
-        let headers = Headers::new(options)?;
-        let secrets = options.headers.iter().map(|header| header.value.clone()).collect();
-        let service = InterceptedService::new(channel, headers);
-        let (instance, batch, is_zstd) = (options.instance.clone(), BATCH, false);
-        let room = Arc::new(Semaphore::new(ROOM as usize));
-        let url = options.url.clone();
-        let client = Self { service, url, secrets, instance, batch, is_zstd, room };
-        let found = Attempts::new(options.retries, tally).at(|| client.capabilities()).await?;
+        let client = Self {
+            service: InterceptedService::new(channel, Headers::new(options)?),
+            url: options.url.clone(),
+            secrets: options.headers.iter().map(|header| header.value.clone()).collect(),
+            instance: options.instance.clone(),
+            batch: BATCH,
+            is_zstd: false,
+            room: Semaphore::new(ROOM as usize),
+            retries: options.retries,
+            counts: Mutex::default(),
+        };
+        let found = client.attempts().at(|| client.capabilities()).await?;
         client.with(&found)
     }
 
@@ -102,6 +108,16 @@ impl Client {
             is_zstd: cache.supported_compressors.contains(&(api::compressor::Value::Zstd as i32)),
             ..self
         })
+    }
+
+    /// Attempts at something, as many as the caller allows.
+    pub fn attempts(&self) -> Attempts<'_> {
+        Attempts::new(self.retries, self)
+    }
+
+    /// Gives `change` the numbers of what was done, to be added to or read.
+    pub fn count<T>(&self, change: impl FnOnce(&mut Counts) -> T) -> T {
+        change(&mut self.counts.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
     /// What a generated client takes.

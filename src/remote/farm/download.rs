@@ -9,8 +9,6 @@ use super::api;
 use super::client::{Client, MAX_MESSAGE};
 use super::digest::Digest;
 use super::error::RemoteError;
-use super::retry::Attempts;
-use super::tally::{Tally, add};
 
 /// Takes a blob.
 pub type Take<'t> = &'t mut dyn FnMut(Digest, &[u8]) -> Result<(), RemoteError>;
@@ -19,16 +17,12 @@ pub type Take<'t> = &'t mut dyn FnMut(Digest, &[u8]) -> Result<(), RemoteError>;
 ///
 /// # Errors
 /// [`RemoteError`], and those of `take`.
-pub async fn fetch(
-    digests: &[Digest],
-    client: &Client,
-    retries: u32,
-    tally: &Tally,
-    take: Take<'_>,
-) -> Result<(), RemoteError> {
+pub async fn fetch(digests: &[Digest], client: &Client, take: Take<'_>) -> Result<(), RemoteError> {
     let mut took = |digest: Digest, content: &[u8]| {
-        add(&tally.downloaded_blobs, 1);
-        add(&tally.downloaded_bytes, digest.bytes);
+        client.count(|counts| {
+            counts.downloaded_blobs += 1;
+            counts.downloaded_bytes += digest.bytes;
+        });
         take(digest, content)
     };
     let (mut batch, mut bytes) = (Vec::new(), 0);
@@ -36,41 +30,35 @@ pub async fn fetch(
         let cost = digest.bytes.saturating_add(200);
         if cost > client.batch / 2 {
             let _room = client.room(digest.bytes).await;
-            let content = Attempts::new(retries, tally).at(|| read(digest, client)).await?;
+            let content = client.attempts().at(|| read(digest, client)).await?;
             took(digest, &content)?;
             continue;
         }
         if bytes + cost > client.batch {
-            fetch_batch(&std::mem::take(&mut batch), client, retries, tally, &mut took).await?;
+            fetch_batch(&std::mem::take(&mut batch), client, &mut took).await?;
             bytes = 0;
         }
         batch.push(digest);
         bytes += cost;
     }
-    fetch_batch(&batch, client, retries, tally, &mut took).await
+    fetch_batch(&batch, client, &mut took).await
 }
 
 /// Fetches one blob.
 ///
 /// # Errors
 /// [`RemoteError`].
-pub async fn fetch_one(digest: Digest, client: &Client, retries: u32, tally: &Tally) -> Result<Vec<u8>, RemoteError> {
+pub async fn fetch_one(digest: Digest, client: &Client) -> Result<Vec<u8>, RemoteError> {
     let mut bytes = Vec::new();
     let mut take = |_, content: &[u8]| {
         bytes = content.to_vec();
         Ok(())
     };
-    fetch(&[digest], client, retries, tally, &mut take).await?;
+    fetch(&[digest], client, &mut take).await?;
     Ok(bytes)
 }
 
-async fn fetch_batch(
-    digests: &[Digest],
-    client: &Client,
-    retries: u32,
-    tally: &Tally,
-    take: Take<'_>,
-) -> Result<(), RemoteError> {
+async fn fetch_batch(digests: &[Digest], client: &Client, take: Take<'_>) -> Result<(), RemoteError> {
     if digests.is_empty() {
         return Ok(());
     }
@@ -98,7 +86,7 @@ async fn fetch_batch(
         }
         Ok(blobs)
     };
-    for (digest, content) in Attempts::new(retries, tally).at(ask).await? {
+    for (digest, content) in client.attempts().at(ask).await? {
         take(digest, &content)?;
     }
     Ok(())
