@@ -11,7 +11,7 @@ use roughcast::bake::{Model, OwnRoughness, Relief, Settings, bake_map};
 use roughcast::judge::{Decoded, Family, Surface, mean_errors, sample_texels};
 use roughcast::lobe::{Alpha, Roughness, SquaredAlpha};
 use roughcast::map::{DecodeOptions, Image, NormalLayout, NormalMap, decode};
-use roughcast::texture::ktx2::{Ktx2, Ktx2Writer};
+use roughcast::texture::ktx2::{Ktx2, Ktx2Writer, StoredLevel};
 use roughcast::texture::uastc::{Effort, Metric};
 use roughcast::texture::{Format, Target, Texels, encode};
 
@@ -74,7 +74,7 @@ fn errors_by_level(image: &Image, alpha: f32, texels: usize) -> Result<Vec<Row>,
     let settings =
         Settings { model: Model::Anisotropic, target: Target::Float, provenance: false, ..Settings::default() };
     let baked = bake_map(&relief, Some(&own), &settings)?;
-    let files: Vec<_> = baked.textures.iter().map(|t| (t.content, t.chain.to_ktx2(&[], Effort::Fast))).collect();
+    let files: Vec<_> = baked.textures.iter().map(|t| (t.content, t.chain.to_ktx2(&[]))).collect();
     LEVELS
         .filter(|level| image.width.max(image.height) >> level > 0)
         .map(|level| {
@@ -118,7 +118,8 @@ fn encoded(normals: &Image, format: Format, metric: Metric, effort: Effort) -> R
             *texel = [0, 1, 2, 3].map(|c| normals.sample(x as u32, y, c).unwrap_or(1.0));
         }
     };
-    let levels = [encode(&Texels { width, height, row: &row }, format, metric, effort)?];
-    let file = Ktx2Writer { format, width, height, levels: &levels, keys: &[], effort }.to_bytes();
+    let level = encode(&Texels { width, height, row: &row }, format, metric, effort)?;
+    let levels = [StoredLevel::new(level, format, effort)];
+    let file = Ktx2Writer { format, width, height, levels: &levels, keys: &[] }.to_bytes();
     Ok(Ktx2::parse(&file)?.decode_level(0)?)
 }

@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use rayon::prelude::*;
 use serde_json::Value;
 
 use super::container::{self, ContainerError};
@@ -12,7 +11,6 @@ use super::geometry::Geometry;
 use super::job::{self, JobError, JobOutput, JobTexture, PyramidUse, describe};
 use super::names::Names;
 use super::plan::{PlanError, plan};
-use super::png::encode_png;
 use super::provenance::DocumentProvenance;
 use super::pyramids::Range;
 use super::report::{AssetReport, LayerReport, TextureReport};
@@ -51,18 +49,7 @@ pub enum BakeError {
     /// The container asked for.
     #[error(transparent)]
     Container(#[from] ContainerError),
-    /// A PNG fallback.
-    #[error("the PNG of {path} cannot be encoded: {reason}; use --gltf strict or dual")]
-    Png {
-        /// Its path without the extension.
-        path: String,
-        /// What the encoder says.
-        reason: String,
-    },
 }
-
-/// A PNG, or why it cannot be encoded.
-type PngResult = Result<Vec<u8>, String>;
 
 /// A file to be written beside the document.
 #[derive(Clone, Debug, PartialEq)]
@@ -163,23 +150,8 @@ impl<'a> Assembly<'a> {
 
     fn add(&mut self, output: JobOutput) -> Result<(), BakeError> {
         let first = self.textures.len();
-        let mut keys = Vec::with_capacity(output.textures.len());
-        for texture in &output.textures {
-            keys.push(if self.settings.provenance { self.provenance(texture)?.keys() } else { Vec::new() });
-        }
-        // Compressing a large level is serial, so the textures of a job are compressed side by side.
-        let effort = self.settings.effort;
-        let files: Vec<(Vec<u8>, Option<PngResult>)> = output
-            .textures
-            .par_iter()
-            .zip(&keys)
-            .map(|(JobTexture { chain, .. }, keys)| {
-                let png = || chain.fallback.as_ref().map(|rgba| encode_png(rgba, chain.width, chain.height, effort));
-                rayon::join(|| chain.to_ktx2(keys, effort), png)
-            })
-            .collect();
-        for (texture, (ktx2, png)) in output.textures.into_iter().zip(files) {
-            self.add_texture(texture, ktx2, png)?;
+        for texture in output.textures {
+            self.add_texture(texture)?;
         }
         for layer in output.layers {
             self.unit_factors.extend(layer.unit_factor);
@@ -195,9 +167,11 @@ impl<'a> Assembly<'a> {
         Ok(())
     }
 
-    fn add_texture(&mut self, texture: JobTexture, ktx2: Vec<u8>, png: Option<PngResult>) -> Result<(), BakeError> {
+    fn add_texture(&mut self, texture: JobTexture) -> Result<(), BakeError> {
+        let keys = if self.settings.provenance { self.provenance(&texture)?.keys() } else { Vec::new() };
+        let ktx2 = texture.chain.to_ktx2(&keys);
         let path = self.names.unique(&stem(&texture), texture.content.name());
-        let chain = &texture.chain;
+        let chain = texture.chain;
         self.report.textures.push(TextureReport {
             path: format!("{path}.ktx2"),
             content: texture.content,
@@ -209,11 +183,8 @@ impl<'a> Assembly<'a> {
             range: texture.range.clone(),
         });
         let ktx2 = self.add_image(&path, "ktx2", ktx2)?;
-        let source = match (png, self.settings.form) {
-            (Some(png), _) => {
-                let png = png.map_err(|reason| BakeError::Png { path: path.clone(), reason })?;
-                Some(self.add_image(&path, "png", png)?)
-            }
+        let source = match (chain.fallback, self.settings.form) {
+            (Some(png), _) => Some(self.add_image(&path, "png", png)?),
             (None, Form::Dual) => Some(ktx2.clone()),
             (None, _) => None,
         };

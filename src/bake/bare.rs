@@ -79,7 +79,10 @@ pub fn bake_map(relief: &Relief, own: Option<&OwnRoughness>, settings: &Settings
     });
     let fold = fold.transpose()?;
     let lobes = fold.as_ref().filter(|(_, has_own_grid)| !has_own_grid).map(|(fold, _)| fold.lobes());
-    let normals = is_portable.then(|| Normals::new(&bumps, lobes));
+    let normals = is_portable.then(|| match lobes {
+        Some(lobes) => Normals::of_lobes(&bumps, lobes),
+        None => Normals::of_means(&bumps),
+    });
     if let Some(normals) = &normals {
         textures.push(plain(Content::Normal, normals.bake(Encoding::of_normals(settings))?));
     }

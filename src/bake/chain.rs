@@ -2,8 +2,9 @@
 
 use rayon::prelude::*;
 
+use super::png::fallback;
 use super::settings::{Form, Settings};
-use crate::texture::ktx2::{Key, Ktx2Writer};
+use crate::texture::ktx2::{Key, Ktx2Writer, StoredLevel};
 use crate::texture::uastc::{Effort, Metric};
 use crate::texture::{EncodeError, Format, Target, Texels, encode};
 
@@ -17,9 +18,9 @@ pub struct Chain {
     pub width: u32,
     /// Rows of level 0.
     pub height: u32,
-    /// Bytes of each level, level 0 first, not supercompressed.
-    pub levels: Vec<Vec<u8>>,
-    /// Level 0 as opaque RGBA8, where a PNG fallback is asked for.
+    /// Level 0 first.
+    pub levels: Vec<StoredLevel>,
+    /// Level 0 as a PNG file, where it is asked for.
     pub fallback: Option<Vec<u8>>,
 }
 
@@ -30,11 +31,11 @@ pub struct Encoding {
     pub format: Format,
     /// What the UASTC encoder keeps.
     pub metric: Metric,
-    /// Search effort of block encoders.
+    /// Search effort of block encoders and of compression.
     pub effort: Effort,
     /// Finest level that is written; a coarser one where its size does not suit the format.
     pub finest: usize,
-    /// Whether level 0 is kept for a PNG.
+    /// Whether level 0 becomes a PNG, too.
     pub fallback: bool,
 }
 
@@ -108,27 +109,30 @@ fn is_whole(format: Format, width: u32, height: u32) -> bool {
 /// Writes row y of a level to a slice of values: `(level, y, out)`.
 pub type LevelRow<'a> = dyn Fn(usize, u32, &mut [[f32; 4]]) + Sync + 'a;
 
-/// Encodes the levels of `sizes` that `encoding` asks for.
+/// Encodes the levels of `sizes` that `encoding` asks for. Each is compressed at once: a level of 16384^2 has 268 MB of blocks.
 pub fn encode_chain(sizes: &[(u32, u32)], encoding: Encoding, row: &LevelRow<'_>) -> Result<Chain, EncodeError> {
     let first = encoding.first(sizes);
     let kept = &sizes[first..];
     let encode_level = |(level, &(width, height)): (usize, &(u32, u32))| {
         let row = |y: u32, out: &mut [[f32; 4]]| row(first + level, y, out);
-        encode(&Texels { width, height, row: &row }, encoding.format, encoding.metric, encoding.effort)
+        let Encoding { format, metric, effort, .. } = encoding;
+        let level = encode(&Texels { width, height, row: &row }, format, metric, effort)?;
+        Ok(StoredLevel::new(level, format, effort))
     };
-    let levels = kept.par_iter().enumerate().map(encode_level).collect::<Result<_, _>>()?;
     let (width, height) = kept[0];
-    let fallback = encoding.fallback.then(|| {
+    let png = || {
         let row = |y: u32, out: &mut [[f32; 4]]| row(first, y, out);
-        Texels { width, height, row: &row }.to_rgba8()
-    });
-    Ok(Chain { format: encoding.format, trimmed: first, width, height, levels, fallback })
+        encoding.fallback.then(|| fallback(&Texels { width, height, row: &row }, encoding.effort)).transpose()
+    };
+    let levels = || kept.par_iter().enumerate().map(encode_level).collect::<Result<_, EncodeError>>();
+    let (levels, fallback) = rayon::join(levels, png);
+    Ok(Chain { format: encoding.format, trimmed: first, width, height, levels: levels?, fallback: fallback? })
 }
 
 impl Chain {
     /// The KTX2 file of the chain.
-    pub fn to_ktx2(&self, keys: &[Key], effort: Effort) -> Vec<u8> {
+    pub fn to_ktx2(&self, keys: &[Key]) -> Vec<u8> {
         let &Self { format, width, height, ref levels, .. } = self;
-        Ktx2Writer { format, width, height, levels, keys, effort }.to_bytes()
+        Ktx2Writer { format, width, height, levels, keys }.to_bytes()
     }
 }

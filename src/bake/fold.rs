@@ -31,6 +31,12 @@ pub struct Folded {
     pub anisotropy: Option<Chain>,
 }
 
+/// Rows of a level that notes are made from: all of a small one. They tell of what many texels do.
+fn looked_at(height: u32) -> impl IndexedParallelIterator<Item = u32> {
+    let count = height.min(256);
+    (0..count).into_par_iter().map(move |i| (u64::from(i) * u64::from(height) / u64::from(count)) as u32)
+}
+
 impl<'a> Fold<'a> {
     /// Joins `base` with `bumps` on the same grid. `slope_scale` multiplies offsets (`normalTexture.scale`).
     pub fn new<'b: 'a>(base: Pyramid<BaseRows<'a>>, bumps: &Bumps<'b>, slope_scale: f32, settings: &Settings) -> Self {
@@ -59,7 +65,7 @@ impl<'a> Fold<'a> {
         self.is_elliptical
     }
 
-    /// Texels over all levels whose lobe under `model` is wider than an engine can show.
+    /// About how many texels over all levels have a lobe under `model` that is wider than an engine can show.
     pub fn texels_above_one(&self, model: Model) -> u64 {
         let is_too_wide = |lobe: SquaredAlpha| match model {
             Model::Anisotropic => lobe.exceeds_one(),
@@ -72,7 +78,9 @@ impl<'a> Fold<'a> {
                 self.row(level, y, width as usize, |_, _, full, _| count += u64::from(is_too_wide(full)));
                 count
             };
-            (0..height).into_par_iter().map(in_row).sum()
+            let rows = looked_at(height);
+            let read = rows.len() as u64;
+            rows.map(in_row).sum::<u64>() * u64::from(height) / read
         };
         levels.map(in_level).sum()
     }
@@ -89,8 +97,8 @@ impl<'a> Fold<'a> {
             });
             sum
         };
-        let rows: Vec<f64> = (0..height).into_par_iter().map(in_row).collect();
-        (rows.iter().sum::<f64>() / (f64::from(width) * f64::from(height))) as f32
+        let rows: Vec<f64> = looked_at(height).map(in_row).collect();
+        (rows.iter().sum::<f64>() / (f64::from(width) * rows.len() as f64)) as f32
     }
 
     /// The share of texels of levels 2 and coarser whose stored direction points away from that of the texel to their
@@ -102,7 +110,7 @@ impl<'a> Fold<'a> {
             false => [0.0; 2],
         };
         let opposed = |a: [f32; 2], b: [f32; 2]| a[0] * b[0] + a[1] * b[1] < 0.0;
-        let (mut count, mut total) = (0, 0);
+        let (mut count, mut total) = (0.0, 0.0);
         for (level, (width, height)) in self.sizes().into_iter().enumerate().skip(2) {
             let directions = |y: u32, out: &mut Vec<[f32; 2]>| {
                 out.clear();
@@ -118,10 +126,12 @@ impl<'a> Fold<'a> {
                     .filter(|((a, r), b)| opposed(**a, **r) || opposed(**a, **b))
                     .count()
             };
-            count += (0..height).into_par_iter().map_init(Default::default, in_row).sum::<usize>();
-            total += width as usize * height as usize;
+            let (rows, texels) = (looked_at(height), f64::from(width) * f64::from(height));
+            let read = rows.len() as f64 * f64::from(width);
+            count += rows.map_init(Default::default, in_row).sum::<usize>() as f64 * texels / read;
+            total += texels;
         }
-        count as f32 / total.max(1) as f32
+        if total > 0.0 { (count / total) as f32 } else { 0.0 }
     }
 
     /// The axis of the whole map, which directions agree with.

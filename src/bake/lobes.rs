@@ -9,7 +9,7 @@ use super::settings::Settings;
 use crate::bump::Offset;
 use crate::judge::{Footprint, Lobe, Part, Reference, overlaps, refine};
 use crate::lobe::{Family, OrientedLobe, SquaredAlpha};
-use crate::pyramid::{Area, Level, Moments, Pyramid, Rows, Shaped, ShapedMoments, build};
+use crate::pyramid::{Area, Coarser, Level, Moments, Pyramid, Rows, Shaped, ShapedMoments, level_sizes};
 use crate::roughness::Distribution;
 use crate::symmetric::Symmetric2;
 use crate::texture::uastc::Effort;
@@ -17,7 +17,7 @@ use crate::texture::uastc::Effort;
 /// Lobes of a material on the grid of its bumps.
 pub struct Lobes<'a> {
     finest: Finest<'a>,
-    coarser: Vec<Level<OrientedLobe>>,
+    coarser: Coarser<OrientedLobe>,
 }
 
 impl<'a> Lobes<'a> {
@@ -26,12 +26,12 @@ impl<'a> Lobes<'a> {
     /// factor. The best quality then fits them to the bumps' own distribution.
     pub fn new<'b: 'a>(base: &Pyramid<BaseRows<'a>>, bumps: &Bumps<'b>, slope_scale: f32, settings: &Settings) -> Self {
         let finest = Finest { base: base.source().clone(), bumps: bumps.rows, slope_scale };
-        let folded = || finest.folded(base, bumps, settings);
+        let folded = || finest.folded(base, bumps, settings).into();
         let coarser = match (settings.distribution, settings.effort) {
             (Distribution::Normal | Distribution::Uniform, _) => folded(),
             (Distribution::Auto, effort) => {
                 let merged = match settings.family {
-                    Family::Ggx => build(&finest),
+                    Family::Ggx => Coarser::new(&finest),
                     // Merging normal distributions by likelihood is adding moments.
                     Family::Beckmann => folded(),
                 };
@@ -51,10 +51,7 @@ impl<'a> Lobes<'a> {
 
     /// Writes the lobes of row `y` of `level` to `out`.
     pub fn row(&self, level: usize, y: u32, out: &mut [OrientedLobe]) {
-        match level.checked_sub(1) {
-            None => self.finest.row(y, out),
-            Some(coarser) => self.coarser[coarser].row(y, out),
-        }
+        self.coarser.row(&self.finest, level, y, out);
     }
 
     /// Their squared alphas alone, where the material's own lobes of that row are known: `own`.
@@ -72,7 +69,7 @@ impl<'a> Lobes<'a> {
     /// Writes the offsets (f_u, f_v) that a normal map should hold to `out`: where the lobes of row `y` of `level` point,
     /// before scaling.
     pub fn offsets(&self, level: usize, y: u32, out: &mut [[f32; 2]]) {
-        let scale = 1.0 / self.finest.slope_scale;
+        let scale = 1.0 / self.slope_scale();
         let mut lobes = vec![OrientedLobe::default(); out.len()];
         self.row(level, y, &mut lobes);
         for (offset, lobe) in out.iter_mut().zip(lobes) {
@@ -83,9 +80,7 @@ impl<'a> Lobes<'a> {
 
     /// The single texel of the coarsest level.
     pub fn whole(&self) -> OrientedLobe {
-        let mut texel = [OrientedLobe::default()];
-        self.row(self.coarser.len(), 0, &mut texel);
-        texel[0]
+        self.coarser.whole(&self.finest)
     }
 }
 
@@ -96,33 +91,38 @@ const FIT_SAMPLES: usize = 128;
 
 /// `merged` fitted to the lobes [`FIT_DEPTH`] levels finer (level 0 for levels 2 and 3) by the lobe error itself. Level 1
 /// stays as merged: four texels are too few to fit to.
-fn fitted(finest: &Finest<'_>, merged: &[Level<OrientedLobe>], family: Family) -> Vec<Level<OrientedLobe>> {
-    let fit = |(index, level): (usize, &Level<OrientedLobe>)| match (index + 1, (index + 1).saturating_sub(FIT_DEPTH)) {
-        (1, _) => level.clone(),
-        (_, 0) => fitted_to(finest, level, family),
-        (_, source) => fitted_to(&merged[source - 1], level, family),
-    };
-    merged.iter().enumerate().map(fit).collect()
+fn fitted(finest: &Finest<'_>, merged: &Coarser<OrientedLobe>, family: Family) -> Coarser<OrientedLobe> {
+    let sizes = level_sizes(finest.width(), finest.height());
+    let row = |level, y, out: &mut [OrientedLobe]| merged.row(finest, level, y, out);
+    let levels: Vec<_> = (1..sizes.len()).map(|level| fitted_level(&sizes, row, level, family)).collect();
+    levels.into()
 }
 
-fn fitted_to<R: Rows<Texel = OrientedLobe>>(
-    source: &R,
-    merged: &Level<OrientedLobe>,
+/// `merged` writes a row of a level of `sizes`.
+fn fitted_level(
+    sizes: &[(u32, u32)],
+    merged: impl Fn(usize, u32, &mut [OrientedLobe]) + Sync,
+    level: usize,
     family: Family,
 ) -> Level<OrientedLobe> {
-    let (width, height) = (merged.width, merged.height);
-    let mut texels = merged.texels.clone();
+    let ((width, height), finer) = (sizes[level], level.saturating_sub(FIT_DEPTH));
+    let (finer_width, finer_height) = sizes[finer];
+    let mut texels = vec![OrientedLobe::default(); width as usize * height as usize];
     texels.par_chunks_mut(width as usize).enumerate().for_each(|(y, out)| {
-        let down = overlaps(source.height(), height, y as u32);
-        let mut rows = vec![OrientedLobe::default(); source.width() as usize * down.len()];
-        for (row, (source_y, _)) in rows.chunks_exact_mut(source.width() as usize).zip(&down) {
-            source.row(*source_y, row);
+        merged(level, y as u32, out);
+        if level == 1 {
+            return;
+        }
+        let down = overlaps(finer_height, height, y as u32);
+        let mut rows = vec![OrientedLobe::default(); finer_width as usize * down.len()];
+        for (row, (finer_y, _)) in rows.chunks_exact_mut(finer_width as usize).zip(&down) {
+            merged(finer, *finer_y, row);
         }
         for (x, texel) in out.iter_mut().enumerate() {
-            let across = overlaps(source.width(), width, x as u32);
-            let parts = rows.chunks_exact(source.width() as usize).zip(&down).flat_map(|(row, (_, share_y))| {
-                across.iter().map(move |(source_x, share_x)| {
-                    let lobe = judged(family, &row[*source_x as usize]);
+            let across = overlaps(finer_width, width, x as u32);
+            let parts = rows.chunks_exact(finer_width as usize).zip(&down).flat_map(|(row, (_, share_y))| {
+                across.iter().map(move |(finer_x, share_x)| {
+                    let lobe = judged(family, &row[*finer_x as usize]);
                     Part { weight: share_x * share_y, normal: lobe.normal(), base: lobe.squared_alpha() }
                 })
             });

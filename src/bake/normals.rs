@@ -7,14 +7,21 @@ use super::chain::{Chain, Encoding, encode_chain};
 use super::lobes::Lobes;
 use super::relief::Relief;
 use crate::bump::{Offset, normal_from_offset};
-use crate::pyramid::{Area, Level, Moments, Rows, build};
+use crate::pyramid::{Area, Coarser, Level, Moments, Rows, level_sizes};
 use crate::texture::EncodeError;
 
 /// Where the texels of a normal texture point, level by level.
 pub struct Normals<'a> {
     finest: Area<&'a Relief>,
-    /// Offsets (f_u, f_v).
-    coarser: Vec<Level<[f32; 2]>>,
+    coarser: Offsets<'a>,
+}
+
+/// Offsets (f_u, f_v) of levels 1 and coarser.
+enum Offsets<'a> {
+    /// Where lobes point.
+    Lobes(&'a Lobes<'a>),
+    /// Where lobes pointed, or the mean slopes.
+    Coarser(Coarser<[f32; 2]>),
 }
 
 /// Offsets without their covariances, which are 3/5 of the memory of moments.
@@ -39,11 +46,18 @@ impl<R: Rows<Texel = Moments>> Rows for Means<R> {
 }
 
 impl<'a> Normals<'a> {
-    /// Texels of `bumps` point where `lobes` on the same grid do, or without them where their mean slope does.
-    pub fn new(bumps: &Bumps<'a>, lobes: Option<&Lobes<'_>>) -> Self {
-        let Some(lobes) = lobes else {
-            return Self { finest: bumps.rows, coarser: build(&Means(bumps.rows)) };
-        };
+    /// Texels of `bumps` point where their mean slope does.
+    pub fn of_means(bumps: &Bumps<'a>) -> Self {
+        Self { finest: bumps.rows, coarser: Offsets::Coarser(Coarser::new(&Means(bumps.rows))) }
+    }
+
+    /// They point where `lobes` on the same grid do.
+    pub fn of_lobes<'b: 'a>(bumps: &Bumps<'b>, lobes: &'a Lobes<'a>) -> Self {
+        Self { finest: bumps.rows, coarser: Offsets::Lobes(lobes) }
+    }
+
+    /// The same when `lobes` are gone.
+    pub fn kept(bumps: &Bumps<'a>, lobes: &Lobes<'_>) -> Self {
         let level = |(level, &(width, height)): (usize, &(u32, u32))| {
             let mut texels = vec![[0.0; 2]; width as usize * height as usize];
             texels.par_chunks_exact_mut(width as usize).enumerate().for_each(|(y, row)| {
@@ -51,34 +65,27 @@ impl<'a> Normals<'a> {
             });
             Level { width, height, texels }
         };
-        let coarser = bumps.sizes().iter().enumerate().skip(1).map(level).collect();
-        Self { finest: bumps.rows, coarser }
+        let levels: Vec<_> = bumps.sizes().iter().enumerate().skip(1).map(level).collect();
+        Self { finest: bumps.rows, coarser: Offsets::Coarser(levels.into()) }
     }
 
     /// Sizes of all levels, level 0 first.
     pub fn sizes(&self) -> Vec<(u32, u32)> {
-        let finest = (self.finest.width(), self.finest.height());
-        [finest].into_iter().chain(self.coarser.iter().map(|l| (l.width, l.height))).collect()
+        level_sizes(self.finest.width(), self.finest.height())
     }
 
     /// The normal texture: x, y, z in [0, 1] with 1/2 for 0. Unit length at every level, since engines that rebuild z and
     /// engines that read it must agree.
     pub fn row(&self, level: usize, y: u32, out: &mut [[f32; 4]]) {
-        let write = |(value, offset): (&mut [f32; 4], Offset)| {
-            let [x, y, z] = normal_from_offset(offset);
+        let mut offsets = vec![[0.0; 2]; out.len()];
+        match &self.coarser {
+            Offsets::Lobes(lobes) if level > 0 => lobes.offsets(level, y, &mut offsets),
+            Offsets::Lobes(_) => Means(self.finest).row(y, &mut offsets),
+            Offsets::Coarser(means) => means.row(&Means(self.finest), level, y, &mut offsets),
+        }
+        for (value, [u, v]) in out.iter_mut().zip(offsets) {
+            let [x, y, z] = normal_from_offset(Offset { u, v });
             *value = [0.5 * x + 0.5, 0.5 * y + 0.5, 0.5 * z + 0.5, 1.0];
-        };
-        match level.checked_sub(1) {
-            None => {
-                let mut texels = vec![Moments::default(); out.len()];
-                self.finest.row(y, &mut texels);
-                out.iter_mut().zip(texels.iter().map(|m| m.mean)).for_each(write);
-            }
-            Some(coarser) => {
-                let Level { width, texels, .. } = &self.coarser[coarser];
-                let offsets = texels[y as usize * *width as usize..].iter().map(|&[u, v]| Offset { u, v });
-                out.iter_mut().zip(offsets).for_each(write);
-            }
         }
     }
 

@@ -66,7 +66,7 @@ pub fn of_fold(fold: &Fold<'_>, model: Model, noise: Symmetric2) -> Vec<String> 
     let too_wide = fold.texels_above_one(model);
     if too_wide > 0 {
         notes.push(format!(
-            "{too_wide} texels over all levels are rougher than an engine can show: alpha is clamped to 1"
+            "about {too_wide} texels over all levels are rougher than an engine can show: alpha is clamped to 1"
         ));
     }
     let noise = fold.noise_loss(noise);

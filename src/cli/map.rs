@@ -289,7 +289,7 @@ fn texture_file(
     } else {
         Vec::new()
     };
-    texture.chain.to_ktx2(&keys, settings.effort)
+    texture.chain.to_ktx2(&keys)
 }
 
 /// `wool.ktx2` -> `wool.roughness.ktx2`.

@@ -3,11 +3,13 @@
 //! Everything here works on rows of texels ([`Rows`]), so that a level is never held in memory twice and level 0
 //! need not be held at all. This room knows neither files nor engines.
 
+mod coarser;
 mod merge;
 mod reduce;
 mod resample;
 mod shaped;
 
+pub use coarser::Coarser;
 pub(crate) use merge::{MAX_PARTS, load, store};
 pub use merge::{Merge, Moments};
 pub use reduce::{Level, build, level_size, level_sizes};
@@ -49,13 +51,13 @@ impl<R: Rows> Rows for &R {
 /// A source with all its coarser levels. Level 0 is read from the source whenever it is needed.
 pub struct Pyramid<R: Rows> {
     source: R,
-    coarser: Vec<Level<R::Texel>>,
+    coarser: Coarser<R::Texel>,
 }
 
 impl<R: Rows> Pyramid<R> {
     /// The full chain over `source`.
     pub fn new(source: R) -> Self {
-        let coarser = build(&source);
+        let coarser = Coarser::new(&source);
         Self { source, coarser }
     }
 
@@ -71,17 +73,12 @@ impl<R: Rows> Pyramid<R> {
 
     /// Writes row `y` of `level` to `out`.
     pub fn row(&self, level: usize, y: u32, out: &mut [R::Texel]) {
-        match level.checked_sub(1) {
-            None => self.source.row(y, out),
-            Some(coarser) => self.coarser[coarser].row(y, out),
-        }
+        self.coarser.row(&self.source, level, y, out);
     }
 
     /// The single texel of the coarsest level.
     pub fn whole(&self) -> R::Texel {
-        let mut texel = [R::Texel::default()];
-        self.row(self.coarser.len(), 0, &mut texel);
-        texel[0]
+        self.coarser.whole(&self.source)
     }
 }
 

@@ -127,7 +127,7 @@ const BAND_LEVELS: u32 = 5;
 const BANDS: u32 = 64;
 
 /// `rows` holds the finer rows under this row, one after another; `out` the coarser texels.
-fn reduce_row<T: Merge>(simd: InstructionSet, rows: &[T], fine_width: usize, down: &Taps, out: &mut [T]) {
+pub(super) fn reduce_row<T: Merge>(simd: InstructionSet, rows: &[T], fine_width: usize, down: &Taps, out: &mut [T]) {
     dispatch!(simd, simd => reduce_lanes(simd, rows, fine_width, down, out));
 }
 
@@ -153,15 +153,17 @@ fn reduce_lanes<S: Simd, T: Merge>(simd: S, rows: &[T], fine_width: usize, down:
 }
 
 /// The finer texels under one coarser texel along one axis.
-struct Taps {
-    first: u32,
-    count: usize,
+pub(super) struct Taps {
+    /// The first of them.
+    pub first: u32,
+    /// How many.
+    pub count: usize,
     weights: [f32; MAX_TAPS],
 }
 
 impl Taps {
     /// Coarser texel `i` of an axis of `size` finer texels covers [i, i + 1) * size / level_size(size).
-    fn new(size: u32, i: u32) -> Self {
+    pub fn new(size: u32, i: u32) -> Self {
         match (size, size % 2) {
             (1, _) => Self { first: 0, count: 1, weights: [1.0, 0.0, 0.0] },
             (_, 0) => Self { first: 2 * i, count: 2, weights: [0.5, 0.5, 0.0] },

@@ -257,3 +257,21 @@ fn chains_end_at_one_texel() {
     assert_eq!(level_sizes(5, 2), [(5, 2), (2, 1), (1, 1)]);
     assert_eq!(level_sizes(1, 1), [(1, 1)]);
 }
+
+#[test]
+fn levels_that_are_not_kept_have_the_same_bits() {
+    for (width, height) in [(64, 32), (37, 23), (1, 40), (50, 1), (1, 1)] {
+        let source = level(width, height, 3);
+        let all = build(&source);
+        for most in [0, 1, 100, 300] {
+            let some = Coarser::keeping(&source, most);
+            for (level, expected) in [&source].into_iter().chain(&all).enumerate() {
+                let mut found = vec![Moments::default(); expected.texels.len()];
+                for (y, row) in found.chunks_exact_mut(expected.width as usize).enumerate() {
+                    some.row(&source, level, y as u32, row);
+                }
+                assert_eq!(found, expected.texels, "{width} x {height}, {most}");
+            }
+        }
+    }
+}

@@ -26,6 +26,16 @@ pub enum EncodeError {
         /// What the encoder said.
         reason: String,
     },
+    /// The PNG encoder refused.
+    #[error("the PNG of a level of {width} x {height} cannot be written: {reason}; leave it out with `--gltf strict`")]
+    Png {
+        /// Columns of the level.
+        width: u32,
+        /// Rows of the level.
+        height: u32,
+        /// What the encoder said.
+        reason: String,
+    },
 }
 
 /// The texels of one level, produced row by row.

@@ -4,7 +4,7 @@ use std::fs;
 use std::sync::LazyLock;
 
 use roughcast::check::{Code, Findings, Scope, Usage, check_texture};
-use roughcast::texture::ktx2::{Key, Ktx2, Ktx2Writer, PROVENANCE_KEY, Provenance};
+use roughcast::texture::ktx2::{Key, Ktx2, Ktx2Writer, PROVENANCE_KEY, Provenance, StoredLevel};
 use roughcast::texture::uastc::{Effort, Metric};
 use roughcast::texture::{Format, Texels, encode};
 use semver::Version;
@@ -54,7 +54,8 @@ fn level_0(file: &[u8]) -> (usize, usize) {
 }
 
 fn write(format: Format, size: u32, levels: &[Vec<u8>], keys: &[Key]) -> Vec<u8> {
-    Ktx2Writer { format, width: size, height: size, levels, keys, effort: Effort::Fast }.to_bytes()
+    let levels: Vec<_> = levels.iter().map(|level| StoredLevel::new(level.clone(), format, Effort::Fast)).collect();
+    Ktx2Writer { format, width: size, height: size, levels: &levels, keys }.to_bytes()
 }
 
 fn normals(texel: [f32; 4], format: Format) -> Vec<u8> {

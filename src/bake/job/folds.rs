@@ -29,7 +29,10 @@ impl Job<'_> {
     ) -> Result<(), JobError> {
         let layers = &self.plan.layers;
         let is_portable = self.settings.profile.is_portable();
+        // For layers that come after those whose lobes they follow.
         let mut normals = None;
+        let mut normal_texture = None;
+        let normal_encoding = Encoding::of_normals(self.settings).starting_at(self.first_level(layers, bumps.size()));
         for (first, layer) in layers.iter().enumerate() {
             let is_done = layers[..first].iter().any(|earlier| earlier.folds_like(layer));
             if is_done {
@@ -37,6 +40,7 @@ impl Job<'_> {
             }
             let users: Vec<usize> =
                 (first..layers.len()).filter(|i| *i == first || layer.folds_like(&layers[*i])).collect();
+            let has_later = first + users.len() < layers.len();
             let none = OwnTextures { roughness: None, anisotropy: None };
             let own = layer.own.as_ref().unwrap_or(&none);
             let images = OwnImages {
@@ -54,10 +58,13 @@ impl Job<'_> {
                 let resampled = (size != bumps.size()).then(|| Bumps::new(relief, size));
                 Fold::new(base, resampled.as_ref().unwrap_or(bumps), layer.slope_scale, self.settings)
             });
-            if let Some(fold) = fold.as_ref().filter(|f| {
-                is_portable && normals.is_none() && layer.slope_scale != 0.0 && f.sizes()[0] == bumps.size()
-            }) {
-                normals = Some(Normals::new(bumps, Some(fold.lobes())));
+            let leads = |f: &&Fold<'_>| {
+                is_portable && normal_texture.is_none() && layer.slope_scale != 0.0 && f.sizes()[0] == bumps.size()
+            };
+            let lobes = fold.as_ref().filter(leads).map(Fold::lobes);
+            let led = lobes.map(|lobes| Normals::of_lobes(bumps, lobes));
+            if let Some(led) = &led {
+                normal_texture = Some(led.bake(normal_encoding)?);
             }
             let widest = match layer.layer.kind {
                 LayerKind::Base => Model::Anisotropic,
@@ -66,11 +73,11 @@ impl Job<'_> {
             };
             let used_by = || users.iter().map(|user| &layers[*user]);
             let first = self.first_level(used_by(), size);
-            let means = (is_portable && normals.is_none()).then(|| Normals::new(bumps, None));
+            let means = (is_portable && normals.is_none() && led.is_none()).then(|| Normals::of_means(bumps));
             let trial = fold.as_ref().map(|fold| Trial {
                 fold,
                 settings: self.settings,
-                normals: normals.as_ref().or(means.as_ref()),
+                normals: normals.as_ref().or(led.as_ref()).or(means.as_ref()),
                 pyramid: correction.map(|c| (bumps.moments(), c)),
                 wrap: self.plan.source.wrap,
                 widest,
@@ -78,6 +85,9 @@ impl Job<'_> {
                 first,
             });
             let choice = trial.map(|trial| trial.run()).transpose()?;
+            if let Some(lobes) = lobes.filter(|_| has_later) {
+                normals = Some(Normals::kept(bumps, lobes));
+            }
             let (model, first) = match (choice.as_ref().and_then(Choice::taken), self.settings.model) {
                 (Some(taken), _) => (taken.model, taken.first),
                 // Without its own lobe nothing tells how much of the ellipse will be seen: keep all of it.
@@ -157,9 +167,7 @@ impl Job<'_> {
             }
         }
         if is_portable {
-            let normals = normals.unwrap_or_else(|| Normals::new(bumps, None));
-            let first = self.first_level(layers, bumps.size());
-            let chain = normals.bake(Encoding::of_normals(self.settings).starting_at(first))?;
+            let chain = normal_texture.map_or_else(|| Normals::of_means(bumps).bake(normal_encoding), Ok)?;
             let texture = JobTexture {
                 content: Content::Normal,
                 chain,

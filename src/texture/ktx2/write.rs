@@ -1,11 +1,9 @@
 //! The container writer. KTX File Format Specification 2.0, sections named at the line.
 
-use std::borrow::Cow;
 use std::num::NonZeroU8;
 
 use ::ktx2::dfd::{Basic, Block, ChannelTypeQualifiers, DataFormatFlags, SampleInformation};
 use ::ktx2::{ColorModel, ColorPrimaries, Header, Index, LevelIndex, SupercompressionScheme, TransferFunction};
-use rayon::prelude::*;
 
 use crate::texture::Format;
 use crate::texture::uastc::Effort;
@@ -19,21 +17,39 @@ pub struct Key {
     pub value: String,
 }
 
+/// A level as a file holds it: UASTC supercompressed with zstd, other formats as they are.
+#[derive(Clone, Debug)]
+pub struct StoredLevel {
+    bytes: Vec<u8>,
+    /// Bytes before supercompression.
+    uncompressed: usize,
+}
+
+impl StoredLevel {
+    /// Of a level as [`crate::texture::encode`] returns it; zstd searches as long as `effort` says.
+    pub fn new(level: Vec<u8>, format: Format, effort: Effort) -> Self {
+        let uncompressed = level.len();
+        let bytes = match format {
+            Format::UastcRgb => zstd::bulk::compress(&level, zstd_level(effort)),
+            _ => Ok(level),
+        };
+        Self { bytes: bytes.expect("compressing to memory has no way to fail"), uncompressed }
+    }
+}
+
 /// A KTX2 file to be written: a 2-D texture with a full chain of levels.
 #[derive(Clone, Copy, Debug)]
 pub struct Ktx2Writer<'a> {
-    /// How texels are stored. UASTC is supercompressed with zstd, other formats are stored as they are.
+    /// How texels are stored.
     pub format: Format,
     /// Columns of level 0.
     pub width: u32,
     /// Rows of level 0.
     pub height: u32,
-    /// Levels as [`crate::texture::encode`] returns them, level 0 first.
-    pub levels: &'a [Vec<u8>],
+    /// Levels of that format, level 0 first.
+    pub levels: &'a [StoredLevel],
     /// Written sorted, beside `KTXorientation` = `rd`.
     pub keys: &'a [Key],
-    /// How long zstd searches.
-    pub effort: Effort,
 }
 
 /// On the UASTC of three real assets (7.9 MB, `zstd -b`): level 5 makes it 2.39 times smaller at 96 MB/s, level 9 2.42
@@ -48,19 +64,8 @@ fn zstd_level(effort: Effort) -> i32 {
 impl Ktx2Writer<'_> {
     /// The bytes of the file.
     pub fn to_bytes(&self) -> Vec<u8> {
-        let &Self { format, width, height, levels, keys, effort } = self;
+        let &Self { format, width, height, levels, keys } = self;
         let supercompressed = format == Format::UastcRgb;
-        let stored: Vec<Cow<'_, [u8]>> = levels
-            .par_iter()
-            .map(|level| {
-                if supercompressed {
-                    let compressed = zstd::bulk::compress(level, zstd_level(effort));
-                    compressed.expect("compressing to memory has no way to fail").into()
-                } else {
-                    level.into()
-                }
-            })
-            .collect();
         let (descriptor, type_size) = data_format_descriptor(format);
         let key_values = key_value_data(keys);
         let dfd_offset = Header::LENGTH + LevelIndex::LENGTH * levels.len();
@@ -71,13 +76,13 @@ impl Ktx2Writer<'_> {
         let data_offset = kvd_offset + key_values.len();
         let mut index = Vec::with_capacity(levels.len());
         let mut end = data_offset;
-        for (level, stored) in levels.iter().zip(&stored).rev() {
+        for StoredLevel { bytes, uncompressed } in levels.iter().rev() {
             let offset = end.next_multiple_of(alignment);
-            end = offset + stored.len();
+            end = offset + bytes.len();
             index.push(LevelIndex {
                 byte_offset: offset as u64,
-                byte_length: stored.len() as u64,
-                uncompressed_byte_length: level.len() as u64,
+                byte_length: bytes.len() as u64,
+                uncompressed_byte_length: *uncompressed as u64,
             });
         }
 
@@ -107,10 +112,9 @@ impl Ktx2Writer<'_> {
         }
         file.extend_from_slice(&descriptor);
         file.extend_from_slice(&key_values);
-        // Freed one by one: a level of 16384^2 has 268 MB.
-        for (stored, level) in stored.into_iter().rev().zip(&index) {
+        for (stored, level) in levels.iter().rev().zip(&index) {
             file.resize(level.byte_offset as usize, 0);
-            file.extend_from_slice(&stored);
+            file.extend_from_slice(&stored.bytes);
         }
         file
     }

@@ -1,9 +1,9 @@
 //! What is written, as other people's readers see it.
 
-use super::{Key, Ktx2, Ktx2Writer};
+use super::{Key, Ktx2, Ktx2Writer, StoredLevel};
 use crate::pyramid::level_sizes;
 use crate::texture::uastc::{Effort, Metric};
-use crate::texture::{Format, Texels, encode};
+use crate::texture::{EncodeError, Format, Texels, encode};
 use ::ktx2::{ColorModel, Reader, SupercompressionScheme, TransferFunction};
 
 const FORMATS: [Format; 7] =
@@ -17,11 +17,12 @@ fn texture(format: Format, width: u32, height: u32, keys: &[Key]) -> Option<Vec<
         }
     };
     let sizes = level_sizes(width, height);
-    let levels = sizes
-        .iter()
-        .map(|&(width, height)| encode(&Texels { width, height, row: &row }, format, Metric::Rgb, Effort::Fast));
-    let levels = levels.collect::<Result<Vec<_>, _>>().ok()?;
-    Some(Ktx2Writer { format, width, height, levels: &levels, keys, effort: Effort::Fast }.to_bytes())
+    let levels = sizes.iter().map(|&(width, height)| {
+        let level = encode(&Texels { width, height, row: &row }, format, Metric::Rgb, Effort::Fast)?;
+        Ok(StoredLevel::new(level, format, Effort::Fast))
+    });
+    let levels = levels.collect::<Result<Vec<_>, EncodeError>>().ok()?;
+    Some(Ktx2Writer { format, width, height, levels: &levels, keys }.to_bytes())
 }
 
 #[test]
