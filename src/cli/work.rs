@@ -11,7 +11,7 @@ use super::progress::Progress;
 use super::report::Asset;
 use crate::bake::{Places, Settings};
 use crate::cache::{Cache, CacheError};
-use crate::plan::{self, Job, Lookup, RunError};
+use crate::plan::{self, Job, Lookup, Room, RunError};
 use crate::remote::{Counts, Errand, JobFailure, Options, Remote, Wait};
 
 /// What became of jobs.
@@ -112,6 +112,8 @@ impl Work<'_> {
         take: &mut dyn FnMut(Asset, Outcome, &mut dyn Write) -> io::Result<()>,
     ) -> io::Result<()> {
         let mut places = Places::default();
+        let threads = rayon::current_num_threads();
+        let room = Room::new(threads);
         let told = |error: &RunError| JobFailure::from(error);
         let prepare = |index: usize| {
             let start = Instant::now();
@@ -126,11 +128,11 @@ impl Work<'_> {
                 if let Some(lookup) = lookup.as_mut().filter(|_| origin.is_some()) {
                     lookup.share(job);
                 }
-                Ok((job, origin, plan::prepare(job, lookup, &|share| progress.set(index, share, name))))
+                Ok((job, origin, plan::prepare(job, lookup, &room, &|share| progress.set(index, share, name))))
             });
             (prepared, start.elapsed().as_secs_f64())
         };
-        plan::in_order(planned.len(), rayon::current_num_threads(), prepare, |index, (prepared, seconds)| {
+        plan::in_order(planned.len(), threads, prepare, |index, (prepared, seconds)| {
             let start = Instant::now();
             let name = &planned[index].name;
             let mut warn = |error: CacheError| {

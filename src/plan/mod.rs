@@ -9,6 +9,7 @@ mod job;
 mod merge;
 mod moved;
 mod restore;
+mod room;
 mod run;
 mod shard;
 
@@ -20,6 +21,7 @@ pub use job::{Job, JobInput, JobOutput, OutputKind, folded};
 pub use merge::{Merged, Open, Told};
 pub use moved::Moved;
 pub use restore::{Lookup, holds};
+pub use room::{Room, Seat};
 pub use run::{Done, Prepared, Written, finish, prepare};
 pub use shard::Shard;
 

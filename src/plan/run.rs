@@ -8,6 +8,7 @@ use std::sync::Mutex;
 use super::error::RunError;
 use super::job::{Job, beside};
 use super::restore::{Found, Lookup, restore};
+use super::room::Room;
 use crate::bake::report::AssetReport;
 use crate::bake::{Baked, Places, Source, bake, publish, read_file};
 use crate::cache::{CacheError, Entry, Warn};
@@ -70,11 +71,11 @@ enum Outputs {
 }
 
 /// Fetches the outputs of `job` if its `lookup` found it, and else bakes them and puts them into the cache, all in memory. Jobs
-/// may be prepared side by side; `advance` is as in [`bake`].
-pub fn prepare(job: &Job, mut lookup: Option<Lookup<'_>>, advance: &dyn Fn(f32)) -> Prepared {
+/// may be prepared side by side, as far as there is `room` for those that are baked; `advance` is as in [`bake`].
+pub fn prepare(job: &Job, mut lookup: Option<Lookup<'_>>, room: &Room, advance: &dyn Fn(f32)) -> Prepared {
     let outputs = match lookup.as_mut().and_then(|lookup| lookup.fetch(job)) {
         Some(found) => Ok(Outputs::Found(Box::new(found))),
-        None => baked(job, advance).map(|baked| {
+        None => baked(job, room, advance).map(|baked| {
             let entry = Entry::new(&name(job, &baked), &baked);
             if let Some(Lookup { cache, warnings, .. }) = &mut lookup {
                 cache.put(&job.id, &entry, &baked, &mut |error| warnings.push(error));
@@ -105,8 +106,9 @@ pub fn finish(job: &Job, prepared: Prepared, places: &mut Places, warn: Warn<'_>
     }
 }
 
-fn baked(job: &Job, advance: &dyn Fn(f32)) -> Result<Baked, RunError> {
+fn baked(job: &Job, room: &Room, advance: &dyn Fn(f32)) -> Result<Baked, RunError> {
     let settings = job.typed_settings()?;
+    let _seat = room.enter(job);
     let inputs = Inputs::new(job);
     let result: Result<_, RunError> = (|| {
         let document = Document::parse(&inputs.read(&job.source).map_err(RunError::Read)?)?;

@@ -16,7 +16,7 @@ use crate::cache::{Cache, CacheError};
 use crate::cli::inputs::{Input, InputError};
 use crate::cli::selection::Selected;
 use crate::config::Resolved;
-use crate::plan::{self, Lookup, RunError};
+use crate::plan::{self, Lookup, Room, RunError};
 use crate::watch::{Ledger, Look, Scope, Settling, real};
 
 /// After how long a lock or a vanished disk is tried again.
@@ -219,7 +219,7 @@ impl Round {
         let look_up =
             |planned: &Option<Planned>| Some(Lookup::new(planned.as_ref()?.job.as_ref().ok()?, self.cache.as_ref()?));
         let lookups: Vec<Option<Lookup>> = planned.par_iter().map(look_up).collect();
-        let mut places = Places::default();
+        let (mut places, room) = (Places::default(), Room::new(1));
         let mut retry: Option<Duration> = None;
         let mut soon = |after: Option<Duration>| retry = [retry, after].into_iter().flatten().min();
         for (((input, resolved), planned), lookup) in selected.iter().zip(planned).zip(lookups) {
@@ -245,7 +245,7 @@ impl Round {
                 let _ = teller.warn(&format_args!("{whose}{error}"));
             };
             let result = job.and_then(|job| {
-                let prepared = plan::prepare(&job, lookup, &|_| ());
+                let prepared = plan::prepare(&job, lookup, &room, &|_| ());
                 plan::finish(&job, prepared, &mut places, &mut warn)
             });
             let state = match result {
