@@ -1,225 +1,285 @@
-//! A block of one given mode, fitted to its texels.
+//! Blocks of one given mode, fitted to their texels.
 
-use fearless_simd::Simd;
+#![expect(clippy::needless_range_loop, reason = "loops over channels read several arrays at one index")]
 
-use super::line::{Line, fit};
-use super::moments::{ALL, Lane, Moments, moments, part, principal_axis, scatter_along};
-use super::pack::Block;
+use fearless_simd::{Select, Simd, SimdBase, SimdCvtFloat, prelude::*, u32x8};
+
+use super::blocks::Blocks;
+use super::lanes::Grid;
+use super::line::{Line, Points};
+use super::moments::{Moments, moments, principal_axis, scatter_along, trace};
+use super::partition::Least;
 use super::tables::{Mode, PATTERNS, THIRDS};
+use crate::simd::{LANES, Wide};
 
-/// Members of either subset of every pattern, as 0 and 1 per texel.
-pub(super) static SUBSETS: [[Lane; 2]; PATTERNS.len()] = subsets();
+/// The channels of texel `i`.
+#[inline(always)]
+pub(super) fn texel<S: Simd, const N: usize>(texels: &[Grid<S>; N], i: usize) -> [Wide<S>; N] {
+    let mut texel = [texels[0][i]; N];
+    for c in 1..N {
+        texel[c] = texels[c][i];
+    }
+    texel
+}
 
-const fn subsets() -> [[Lane; 2]; PATTERNS.len()] {
-    let mut all = [[[0.0; 16]; 2]; PATTERNS.len()];
-    let mut pattern = 0;
-    while pattern < PATTERNS.len() {
-        let mut i = 0;
-        while i < 16 {
-            all[pattern][(PATTERNS[pattern] >> i & 1) as usize][i] = 1.0;
-            i += 1;
-        }
-        pattern += 1;
+/// A number per channel, in all lanes.
+#[inline(always)]
+pub(super) fn splat<S: Simd, const N: usize>(simd: S, numbers: &[f32; N]) -> [Wide<S>; N] {
+    let mut all = [Wide::splat(simd, numbers[0]); N];
+    for c in 1..N {
+        all[c] = Wide::splat(simd, numbers[c]);
     }
     all
 }
 
-/// The same of the three-subset patterns.
-static THREE_SUBSETS: [[Lane; 3]; THIRDS.len()] = three_subsets();
-
-const fn three_subsets() -> [[Lane; 3]; THIRDS.len()] {
-    let mut all = [[[0.0; 16]; 3]; THIRDS.len()];
-    let mut at = 0;
-    while at < 16 * 3 * THIRDS.len() {
-        let (i, subset, pattern) = (at % 16, at / 16 % 3, at / 48);
-        all[pattern][subset][i] = (THIRDS[pattern][subset] >> i & 1) as f32;
-        at += 1;
+/// The channels of a block but the one at `selector`.
+#[inline(always)]
+pub(super) fn rest<S: Simd, const N: usize, const M: usize>(
+    selector: Wide<S>,
+    channels: &[Wide<S>; N],
+) -> [Wide<S>; M] {
+    let mut rest = [channels[0]; M];
+    for k in 0..M {
+        rest[k] = selector.simd_gt(k as f32).select(channels[k], channels[k + 1]);
     }
-    all
+    rest
 }
 
-/// The channels of an RGB block but one.
-pub(super) fn rest(alone: usize) -> [usize; 2] {
-    [[1, 2], [0, 2], [0, 1]][alone]
+/// The channel at `selector`.
+#[inline(always)]
+pub(super) fn alone<S: Simd, const N: usize>(selector: Wide<S>, channels: &[Wide<S>; N]) -> Wide<S> {
+    let mut found = channels[0];
+    for c in 1..N {
+        found = selector.simd_eq(c as f32).select(channels[c], found);
+    }
+    found
 }
 
-fn empty(mode: &'static Mode) -> Block {
-    Block { mode, pattern: 0, selector: 0, endpoints: [[[0; 2]; 4]; 3], weights: [[0; 16]; 2], error: 0.0 }
-}
-
-impl Block {
-    /// Takes over a line whose channel `k` is channel `channels[k]` of the block.
+impl<S: Simd> Blocks<S> {
+    /// Takes over a line through the first channels, of the texels in `mask`.
     #[inline(always)]
-    pub(super) fn place<const N: usize>(
-        &mut self,
-        line: &Line<N>,
-        channels: [usize; N],
-        subset: usize,
-        plane: usize,
-        members: u16,
-    ) {
-        for (k, &c) in channels.iter().enumerate() {
-            self.endpoints[subset][c] = [line.low[k], line.high[k]];
+    pub(super) fn place<const N: usize>(&mut self, line: &Line<S, N>, subset: usize, mask: Option<&Grid<S>>) {
+        for c in 0..N {
+            self.endpoints[subset][c] = [line.low[c], line.high[c]];
         }
         for i in 0..16 {
-            // All ones for a member: a branch-free choice.
-            let keep = ((members >> i & 1) as u8).wrapping_neg();
-            let weight = &mut self.weights[plane][i];
-            *weight = (*weight & !keep) | (line.weights[i] & keep);
+            match mask {
+                Some(mask) => self.weights[0][i] += mask[i] * line.weights[i],
+                None => self.weights[0][i] = line.weights[i],
+            }
         }
         self.error += line.error;
     }
+
+    /// Takes over the lines of two planes: of the channel at the selector, and of the others.
+    #[inline(always)]
+    pub(super) fn place_planes<const N: usize, const M: usize>(&mut self, single: &Line<S, 1>, others: &Line<S, M>) {
+        for c in 0..N {
+            let is_single = self.selector.simd_eq(c as f32);
+            let is_before = self.selector.simd_gt(c as f32);
+            let (before, after) = (c.min(M - 1), c.saturating_sub(1));
+            let low = is_before.select(others.low[before], others.low[after]);
+            let high = is_before.select(others.high[before], others.high[after]);
+            self.endpoints[0][c] = [is_single.select(single.low[0], low), is_single.select(single.high[0], high)];
+        }
+        self.weights = [others.weights, single.weights];
+        self.error = single.error + others.error;
+    }
 }
 
-/// A block of one line through the first `N` channels; `BITS` are the weight bits of `mode`, here and below.
+/// Blocks of one line through the first `N` channels; `BITS` are the weight bits of `mode`, here and below.
 #[inline(always)]
-pub(super) fn one_line<I: Simd, const N: usize, const BITS: u32>(
-    simd: I,
-    texels: &[Lane; N],
-    all: &Moments<N>,
-    axis: &[f32; N],
+pub(super) fn one_line<S: Simd, const N: usize, const BITS: u32>(
+    simd: S,
+    texels: &[Grid<S>; N],
+    all: &Moments<S, N>,
+    axis: &[Wide<S>; N],
     scale: &[f32; N],
     mode: &'static Mode,
     rounds: usize,
-) -> Block {
+) -> Blocks<S> {
     simd.vectorize(
         #[inline(always)]
         || {
-            let mut block = empty(mode);
-            let line = fit::<N, BITS>(texels, &ALL, all, axis, scale, mode.range, rounds);
-            block.place(&line, std::array::from_fn(|c| c), 0, 0, 0xffff);
-            block
+            let mut blocks = Blocks::empty(simd, mode);
+            let scale = splat(simd, scale);
+            let points = Points { texels, subset: None, scale, range: mode.range };
+            blocks.place(&points.fit::<BITS>(simd, all, axis, rounds), 0, None);
+            blocks
         },
     )
 }
 
-/// A block whose channel `selector` has a line of its own beside that of the other channels.
+/// Blocks whose channel `selector` has a line of its own beside that of the other channels.
 #[inline(always)]
-pub(super) fn two_planes<I: Simd, const N: usize, const BITS: u32>(
-    simd: I,
-    texels: &[Lane; N],
-    all: &Moments<N>,
-    selector: usize,
+pub(super) fn two_planes<S: Simd, const N: usize, const BITS: u32>(
+    simd: S,
+    texels: &[Grid<S>; N],
+    all: &Moments<S, N>,
+    selector: Wide<S>,
     scale: &[f32; N],
     mode: &'static Mode,
     rounds: usize,
-) -> Block {
+) -> Blocks<S> {
     simd.vectorize(
         #[inline(always)]
-        || {
-            let mut block = empty(mode);
-            block.selector = selector;
-            let alone = fit::<1, BITS>(
-                &[texels[selector]],
-                &ALL,
-                &part(all, [selector]),
-                &[1.0],
-                &[scale[selector]],
-                mode.range,
-                rounds,
-            );
-            block.place(&alone, [selector], 0, 1, 0xffff);
-            if N == 2 {
-                let channels = [1 - selector];
-                let line = together::<N, 1, BITS>(texels, all, channels, scale, mode, rounds);
-                block.place(&line, channels, 0, 0, 0xffff);
-            } else if N == 3 {
-                let channels = rest(selector);
-                let line = together::<N, 2, BITS>(texels, all, channels, scale, mode, rounds);
-                block.place(&line, channels, 0, 0, 0xffff);
-            } else {
-                let channels = [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]][selector];
-                let line = together::<N, 3, BITS>(texels, all, channels, scale, mode, rounds);
-                block.place(&line, channels, 0, 0, 0xffff);
-            }
-            block
+        || match N {
+            2 => planes::<S, N, 1, BITS>(simd, texels, all, selector, scale, mode, rounds),
+            3 => planes::<S, N, 2, BITS>(simd, texels, all, selector, scale, mode, rounds),
+            _ => planes::<S, N, 3, BITS>(simd, texels, all, selector, scale, mode, rounds),
         },
     )
 }
 
-/// The line of the plane that holds all channels but one.
+/// The same with `M`, one less than `N`.
 #[inline(always)]
-fn together<const N: usize, const M: usize, const BITS: u32>(
-    texels: &[Lane; N],
-    all: &Moments<N>,
-    channels: [usize; M],
+fn planes<S: Simd, const N: usize, const M: usize, const BITS: u32>(
+    simd: S,
+    texels: &[Grid<S>; N],
+    all: &Moments<S, N>,
+    selector: Wide<S>,
     scale: &[f32; N],
     mode: &'static Mode,
     rounds: usize,
-) -> Line<M> {
-    let texels = channels.map(|c| texels[c]);
-    let m = part(all, channels);
-    let axis = principal_axis(&m.scatter);
-    fit::<M, BITS>(&texels, &ALL, &m, &axis, &channels.map(|c| scale[c]), mode.range, rounds)
+) -> Blocks<S> {
+    let zero = Wide::splat(simd, 0.0);
+    let scale = splat(simd, scale);
+    let (mut single, mut others) = ([[zero; 16]; 1], [[zero; 16]; M]);
+    for i in 0..16 {
+        let texel = texel(texels, i);
+        single[0][i] = alone(selector, &texel);
+        let left: [Wide<S>; M] = rest(selector, &texel);
+        for k in 0..M {
+            others[k][i] = left[k];
+        }
+    }
+    let (mut own, mut columns, mut scatter) = ([zero; N], [[zero; N]; M], [[zero; M]; M]);
+    for c in 0..N {
+        own[c] = all.scatter[c][c];
+        let row: [Wide<S>; M] = rest(selector, &all.scatter[c]);
+        for k in 0..M {
+            columns[k][c] = row[k];
+        }
+    }
+    for k in 0..M {
+        scatter[k] = rest(selector, &columns[k]);
+    }
+    let single_moments =
+        Moments { count: all.count, sums: [alone(selector, &all.sums)], scatter: [[alone(selector, &own)]] };
+    let other_moments = Moments { count: all.count, sums: rest(selector, &all.sums), scatter };
+
+    let points = Points { texels: &single, subset: None, scale: [alone(selector, &scale)], range: mode.range };
+    let single = points.fit::<BITS>(simd, &single_moments, &[Wide::splat(simd, 1.0)], rounds);
+    let points = Points { texels: &others, subset: None, scale: rest(selector, &scale), range: mode.range };
+    let axis = principal_axis(simd, &other_moments.scatter);
+    let others = points.fit::<BITS>(simd, &other_moments, &axis, rounds);
+    let mut blocks = Blocks::empty(simd, mode);
+    blocks.selector = selector;
+    blocks.place_planes::<N, M>(&single, &others);
+    blocks
 }
 
-/// The `S` subsets of a pattern, ready to be fitted.
-pub(super) struct Split<const N: usize, const S: usize> {
-    pattern: usize,
-    masks: &'static [Lane; S],
-    moments: [Moments<N>; S],
-    axes: [[f32; N]; S],
+/// The `K` subsets of a pattern, ready to be fitted.
+pub(super) struct Split<S: Simd, const N: usize, const K: usize> {
+    pattern: Wide<S>,
+    masks: [Grid<S>; K],
+    moments: [Moments<S, N>; K],
+    axes: [[Wide<S>; N]; K],
 }
 
-impl<const N: usize> Split<N, 2> {
+/// 1 for the texels of a subset of a pattern, 0 for the others; `members` has bit i for texel i.
+#[inline(always)]
+pub(super) fn mask<S: Simd>(simd: S, pattern: Wide<S>, members: impl Fn(usize) -> u16) -> Grid<S> {
+    let pattern: [f32; LANES] = pattern.into();
+    let bits = u32x8::simd_from(simd, pattern.map(|p| u32::from(members(p as usize))));
+    let mut mask = [Wide::splat(simd, 0.0); 16];
+    for (i, member) in mask.iter_mut().enumerate() {
+        *member = Wide::float_from((bits >> i as u32) & 1);
+    }
+    mask
+}
+
+impl<S: Simd, const N: usize> Split<S, N, 2> {
     /// Split by one of the two-subset patterns.
     #[inline(always)]
-    pub fn in_two(texels: &[Lane; N], pattern: usize) -> Self {
-        Self::new(texels, pattern, &SUBSETS[pattern])
+    pub fn in_two(simd: S, texels: &[Grid<S>; N], pattern: Wide<S>) -> Self {
+        let members = |p: usize| PATTERNS[p % PATTERNS.len()];
+        Self::new(simd, texels, pattern, [mask(simd, pattern, |p| !members(p)), mask(simd, pattern, members)])
     }
 }
 
-impl<const N: usize> Split<N, 3> {
-    /// Split by each of the three-subset patterns.
+impl<S: Simd, const N: usize> Split<S, N, 3> {
+    /// Split by one of the three-subset patterns.
     #[inline(always)]
-    pub fn in_three(texels: &[Lane; N]) -> [Self; THIRDS.len()] {
-        std::array::from_fn(|pattern| Self::new(texels, pattern, &THREE_SUBSETS[pattern]))
+    pub fn in_three(simd: S, texels: &[Grid<S>; N], pattern: Wide<S>) -> Self {
+        let masks = [
+            mask(simd, pattern, |p| THIRDS[p % THIRDS.len()][0]),
+            mask(simd, pattern, |p| THIRDS[p % THIRDS.len()][1]),
+            mask(simd, pattern, |p| THIRDS[p % THIRDS.len()][2]),
+        ];
+        Self::new(simd, texels, pattern, masks)
+    }
+
+    /// The `M` three-subset patterns with the least squared error to expect of lines of 2-bit weights.
+    #[inline(always)]
+    pub fn likely_thirds<const M: usize>(simd: S, texels: &[Grid<S>; N]) -> [Wide<S>; M] {
+        let mut least = Least::new(simd);
+        for pattern in 0..THIRDS.len() {
+            let pattern = Wide::splat(simd, pattern as f32);
+            let (off, along) = Self::in_three(simd, texels, pattern).scatter(simd);
+            least.offer(off + along / 12.0, pattern);
+        }
+        least.patterns
     }
 }
 
-impl<const N: usize, const S: usize> Split<N, S> {
+impl<S: Simd, const N: usize, const K: usize> Split<S, N, K> {
     #[inline(always)]
-    fn new(texels: &[Lane; N], pattern: usize, masks: &'static [Lane; S]) -> Self {
-        let moments = masks.each_ref().map(|mask| moments(texels, mask));
-        let axes = moments.each_ref().map(|m| principal_axis(&m.scatter));
-        Self { pattern, masks, moments, axes }
+    fn new(simd: S, texels: &[Grid<S>; N], pattern: Wide<S>, masks: [Grid<S>; K]) -> Self {
+        let mut parts = [moments(simd, texels, Some(&masks[0])); K];
+        let mut axes = [principal_axis(simd, &parts[0].scatter); K];
+        for k in 1..K {
+            parts[k] = moments(simd, texels, Some(&masks[k]));
+            axes[k] = principal_axis(simd, &parts[k].scatter);
+        }
+        Self { pattern, masks, moments: parts, axes }
     }
 
     /// Scatter off the axes of the subsets, which stays as error, and scatter along them.
     #[inline(always)]
-    pub fn scatter(&self) -> (f32, f32) {
-        let [mut off, mut along] = [0.0; 2];
+    pub fn scatter(&self, simd: S) -> (Wide<S>, Wide<S>) {
+        let [mut off, mut along] = [Wide::splat(simd, 0.0); 2];
         for (m, axis) in self.moments.iter().zip(&self.axes) {
-            let total: f32 = (0..N).map(|c| m.scatter[c][c]).sum();
-            let on = scatter_along(&m.scatter, axis);
-            off += total - on;
+            let on = scatter_along(simd, &m.scatter, axis);
+            off += trace(&m.scatter) - on;
             along += on;
         }
         (off, along)
     }
 }
 
-/// A block of a line for each subset.
+/// Blocks of a line for each subset.
 #[inline(always)]
-pub(super) fn split_lines<I: Simd, const N: usize, const S: usize, const BITS: u32>(
-    simd: I,
-    texels: &[Lane; N],
-    split: &Split<N, S>,
+pub(super) fn split_lines<S: Simd, const N: usize, const K: usize, const BITS: u32>(
+    simd: S,
+    texels: &[Grid<S>; N],
+    split: &Split<S, N, K>,
     scale: &[f32; N],
     mode: &'static Mode,
     rounds: usize,
-) -> Block {
+) -> Blocks<S> {
     simd.vectorize(
         #[inline(always)]
         || {
-            let mut block = empty(mode);
-            block.pattern = split.pattern;
+            let mut blocks = Blocks::empty(simd, mode);
+            blocks.pattern = split.pattern;
+            let scale = splat(simd, scale);
             for (subset, mask) in split.masks.iter().enumerate() {
                 let (m, axis) = (&split.moments[subset], &split.axes[subset]);
-                let line = fit::<N, BITS>(texels, mask, m, axis, scale, mode.range, rounds);
-                block.place(&line, std::array::from_fn(|c| c), subset, 0, block.members(subset));
+                let points = Points { texels, subset: Some(mask), scale, range: mode.range };
+                blocks.place(&points.fit::<BITS>(simd, m, axis, rounds), subset, Some(mask));
             }
-            block
+            blocks
         },
     )
 }

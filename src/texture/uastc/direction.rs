@@ -6,18 +6,20 @@
 //! any mode, and the error of any endpoints. What a departure from unit length costs keeps both kinds of engines right
 //! and textures filterable.
 
-#![expect(clippy::needless_range_loop, reason = "lane loops read several arrays at one index")]
+#![expect(clippy::needless_range_loop, reason = "loops over texels read several grids at one index")]
 
 use fearless_simd::{Select, Simd, SimdBase, prelude::*};
 
-use super::line::{ROUND, decode, quantise, ramp};
-use super::moments::{Lane, sum};
-use super::pack::Block;
-use super::tables::Range;
+use super::blocks::Blocks;
+use super::candidate::{mask, texel};
+use super::lanes::{Grid, look_up, sum, take};
+use super::line::{decode, quantise, ramp, round};
+use super::moments::{count, counted};
+use super::tables::{PATTERNS, Range, THIRDS};
 use crate::simd::{LANES, Real, Wide};
 
-/// Unit normals of a block, in units of [`UNIT`].
-pub(super) type Normals = [Lane; 3];
+/// Unit normals of eight blocks, in units of [`UNIT`].
+pub(super) type Normals<S> = [Grid<S>; 3];
 
 /// Decoded levels are 127.5 (1 + component).
 pub(super) const UNIT: f32 = 127.5;
@@ -33,142 +35,184 @@ pub(super) const LONG: f32 = 0.1;
 
 /// The normals that `texels` stand for.
 #[inline(always)]
-pub(super) fn normals(texels: &[Lane; 3]) -> Normals {
-    let mut normals = [[0.0; 16]; 3];
+pub(super) fn normals<S: Simd>(simd: S, texels: &[Grid<S>; 3]) -> Normals<S> {
+    let mut normals = *texels;
     for i in 0..16 {
         let [x, y, z] = [texels[0][i] - UNIT, texels[1][i] - UNIT, texels[2][i] - UNIT];
         // Never 0: levels are whole numbers.
-        let scale = UNIT / (x * x + y * y + z * z).sqrt();
+        let scale = Wide::splat(simd, UNIT) / Real::sqrt(x * x + y * y + z * z);
         (normals[0][i], normals[1][i], normals[2][i]) = (x * scale, y * scale, z * scale);
     }
     normals
 }
 
-/// The vectors that all weights give between two endpoints, of which there are 32 at most.
-struct Palette {
-    /// As decoded.
-    vectors: [[f32; 32]; 3],
+/// One of the vectors that all weights give between two endpoints.
+#[derive(Clone, Copy)]
+struct Entry<S: Simd> {
     /// Mean of the directions as read and as rebuilt.
-    directions: [[f32; 32]; 3],
+    direction: [Wide<S>; 3],
     /// Part of the error that does not depend on the normal.
-    loss: [f32; 32],
+    loss: Wide<S>,
 }
 
 /// Endpoints per channel of one subset: low, high.
-type Ends = [[u8; 2]; 3];
+type Ends<S> = [[Wide<S>; 2]; 3];
 
-/// A subset of a block with weights of `BITS` bits, whose palette has `P` entries: a weight for all channels, or with two
+/// A subset of blocks with weights of `BITS` bits, whose palettes have `P` entries: a weight for all channels, or with two
 /// planes one for channel `alone` above one for the rest.
-struct Subset<'a, const P: usize, const BITS: u32> {
-    range: &'a Range,
+struct Subset<'a, S: Simd, const P: usize, const BITS: u32> {
+    simd: S,
+    range: &'static Range,
     alone: Option<usize>,
-    normals: &'a Normals,
-    /// 1 for a member, 0 for the rest.
-    mask: Lane,
+    normals: &'a Normals<S>,
+    /// 1 for a member, 0 for the rest; none if all are members.
+    mask: Option<Grid<S>>,
 }
 
 /// Endpoints with the best weights for them.
 #[derive(Clone, Copy)]
-struct Fit {
-    ends: Ends,
+struct Fit<S: Simd> {
+    ends: Ends<S>,
     /// Palette entry of every texel.
-    entries: [u32; 16],
-    /// Decoded vectors.
-    vectors: [Lane; 3],
-    error: f32,
+    entries: Grid<S>,
+    error: Wide<S>,
 }
 
-impl<const P: usize, const BITS: u32> Subset<'_, P, BITS> {
-    const LAST: u32 = (1 << BITS) - 1;
-
-    /// Where an entry holds the weight of channel `c`.
+impl<S: Simd> Fit<S> {
+    /// Becomes `other` where that has the lesser error; whether it has anywhere.
     #[inline(always)]
-    fn shift(&self, c: usize) -> u32 {
-        if self.alone == Some(c) { BITS } else { 0 }
+    fn offer(&mut self, other: &Self) -> bool {
+        let is_better = other.error.simd_lt(self.error);
+        if !is_better.any_true() {
+            return false;
+        }
+        for (own, other) in self.ends.as_flattened_mut().iter_mut().zip(other.ends.as_flattened()) {
+            take(own, *other, is_better);
+        }
+        for (own, other) in self.entries.iter_mut().zip(&other.entries) {
+            take(own, *other, is_better);
+        }
+        take(&mut self.error, other.error, is_better);
+        true
+    }
+}
+
+impl<S: Simd, const P: usize, const BITS: u32> Subset<'_, S, P, BITS> {
+    /// The weights, 0..=64, that an entry stands for: of channel `alone` and of the others.
+    #[inline(always)]
+    fn weights(&self, entry: Wide<S>) -> [Wide<S>; 2] {
+        if self.alone.is_none() {
+            return [ramp::<BITS, _>(entry); 2];
+        }
+        let count = (1 << BITS) as f32;
+        // Entries are whole: a fraction less than a half keeps rounding down.
+        let upper = round(entry * (1.0 / count) - (0.5 - 0.5 / count));
+        [ramp::<BITS, _>(upper), ramp::<BITS, _>(entry - upper * count)]
+    }
+
+    /// Which of [`Self::weights`] is that of channel `c`.
+    #[inline(always)]
+    fn plane(&self, c: usize) -> usize {
+        usize::from(self.alone != Some(c))
     }
 
     #[inline(always)]
-    fn palette<S: Simd>(&self, simd: S, ends: &Ends) -> Palette {
-        let mut palette = Palette { vectors: [[0.0; 32]; 3], directions: [[0.0; 32]; 3], loss: [0.0; 32] };
-        for first in (0..P).step_by(LANES) {
-            let mut vector = [Wide::splat(simd, 0.0); 3];
-            for c in 0..3 {
-                let [low, high] = ends[c].map(f32::from);
-                let shift = self.shift(c);
-                let mut weights = [0.0; LANES];
-                for j in 0..LANES {
-                    weights[j] = ramp::<BITS>(((first + j) as u32 >> shift & Self::LAST) as i32) as f32;
-                }
-                let (low, step) = (Wide::splat(simd, low), Wide::splat(simd, high - low));
-                vector[c] = decode(low, step, Wide::simd_from(simd, weights)) - UNIT;
-                palette.vectors[c][first..first + LANES].copy_from_slice(&*vector[c]);
-            }
-            let [x, y, z] = vector;
+    fn palette(&self, ends: &Ends<S>) -> [Entry<S>; P] {
+        let simd = self.simd;
+        let zero = Wide::splat(simd, 0.0);
+        let mut palette = [Entry { direction: [zero; 3], loss: zero }; P];
+        for (at, entry) in palette.iter_mut().enumerate() {
+            let [x, y, z] = self.decoded(ends, Wide::splat(simd, at as f32));
             let flat = x * x + y * y;
             let length = Real::sqrt(flat + z * z);
-            let scale = Wide::splat(simd, UNIT) / length;
-            let rebuilt = Real::sqrt(Real::max(Wide::splat(simd, UNIT * UNIT) - flat, Wide::splat(simd, 0.0)));
+            let scale = UNIT / length;
+            let rebuilt = Real::sqrt(Real::max(UNIT * UNIT - flat, zero));
             let stay = length.simd_lt(UNIT).select(Wide::splat(simd, SHORT), Wide::splat(simd, LONG));
-            let mut loss = stay * (length - UNIT) * (length - UNIT);
+            entry.loss = stay * (length - UNIT) * (length - UNIT);
             // (1 - r) |u - n|^2 + r |v - n|^2 = |w - n|^2 + r (1 - r) |u - v|^2 with w = (1 - r) u + r v.
             for (c, (read, rebuilt)) in [(x, x), (y, y), (z, rebuilt)].into_iter().enumerate() {
                 let u = read * scale;
-                let direction = u * (1.0 - REBUILT) + rebuilt * REBUILT;
-                palette.directions[c][first..first + LANES].copy_from_slice(&*direction);
-                loss += (u - rebuilt) * (REBUILT * (1.0 - REBUILT)) * (u - rebuilt);
+                entry.loss += (u - rebuilt) * (REBUILT * (1.0 - REBUILT)) * (u - rebuilt);
+                entry.direction[c] = u * (1.0 - REBUILT) + rebuilt * REBUILT;
             }
-            palette.loss[first..first + LANES].copy_from_slice(&*loss);
         }
         palette
     }
 
+    /// The vector of a palette's entry, in units of [`UNIT`].
+    #[inline(always)]
+    fn decoded(&self, ends: &Ends<S>, entry: Wide<S>) -> [Wide<S>; 3] {
+        let weights = self.weights(entry);
+        let mut vector = [entry; 3];
+        for c in 0..3 {
+            let [low, high] = ends[c];
+            vector[c] = decode(low, high - low, weights[self.plane(c)]) - UNIT;
+        }
+        vector
+    }
+
     /// The nearest entry of every texel.
     #[inline(always)]
-    fn choose<S: Simd>(&self, simd: S, ends: &Ends) -> Fit {
-        let palette = self.palette(simd, ends);
-        let (mut entries, mut errors) = ([0; 16], [0.0; 16]);
-        // Eight texels at a time, so that least errors stay in registers.
-        for k in 0..16 / LANES {
-            let [x, y, z] = self.normals.each_ref().map(|n| n.as_chunks::<LANES>().0[k]);
-            let (x, y, z) = (Wide::simd_from(simd, x), Wide::simd_from(simd, y), Wide::simd_from(simd, z));
-            let (mut least, mut at) = (Wide::splat(simd, f32::INFINITY), Wide::splat(simd, 0.0));
-            for e in 0..P {
-                let [u, v, w] = [palette.directions[0][e], palette.directions[1][e], palette.directions[2][e]];
+    fn choose(&self, ends: &Ends<S>) -> Fit<S> {
+        let simd = self.simd;
+        let palette = self.palette(ends);
+        let zero = Wide::splat(simd, 0.0);
+        let (mut entries, mut errors) = ([zero; 16], [zero; 16]);
+        for i in 0..16 {
+            let [x, y, z] = texel(self.normals, i);
+            let (mut least, mut at) = (Wide::splat(simd, f32::INFINITY), zero);
+            for (e, entry) in palette.iter().enumerate() {
+                let [u, v, w] = entry.direction;
                 let (a, b, c) = (x - u, y - v, z - w);
-                let error = a * a + palette.loss[e] + b * b + c * c;
+                let error = a * a + entry.loss + b * b + c * c;
                 let is_nearer = error.simd_lt(least);
                 least = is_nearer.select(error, least);
                 at = is_nearer.select(Wide::splat(simd, e as f32), at);
             }
-            let (least, at): ([f32; LANES], [f32; LANES]) = (least.into(), at.into());
-            for j in 0..LANES {
-                entries[LANES * k + j] = (at[j] + ROUND).to_bits() & 31;
-                errors[LANES * k + j] = least[j];
-            }
+            (entries[i], errors[i]) = (at, least);
         }
-        let vectors = palette.vectors.map(|v| entries.map(|e| v[e as usize % P]));
-        Fit { ends: *ends, entries, vectors, error: sum(|i| self.mask[i] * errors[i]) }
+        let error = sum(
+            #[inline(always)]
+            |i| counted(self.mask.as_ref(), i, errors[i]),
+        );
+        Fit { ends: *ends, entries, error }
     }
 
     /// Endpoints that bring the weights of `entries` nearest to `targets`, channel by channel.
     #[inline(always)]
-    fn regress(&self, targets: &[Lane; 3], entries: &[u32; 16]) -> Ends {
-        let count = sum(|i| self.mask[i]);
-        let mut ends = [[0; 2]; 3];
+    fn regress(&self, targets: &[Grid<S>; 3], entries: &Grid<S>) -> Ends<S> {
+        let simd = self.simd;
+        let subset = self.mask.as_ref();
+        let count = count(simd, subset);
+        let zero = Wide::splat(simd, 0.0);
+        let mut weights = [[zero; 2]; 16];
+        for i in 0..16 {
+            let [own, others] = self.weights(entries[i]);
+            weights[i] = [counted(subset, i, own), counted(subset, i, others)];
+        }
+        let mut ends = [[zero; 2]; 3];
         for c in 0..3 {
-            let shift = self.shift(c);
-            let mut weights = [0.0; 16];
-            for i in 0..16 {
-                weights[i] = self.mask[i] * ramp::<BITS>((entries[i] >> shift & Self::LAST) as i32) as f32;
-            }
-            let w = sum(|i| weights[i]);
-            let ww = sum(|i| weights[i] * weights[i]);
-            let x = sum(|i| self.mask[i] * targets[c][i]);
-            let wx = sum(|i| weights[i] * targets[c][i]);
+            let plane = self.plane(c);
+            let w = sum(
+                #[inline(always)]
+                |i| weights[i][plane],
+            );
+            let ww = sum(
+                #[inline(always)]
+                |i| weights[i][plane] * weights[i][plane],
+            );
+            let x = sum(
+                #[inline(always)]
+                |i| counted(subset, i, targets[c][i]),
+            );
+            let wx = sum(
+                #[inline(always)]
+                |i| weights[i][plane] * targets[c][i],
+            );
             let determinant = count * ww - w * w;
-            let slope = if determinant > 0.0 { (count * wx - w * x) / determinant } else { 0.0 };
+            let slope = determinant.simd_gt(0.0).select((count * wx - w * x) / determinant, zero);
             let low = (x - slope * w) / count + UNIT;
-            ends[c] = [quantise(self.range, low), quantise(self.range, low + 64.0 * slope)];
+            ends[c] = [quantise(simd, self.range, low), quantise(simd, self.range, low + slope * 64.0)];
         }
         ends
     }
@@ -176,11 +220,13 @@ impl<const P: usize, const BITS: u32> Subset<'_, P, BITS> {
     /// Normals moved along themselves to where the vectors of `fit` are nearest: a squared distance to these, whose
     /// channels regression can treat one by one, is one to the directions (and bounds it from above for others).
     #[inline(always)]
-    fn targets(&self, fit: &Fit) -> [Lane; 3] {
+    fn targets(&self, fit: &Fit<S>) -> [Grid<S>; 3] {
         let mut targets = *self.normals;
         for i in 0..16 {
-            let along: f32 = (0..3).map(|c| fit.vectors[c][i] * self.normals[c][i]).sum::<f32>() / (UNIT * UNIT);
-            let stay = if along < 1.0 { SHORT } else { LONG };
+            let [x, y, z] = self.decoded(&fit.ends, fit.entries[i]);
+            let along = (x * targets[0][i] + y * targets[1][i] + z * targets[2][i]) / (UNIT * UNIT);
+            let (short, long) = (Wide::splat(self.simd, SHORT), Wide::splat(self.simd, LONG));
+            let stay = along.simd_lt(1.0).select(short, long);
             let length = along + stay * (1.0 - along);
             for c in 0..3 {
                 targets[c][i] *= length;
@@ -191,36 +237,31 @@ impl<const P: usize, const BITS: u32> Subset<'_, P, BITS> {
 
     /// Regression on `entries`, then in turns with choice as long as that helps; `ends` as they are without a round.
     #[inline(always)]
-    fn refine<S: Simd>(&self, simd: S, ends: &Ends, entries: &[u32; 16], rounds: usize) -> Fit {
+    fn refine(&self, ends: &Ends<S>, entries: &Grid<S>, rounds: usize) -> Fit<S> {
         if rounds == 0 {
-            return self.choose(simd, ends);
+            return self.choose(ends);
         }
-        let mut best = self.choose(simd, &self.regress(self.normals, entries));
+        let mut best = self.choose(&self.regress(self.normals, entries));
         for _ in 1..rounds {
-            let next = self.choose(simd, &self.regress(&self.targets(&best), &best.entries));
-            if next.error >= best.error {
+            if !best.offer(&self.choose(&self.regress(&self.targets(&best), &best.entries))) {
                 break;
             }
-            best = next;
         }
         best
     }
 
     /// Moves single endpoints to neighbouring levels as long as that helps.
     #[inline(always)]
-    fn polish<S: Simd>(&self, simd: S, mut best: Fit, passes: usize) -> Fit {
+    fn polish(&self, mut best: Fit<S>, passes: usize) -> Fit<S> {
         for _ in 0..passes {
-            let before = best.error;
+            let mut is_better = false;
             for k in 0..12 {
                 let mut ends = best.ends;
                 let end = &mut ends[k / 4][k % 2];
-                *end = self.range.neighbour(*end, k % 4 < 2);
-                let next = self.choose(simd, &ends);
-                if next.error < best.error {
-                    best = next;
-                }
+                *end = look_up(self.simd, &self.range.neighbour[usize::from(k % 4 < 2)], *end);
+                is_better |= best.offer(&self.choose(&ends));
             }
-            if best.error == before {
+            if !is_better {
                 break;
             }
         }
@@ -228,57 +269,78 @@ impl<const P: usize, const BITS: u32> Subset<'_, P, BITS> {
     }
 }
 
-impl Block {
-    /// Fits the block to `normals` by direction: endpoints by `rounds` of regression, which starts from the weights that
-    /// the block has (0 leaves them), then by `passes` over single endpoints; and the best weights for them. The error
-    /// becomes that of the directions.
+impl<S: Simd> Blocks<S> {
+    /// Fits blocks of one mode and selector to `normals` by direction: endpoints by `rounds` of regression, which starts
+    /// from the weights that the blocks have (0 leaves them), then by `passes` over single endpoints; and the best weights
+    /// for them. The error becomes that of the directions.
     #[inline(always)]
-    pub(super) fn aim<S: Simd>(&mut self, simd: S, normals: &Normals, rounds: usize, passes: usize) {
-        match (self.mode.planes, self.mode.weight_bits) {
-            (2, _) => self.aim_in::<_, 16, 2>(simd, normals, rounds, passes),
-            (_, 2) => self.aim_in::<_, 4, 2>(simd, normals, rounds, passes),
-            (_, 3) => self.aim_in::<_, 8, 3>(simd, normals, rounds, passes),
-            (_, 4) => self.aim_in::<_, 16, 4>(simd, normals, rounds, passes),
-            _ => self.aim_in::<_, 32, 5>(simd, normals, rounds, passes),
+    pub(super) fn aim(&mut self, simd: S, normals: &Normals<S>, rounds: usize, passes: usize) {
+        match (self.modes[0].planes, self.modes[0].weight_bits) {
+            (2, _) => self.aim_in::<16, 2>(simd, normals, rounds, passes),
+            (_, 2) => self.aim_in::<4, 2>(simd, normals, rounds, passes),
+            (_, 3) => self.aim_in::<8, 3>(simd, normals, rounds, passes),
+            (_, 4) => self.aim_in::<16, 4>(simd, normals, rounds, passes),
+            _ => self.aim_in::<32, 5>(simd, normals, rounds, passes),
         }
     }
 
     #[inline(always)]
-    fn aim_in<S: Simd, const P: usize, const BITS: u32>(
-        &mut self,
-        simd: S,
-        normals: &Normals,
-        rounds: usize,
-        passes: usize,
-    ) {
+    fn aim_in<const P: usize, const BITS: u32>(&mut self, simd: S, normals: &Normals<S>, rounds: usize, passes: usize) {
         simd.vectorize(
             #[inline(always)]
             || {
-                self.error = 0.0;
-                let alone = (self.mode.planes == 2).then_some(self.selector);
-                let mut entries = [0; 16];
-                for i in 0..16 {
-                    entries[i] = u32::from(self.weights[0][i]);
-                    if alone.is_some() {
-                        entries[i] |= u32::from(self.weights[1][i]) << BITS;
+                let mode = self.modes[0];
+                let selector: [f32; LANES] = self.selector.into();
+                let alone = (mode.planes == 2).then_some(selector[0] as usize);
+                let (zero, count) = (Wide::splat(simd, 0.0), (1 << BITS) as f32);
+                let mut entries = self.weights[0];
+                if alone.is_some() {
+                    for i in 0..16 {
+                        entries[i] += self.weights[1][i] * count;
                     }
                 }
-                for subset in 0..self.mode.subsets {
-                    let members = self.members(subset);
-                    let mask = std::array::from_fn(|i| f32::from(members >> i & 1));
-                    let part = Subset::<P, BITS> { range: self.mode.range, alone, normals, mask };
-                    let ends = [0, 1, 2].map(|c| self.endpoints[subset][c]);
-                    let fit = part.polish(simd, part.refine(simd, &ends, &entries, rounds), passes);
+                let masks = self.masks(simd);
+                let mut chosen = [zero; 16];
+                self.error = zero;
+                for subset in 0..mode.subsets {
+                    let mask = masks.map(|masks| masks[subset]);
+                    let part = Subset::<_, P, BITS> { simd, range: mode.range, alone, normals, mask };
+                    let [x, y, z, _] = self.endpoints[subset];
+                    let ends = [x, y, z];
+                    let fit = part.polish(part.refine(&ends, &entries, rounds), passes);
                     self.error += fit.error;
                     self.endpoints[subset][..3].copy_from_slice(&fit.ends);
                     for i in 0..16 {
-                        if members >> i & 1 == 1 {
-                            self.weights[0][i] = (fit.entries[i] & ((1 << BITS) - 1)) as u8;
-                            self.weights[1][i] = (fit.entries[i] >> BITS) as u8;
-                        }
+                        chosen[i] += counted(mask.as_ref(), i, fit.entries[i]);
+                    }
+                }
+                self.weights[0] = chosen;
+                if alone.is_some() {
+                    for i in 0..16 {
+                        let upper = round(chosen[i] * (1.0 / count) - (0.5 - 0.5 / count));
+                        self.weights[1][i] = upper;
+                        self.weights[0][i] = chosen[i] - upper * count;
                     }
                 }
             },
         );
+    }
+
+    /// The subsets of blocks of one mode: 1 for a member, 0 for the rest; none where all texels belong to one.
+    #[inline(always)]
+    pub(super) fn masks(&self, simd: S) -> Option<[Grid<S>; 3]> {
+        let two = |p: usize| PATTERNS[p % PATTERNS.len()];
+        match self.modes[0].subsets {
+            1 => None,
+            2 => {
+                let one = mask(simd, self.pattern, two);
+                Some([mask(simd, self.pattern, |p| !two(p)), one, one])
+            }
+            _ => Some([
+                mask(simd, self.pattern, |p| THIRDS[p % THIRDS.len()][0]),
+                mask(simd, self.pattern, |p| THIRDS[p % THIRDS.len()][1]),
+                mask(simd, self.pattern, |p| THIRDS[p % THIRDS.len()][2]),
+            ]),
+        }
     }
 }

@@ -1,203 +1,217 @@
 //! One colour line: a pair of endpoints and a weight per texel, for one subset and one plane.
 //!
-//! Kernels only: fixed-size arrays in and out. Endpoints follow from linear regression on the
-//! weights, weights from projection on the endpoints, in turns. Only +, -, *, / of `f32` in a
-//! written order: the same bits on every machine.
+//! Endpoints follow from linear regression on the weights, weights from projection on the endpoints, in turns. Only
+//! +, -, *, / of `f32` in a written order: the same bits on every machine.
 
-#![expect(clippy::needless_range_loop, reason = "lane loops read several arrays at one index")]
+#![expect(clippy::needless_range_loop, reason = "loops over texels read several grids at one index")]
 
-use super::moments::{Lane, Moments, sum};
+use fearless_simd::{Select, Simd, SimdBase, prelude::*};
+
+use super::lanes::{Grid, ROUND, look_up, sum, take};
+use super::moments::{Moments, counted};
 use super::tables::Range;
-use crate::simd::Real;
-
-/// 1.5 * 2^23: adding and subtracting it rounds a number of less than 2^22 to the nearest integer,
-/// and the low bits of the sum are that integer. (`round` takes a call on baseline x86-64.)
-pub(super) const ROUND: f32 = 12_582_912.0;
+use crate::simd::{Real, Wide};
 
 /// A fitted line over `N` channels.
 #[derive(Clone, Copy)]
-pub(super) struct Line<const N: usize> {
+pub(super) struct Line<S: Simd, const N: usize> {
     /// Endpoint levels, 0..=255, as the quantised endpoints decode.
-    pub low: [u8; N],
-    pub high: [u8; N],
-    /// Weights; those outside of the subset mean nothing.
-    pub weights: [u8; 16],
+    pub low: [Wide<S>; N],
+    pub high: [Wide<S>; N],
+    /// Weight indices; those outside of the subset mean nothing.
+    pub weights: Grid<S>,
     /// Sum of squared differences between decoded and source levels over the subset.
-    pub error: f32,
+    pub error: Wide<S>,
 }
 
-#[inline(always)]
-fn min(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
+/// What a line is fitted to.
+pub(super) struct Points<'a, S: Simd, const N: usize> {
+    /// Levels of the channels, times `scale`.
+    pub texels: &'a [Grid<S>; N],
+    /// 1 for the texels that count, 0 for the rest; none if all do.
+    pub subset: Option<&'a Grid<S>>,
+    /// What a level counts for, by channel.
+    pub scale: [Wide<S>; N],
+    /// The levels that endpoints may have.
+    pub range: &'static Range,
 }
 
+/// The nearest whole number, which is less than 2^22.
 #[inline(always)]
-fn max(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
+pub(super) fn round<F: Real>(v: F) -> F {
+    v + v.like(ROUND) - v.like(ROUND)
 }
 
 /// The weight ramp of the format: index to 0..=64, for 2 to 5 bits.
 #[inline(always)]
-pub(super) fn ramp<const BITS: u32>(index: i32) -> i32 {
+pub(super) fn ramp<const BITS: u32, F: Real>(index: F) -> F {
+    let like = |value| index.like(value);
+    // Halves and quarters without their fractions: nothing lies half way after the shift.
     match BITS {
-        2 => 21 * index + (index >> 1),
-        3 => 9 * index + (index >> 2),
-        4 => 4 * index + (index >> 2) + (index >> 3),
-        _ => 2 * index + 2 * (index >> 4),
+        2 => index * like(21.0) + round(index * like(0.5) - like(0.25)),
+        3 => index * like(9.0) + round(index * like(0.25) - like(0.375)),
+        4 => {
+            let (quarter, eighth) = (index * like(0.25), index * like(0.125));
+            index * like(4.0) + round(quarter - like(0.375)) + round(eighth - like(0.4375))
+        }
+        _ => index * like(2.0) + round(index * like(0.0625) - like(0.46875)) * like(2.0),
     }
 }
 
 /// A decoded level: `astc` interpolation of 8-bit endpoints at a weight of 0..=64, that is
-/// floor((257 (64 low + (high - low) weight) + 32) / 2^14), in exact `f32` steps.
+/// round((257 (64 low + (high - low) weight) + 32) / 2^14), in exact `f32` steps.
 #[inline(always)]
 pub(super) fn decode<F: Real>(low: F, step: F, weight: F) -> F {
     let like = |value| low.like(value);
-    let v = ((low * like(64.0) + step * weight) * like(257.0) + like(32.0)) * like(1.0 / 16384.0);
-    // v is a multiple of 2^-14: shifting by 1/2 - 2^-15 makes rounding a floor without ties.
-    (v - like(0.5 - 1.0 / 32768.0) + like(ROUND)) - like(ROUND)
-}
-
-/// Nearest weight indices of `texels` on the line from `low` to `high`.
-#[inline(always)]
-fn project<const N: usize, const BITS: u32>(texels: &[Lane; N], low: &[f32; N], high: &[f32; N]) -> [i32; 16] {
-    let last = ((1 << BITS) - 1) as f32;
-    let mut step = [0.0; N];
-    let mut length = 0.0;
-    let mut start = 0.0;
-    for c in 0..N {
-        step[c] = high[c] - low[c];
-        length += step[c] * step[c];
-        start += step[c] * low[c];
-    }
-    let scale = if length > 0.0 { last / length } else { 0.0 };
-    let mut indices = [0; 16];
-    for (i, index) in indices.iter_mut().enumerate() {
-        let mut t = -start;
-        for c in 0..N {
-            t += step[c] * texels[c][i];
-        }
-        let t = min(max(t * scale, 0.0), last);
-        *index = ((t + ROUND).to_bits() & 31) as i32;
-    }
-    indices
-}
-
-/// Endpoints that best explain `texels` under fixed weights (0..=64), by linear regression;
-/// the mean twice where all weights are equal.
-#[inline(always)]
-fn regress<const N: usize>(texels: &[Lane; N], subset: &Lane, m: &Moments<N>, weights: &Lane) -> ([f32; N], [f32; N]) {
-    let w = sum(|i| subset[i] * weights[i]);
-    let ww = sum(|i| subset[i] * weights[i] * weights[i]);
-    let determinant = m.count * ww - w * w;
-    let scale = if determinant > 0.0 { 1.0 / determinant } else { 0.0 };
-    let share = 1.0 / m.count;
-    let (mut low, mut high) = ([0.0; N], [0.0; N]);
-    for c in 0..N {
-        let wx = sum(|i| subset[i] * weights[i] * texels[c][i]);
-        let slope = (m.count * wx - w * m.sums[c]) * scale;
-        low[c] = (m.sums[c] - slope * w) * share;
-        high[c] = low[c] + 64.0 * slope;
-    }
-    (low, high)
+    // A multiple of 2^-14 below 2^8, shifted by 1/2 - 2^-15: rounding is then a floor without ties.
+    let start = low * like(257.0 / 256.0) + like(32.0 / 16384.0 - (0.5 - 1.0 / 32768.0));
+    round(start + step * like(257.0 / 16384.0) * weight)
 }
 
 /// Nearest level of `range` to a value, which may lie outside of 0..=255.
 #[inline(always)]
-pub(super) fn quantise(range: &Range, value: f32) -> u8 {
-    let v = min(max(value, 0.0), 255.0);
-    range.level[((v + ROUND).to_bits() & 255) as usize]
+pub(super) fn quantise<S: Simd>(simd: S, range: &Range, value: Wide<S>) -> Wide<S> {
+    let (zero, most) = (Wide::splat(simd, 0.0), Wide::splat(simd, 255.0));
+    look_up(simd, &range.level, Real::min(Real::max(value, zero), most))
 }
 
-/// Fits a line of `BITS`-bit weights through the members of `subset`, starting along `axis`, with
-/// one or more `rounds` of regression; the best round wins. A channel of `texels` has `scale` per level.
-#[inline(always)]
-pub(super) fn fit<const N: usize, const BITS: u32>(
-    texels: &[Lane; N],
-    subset: &Lane,
-    m: &Moments<N>,
-    axis: &[f32; N],
-    scale: &[f32; N],
-    range: &Range,
-    rounds: usize,
-) -> Line<N> {
-    let weights = spread::<N, BITS>(texels, subset, m, axis);
-    let (low, high) = regress(texels, subset, m, &weights);
-    let (mut best, mut weights) = settle::<N, BITS>(texels, subset, &low, &high, scale, range);
-    for _ in 1..rounds {
-        let (low, high) = regress(texels, subset, m, &weights);
-        let (line, next) = settle::<N, BITS>(texels, subset, &low, &high, scale, range);
-        if line.error >= best.error {
-            break;
+impl<S: Simd, const N: usize> Points<'_, S, N> {
+    /// Fits a line of `BITS`-bit weights, starting along `axis`, with one or more `rounds` of regression; the best round
+    /// wins.
+    #[inline(always)]
+    pub fn fit<const BITS: u32>(&self, simd: S, m: &Moments<S, N>, axis: &[Wide<S>; N], rounds: usize) -> Line<S, N> {
+        let weights = self.spread::<BITS>(simd, m, axis);
+        let (low, high) = self.regress(simd, m, &weights);
+        let (mut best, mut weights) = self.settle::<BITS>(simd, &low, &high);
+        for _ in 1..rounds {
+            let (low, high) = self.regress(simd, m, &weights);
+            let (line, next) = self.settle::<BITS>(simd, &low, &high);
+            let is_better = line.error.simd_lt(best.error);
+            if !is_better.any_true() {
+                break;
+            }
+            for i in 0..16 {
+                take(&mut weights[i], next[i], is_better);
+            }
+            best.take(&line, is_better);
         }
-        (best, weights) = (line, next);
+        best
     }
-    best
-}
 
-/// First weights: the texels' places between the ends of their projection on `axis`.
-#[inline(always)]
-fn spread<const N: usize, const BITS: u32>(texels: &[Lane; N], subset: &Lane, m: &Moments<N>, axis: &[f32; N]) -> Lane {
-    let mut centre = 0.0;
-    for c in 0..N {
-        centre += axis[c] * m.sums[c];
-    }
-    centre /= m.count;
-    let mut along = [0.0; 16];
-    for i in 0..16 {
-        let mut t = -centre;
+    /// First weights: the texels' places between the ends of their projection on `axis`.
+    #[inline(always)]
+    fn spread<const BITS: u32>(&self, simd: S, m: &Moments<S, N>, axis: &[Wide<S>; N]) -> Grid<S> {
+        let zero = Wide::splat(simd, 0.0);
+        let mut centre = zero;
         for c in 0..N {
-            t += axis[c] * texels[c][i];
+            centre += axis[c] * m.sums[c];
         }
-        along[i] = t * subset[i];
-    }
-    let (mut least, mut most) = ([0.0; 4], [0.0; 4]);
-    for k in 0..4 {
-        for j in 0..4 {
-            least[j] = min(least[j], along[4 * k + j]);
-            most[j] = max(most[j], along[4 * k + j]);
+        centre /= m.count;
+        let (mut least, mut most) = (zero, zero);
+        let mut weights = [zero; 16];
+        for i in 0..16 {
+            let mut t = zero - centre;
+            for c in 0..N {
+                t += axis[c] * self.texels[c][i];
+            }
+            weights[i] = counted(self.subset, i, t);
+            least = Real::min(least, weights[i]);
+            most = Real::max(most, weights[i]);
         }
+        let last = ((1 << BITS) - 1) as f32;
+        let scale = most.simd_gt(least).select(last / (most - least), zero);
+        for weight in &mut weights {
+            *weight = ramp::<BITS, _>(round((*weight - least) * scale));
+        }
+        weights
     }
-    let least = min(min(least[0], least[1]), min(least[2], least[3]));
-    let most = max(max(most[0], most[1]), max(most[2], most[3]));
-    let last = ((1 << BITS) - 1) as f32;
-    let scale = if most > least { last / (most - least) } else { 0.0 };
-    let mut weights = [0.0; 16];
-    for i in 0..16 {
-        let index = ((along[i] - least) * scale + ROUND).to_bits() & 31;
-        weights[i] = ramp::<BITS>(index as i32) as f32;
+
+    /// Endpoints that best explain the texels under fixed weights (0..=64), by linear regression;
+    /// the mean twice where all weights are equal.
+    #[inline(always)]
+    fn regress(&self, simd: S, m: &Moments<S, N>, weights: &Grid<S>) -> ([Wide<S>; N], [Wide<S>; N]) {
+        let (zero, one) = (Wide::splat(simd, 0.0), Wide::splat(simd, 1.0));
+        let w = sum(
+            #[inline(always)]
+            |i| counted(self.subset, i, weights[i]),
+        );
+        let ww = sum(
+            #[inline(always)]
+            |i| counted(self.subset, i, weights[i]) * weights[i],
+        );
+        let determinant = m.count * ww - w * w;
+        let scale = determinant.simd_gt(0.0).select(one / determinant, zero);
+        let share = one / m.count;
+        let (mut low, mut high) = ([zero; N], [zero; N]);
+        for c in 0..N {
+            let wx = sum(
+                #[inline(always)]
+                |i| counted(self.subset, i, weights[i]) * self.texels[c][i],
+            );
+            let slope = (m.count * wx - w * m.sums[c]) * scale;
+            low[c] = (m.sums[c] - slope * w) * share;
+            high[c] = low[c] + slope * 64.0;
+        }
+        (low, high)
     }
-    weights
+
+    /// Quantises endpoints, chooses the weights anew and measures the error; the line and its weights
+    /// as 0..=64.
+    #[inline(always)]
+    pub fn settle<const BITS: u32>(&self, simd: S, low: &[Wide<S>; N], high: &[Wide<S>; N]) -> (Line<S, N>, Grid<S>) {
+        let (mut low, mut high) = (*low, *high);
+        for c in 0..N {
+            low[c] = quantise(simd, self.range, low[c] / self.scale[c]);
+            high[c] = quantise(simd, self.range, high[c] / self.scale[c]);
+        }
+        self.chosen::<BITS>(simd, low, high)
+    }
+
+    /// The line between quantised endpoints, with the best weights for them, and these as 0..=64.
+    #[inline(always)]
+    pub fn chosen<const BITS: u32>(&self, simd: S, low: [Wide<S>; N], high: [Wide<S>; N]) -> (Line<S, N>, Grid<S>) {
+        let zero = Wide::splat(simd, 0.0);
+        let (mut step, mut length, mut start) = ([zero; N], zero, zero);
+        for c in 0..N {
+            let [from, to] = [low[c] * self.scale[c], high[c] * self.scale[c]];
+            step[c] = to - from;
+            length += step[c] * step[c];
+            start += step[c] * from;
+        }
+        let last = Wide::splat(simd, ((1 << BITS) - 1) as f32);
+        let scale = length.simd_gt(0.0).select(last / length, zero);
+        let (mut indices, mut weights, mut errors) = ([zero; 16], [zero; 16], [zero; 16]);
+        for i in 0..16 {
+            let mut t = zero - start;
+            for c in 0..N {
+                t += step[c] * self.texels[c][i];
+            }
+            indices[i] = round(Real::min(Real::max(t * scale, zero), last));
+            weights[i] = ramp::<BITS, _>(indices[i]);
+            for c in 0..N {
+                let d = self.scale[c] * decode(low[c], high[c] - low[c], weights[i]) - self.texels[c][i];
+                errors[i] += d * d;
+            }
+        }
+        let error = sum(
+            #[inline(always)]
+            |i| counted(self.subset, i, errors[i]),
+        );
+        (Line { low, high, weights: indices, error }, weights)
+    }
 }
 
-/// Quantises endpoints, chooses the weights anew and measures the error; the line and its weights
-/// as 0..=64.
-#[inline(always)]
-pub(super) fn settle<const N: usize, const BITS: u32>(
-    texels: &[Lane; N],
-    subset: &Lane,
-    low: &[f32; N],
-    high: &[f32; N],
-    scale: &[f32; N],
-    range: &Range,
-) -> (Line<N>, Lane) {
-    let quantised = |ends: &[f32; N]| std::array::from_fn(|c| quantise(range, ends[c] / scale[c]));
-    let scaled = |ends: [u8; N]| std::array::from_fn(|c| f32::from(ends[c]) * scale[c]);
-    let (low, high): ([u8; N], [u8; N]) = (quantised(low), quantised(high));
-    let (from, to) = (low.map(f32::from), high.map(f32::from));
-    let indices = project::<N, BITS>(texels, &scaled(low), &scaled(high));
-    let (mut weights, mut errors) = ([0.0; 16], [0.0; 16]);
-    for i in 0..16 {
-        weights[i] = ramp::<BITS>(indices[i]) as f32;
-    }
-    for c in 0..N {
-        for i in 0..16 {
-            let d = scale[c] * decode(from[c], to[c] - from[c], weights[i]) - texels[c][i];
-            errors[i] += d * d;
+impl<S: Simd, const N: usize> Line<S, N> {
+    /// Becomes `other` where `mask` holds.
+    #[inline(always)]
+    pub fn take(&mut self, other: &Self, mask: <Wide<S> as Real>::Mask) {
+        for c in 0..N {
+            take(&mut self.low[c], other.low[c], mask);
+            take(&mut self.high[c], other.high[c], mask);
         }
+        for i in 0..16 {
+            take(&mut self.weights[i], other.weights[i], mask);
+        }
+        take(&mut self.error, other.error, mask);
     }
-    let mut line = Line { low, high, weights: [0; 16], error: sum(|i| subset[i] * errors[i]) };
-    for i in 0..16 {
-        line.weights[i] = indices[i] as u8;
-    }
-    (line, weights)
 }

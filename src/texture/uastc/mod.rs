@@ -5,19 +5,22 @@
 //! (BinomialLLC/basis_universal wiki).
 //!
 //! The maps that this crate writes are normals and a few slowly varying channels. Normals are a
-//! two-dimensional family, so beside lines of colours (modes 0, 1, 5, 18) the mode with two
+//! two-dimensional family, so beside lines of colours (modes 0, 1, 5, 15, 18) the mode with two
 //! weight planes (6) and those with two or three subsets (2, 3, 4) matter: on a wool normal map two
 //! planes alone gain 5 dB over one line. Normals are judged by direction ([`Metric`]).
 
+mod blocks;
 mod candidate;
 mod direction;
 mod hints;
+mod lanes;
 mod line;
 mod moments;
 mod normals;
 mod pack;
 mod partition;
 mod polish;
+mod row;
 mod search;
 mod tables;
 #[cfg(test)]
@@ -25,8 +28,10 @@ mod tests;
 
 use fearless_simd::{Level, Simd};
 use hints::{Hints, solid_etc1};
-use pack::{Block, pack_solid};
+use lanes::Texels;
+use pack::pack_solid;
 use rayon::prelude::*;
+use row::Row;
 
 use crate::simd::dispatch;
 
@@ -37,11 +42,10 @@ pub const BLOCK_BYTES: usize = 16;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Effort {
-    /// Fits the modes that can win by the covariance of the colours. On eighteen real maps as near
-    /// to the source as basis_universal's level 1, in a twentieth of its time.
+    /// Fits the modes that can win by the covariance of the colours: about as near to the source as basis_universal's
+    /// level 1 (`docs/performance.md`).
     Fast,
-    /// Fits all modes that pay and refines the winner: nearer than basis_universal's level 2 on
-    /// each of those maps, in a quarter of the time of its level 1.
+    /// Fits all modes that pay and refines the winner: about as near as its level 2, and nearer by direction.
     Best,
 }
 
@@ -68,6 +72,16 @@ pub enum Metric {
 /// `width.div_ceil(4) * height.div_ceil(4)` blocks; it is empty where `texels` does not have the
 /// length that the size asks for. The bytes depend on neither machine nor number of threads.
 pub fn encode_level(texels: &[u8], width: u32, height: u32, metric: Metric, effort: Effort) -> Vec<u8> {
+    encode_level_with(Level::new(), texels, (width, height), metric, effort)
+}
+
+fn encode_level_with(
+    instructions: Level,
+    texels: &[u8],
+    (width, height): (u32, u32),
+    metric: Metric,
+    effort: Effort,
+) -> Vec<u8> {
     let bytes = u128::from(width) * u128::from(height) * 4;
     if bytes == 0 || bytes != texels.len() as u128 {
         return Vec::new();
@@ -75,72 +89,54 @@ pub fn encode_level(texels: &[u8], width: u32, height: u32, metric: Metric, effo
     let (width, height) = (width as usize, height as usize);
     let row_bytes = width.div_ceil(4) * BLOCK_BYTES;
     let mut blocks = vec![0; row_bytes * height.div_ceil(4)];
-    let instructions = Level::new();
     blocks.par_chunks_exact_mut(row_bytes).enumerate().for_each(|(row, out)| {
         let lines: [&[u8]; 4] = std::array::from_fn(|y| {
             let at = (row * 4 + y).min(height - 1) * width * 4;
             &texels[at..at + width * 4]
         });
-        dispatch!(instructions, simd => {
-            for (column, out) in out.as_chunks_mut::<BLOCK_BYTES>().0.iter_mut().enumerate() {
-                *out = encode_with(simd, &gather(&lines, column * 4), metric, effort);
-            }
-        });
+        let blocks = out.as_chunks_mut::<BLOCK_BYTES>().0;
+        let texels = (0..blocks.len()).map(|column| gather(&lines, column * 4)).collect();
+        dispatch!(instructions, simd => encode_row(simd, texels, metric, effort, blocks));
     });
     blocks
 }
 
 /// The block at column `left` of four lines of texels, the last texel repeated.
-fn gather(lines: &[&[u8]; 4], left: usize) -> [[u8; 4]; 16] {
+fn gather(lines: &[&[u8]; 4], left: usize) -> Texels {
     std::array::from_fn(|i| {
         let (line, _) = lines[i / 4].as_chunks::<4>();
         line[(left + i % 4).min(line.len() - 1)]
     })
 }
 
-/// Encodes one block of 4x4 RGBA8 texels, row 0 first. The encoder's loops over sixteen texels are compiled for every instruction set; their order of operations, and so
-/// the bytes, are the same.
+/// Encodes a row of blocks. The search is compiled for every instruction set; the order of its operations, and so the
+/// bytes, are the same.
 #[inline(always)]
-fn encode_with<S: Simd>(simd: S, texels: &[[u8; 4]; 16], metric: Metric, effort: Effort) -> [u8; BLOCK_BYTES] {
-    let opaque = match metric {
-        Metric::Rgb | Metric::Surface | Metric::Direction => true,
-        Metric::Rgba => texels.iter().all(|t| t[3] == 255),
-    };
-    let texels = &texels.map(|[r, g, b, a]| [r, g, b, if opaque { 255 } else { a }]);
-    if let Some(block) = solid(texels) {
-        return block;
+fn encode_row<S: Simd>(
+    simd: S,
+    mut texels: Vec<Texels>,
+    metric: Metric,
+    effort: Effort,
+    out: &mut [[u8; BLOCK_BYTES]],
+) {
+    let (mut opaque, mut other) = (Vec::with_capacity(out.len()), Vec::new());
+    for (k, texels) in texels.iter_mut().enumerate() {
+        if metric != Metric::Rgba {
+            texels.iter_mut().for_each(|texel| texel[3] = 255);
+        }
+        if texels.iter().all(|texel| *texel == texels[0]) {
+            out[k] = pack_solid(texels[0], solid_etc1(texels[0]));
+        } else if texels.iter().all(|texel| texel[3] == 255) {
+            opaque.push(k);
+        } else {
+            other.push(k);
+        }
     }
-    let block = search(simd, texels, metric, opaque, effort);
-    let hints = Hints::of(texels, block.mode);
-    block.pack(&hints)
-}
-
-fn solid(texels: &[[u8; 4]; 16]) -> Option<[u8; BLOCK_BYTES]> {
-    texels.iter().all(|t| *t == texels[0]).then(|| pack_solid(texels[0], solid_etc1(texels[0])))
-}
-
-#[inline(always)]
-fn search<S: Simd>(simd: S, texels: &[[u8; 4]; 16], metric: Metric, opaque: bool, effort: Effort) -> Block {
-    // Shifts of whole texels, because loads of single bytes do not vectorise.
-    let channel = |c: usize| {
-        let mut lane = [0.0; 16];
-        for (value, texel) in lane.iter_mut().zip(texels) {
-            *value = (u32::from_le_bytes(*texel) >> (8 * c) & 255) as i32 as f32;
-        }
-        lane
-    };
-    let rgb = [channel(0), channel(1), channel(2)];
-    // Powers of two keep sums exact.
-    let scale: [f32; 3] = if metric == Metric::Surface { [0.25, 1.0, 0.25] } else { [1.0; 3] };
-    let scaled = || std::array::from_fn(|c| rgb[c].map(|level| level * scale[c]));
-    match (metric, opaque, effort) {
-        (Metric::Direction, _, Effort::Fast) => normals::fast(simd, &rgb),
-        (Metric::Direction, _, Effort::Best) => normals::best(simd, &rgb),
-        (_, true, Effort::Fast) => search::fast_rgb(simd, &scaled(), &scale),
-        (_, true, Effort::Best) => search::best_rgb(simd, &scaled(), &scale),
-        (_, false, effort) => {
-            let [r, g, b] = rgb;
-            search::rgba(simd, &[r, g, b, channel(3)], effort == Effort::Best)
-        }
+    let mut row = Row::new(texels);
+    row.search_opaque(simd, &opaque, metric, effort);
+    row.search_rgba(simd, &other, effort);
+    for k in opaque.into_iter().chain(other) {
+        let hints = Hints::of(&row.texels[k], row.blocks[k].mode);
+        out[k] = row.blocks[k].clone().pack(&hints);
     }
 }

@@ -3,45 +3,64 @@
 //! Sums of texels and of their products are whole numbers below 2^24, hence exact in `f32`
 //! whatever the order.
 
-#![expect(clippy::needless_range_loop, reason = "lane loops read several arrays at one index")]
+#![expect(clippy::needless_range_loop, reason = "loops over channels read several arrays at one index")]
 
-/// One value per texel of a block, row 0 first.
-pub(super) type Lane = [f32; 16];
+use fearless_simd::{Select, Simd, SimdBase};
 
-/// All sixteen texels.
-pub(super) const ALL: Lane = [1.0; 16];
+use super::lanes::{Grid, sum};
+use crate::simd::{Real, Wide};
 
 /// Count, sums and scatter (sum of products of the departures from the mean) of a subset.
 #[derive(Clone, Copy)]
-pub(super) struct Moments<const N: usize> {
-    pub count: f32,
-    pub sums: [f32; N],
-    pub scatter: [[f32; N]; N],
+pub(super) struct Moments<S: Simd, const N: usize> {
+    pub count: Wide<S>,
+    pub sums: [Wide<S>; N],
+    pub scatter: [[Wide<S>; N]; N],
 }
 
-/// Sum over the texels, in four lanes that vectorise.
+/// `v`, of a texel that counts with 1 in its subset or with 0; without a subset all texels count.
 #[inline(always)]
-pub(super) fn sum(v: impl Fn(usize) -> f32) -> f32 {
-    let mut lanes = [0.0; 4];
-    for k in 0..4 {
-        for (j, lane) in lanes.iter_mut().enumerate() {
-            *lane += v(4 * k + j);
-        }
+pub(super) fn counted<S: Simd>(subset: Option<&Grid<S>>, i: usize, v: Wide<S>) -> Wide<S> {
+    match subset {
+        Some(subset) => subset[i] * v,
+        None => v,
     }
-    (lanes[0] + lanes[2]) + (lanes[1] + lanes[3])
+}
+
+/// Texels of a subset.
+#[inline(always)]
+pub(super) fn count<S: Simd>(simd: S, subset: Option<&Grid<S>>) -> Wide<S> {
+    match subset {
+        Some(subset) => sum(
+            #[inline(always)]
+            |i| subset[i],
+        ),
+        None => Wide::splat(simd, 16.0),
+    }
 }
 
 /// Moments of the texels in `subset` (1 for a member, 0 for the rest), which has a member.
 #[inline(always)]
-pub(super) fn moments<const N: usize>(texels: &[Lane; N], subset: &Lane) -> Moments<N> {
-    let mut m = Moments { count: sum(|i| subset[i]), sums: [0.0; N], scatter: [[0.0; N]; N] };
-    let share = 1.0 / m.count;
+pub(super) fn moments<S: Simd, const N: usize>(
+    simd: S,
+    texels: &[Grid<S>; N],
+    subset: Option<&Grid<S>>,
+) -> Moments<S, N> {
+    let zero = Wide::splat(simd, 0.0);
+    let mut m = Moments { count: count(simd, subset), sums: [zero; N], scatter: [[zero; N]; N] };
+    let share = Wide::splat(simd, 1.0) / m.count;
     for a in 0..N {
-        m.sums[a] = sum(|i| subset[i] * texels[a][i]);
+        m.sums[a] = sum(
+            #[inline(always)]
+            |i| counted(subset, i, texels[a][i]),
+        );
     }
     for a in 0..N {
         for b in a..N {
-            let products = sum(|i| subset[i] * texels[a][i] * texels[b][i]);
+            let products = sum(
+                #[inline(always)]
+                |i| counted(subset, i, texels[a][i]) * texels[b][i],
+            );
             m.scatter[a][b] = products - m.sums[a] * m.sums[b] * share;
             m.scatter[b][a] = m.scatter[a][b];
         }
@@ -49,58 +68,93 @@ pub(super) fn moments<const N: usize>(texels: &[Lane; N], subset: &Lane) -> Mome
     m
 }
 
+/// Sum of the diagonal.
+#[inline(always)]
+pub(super) fn trace<S: Simd, const N: usize>(scatter: &[[Wide<S>; N]; N]) -> Wide<S> {
+    let mut trace = scatter[0][0];
+    for c in 1..N {
+        trace += scatter[c][c];
+    }
+    trace
+}
+
+/// Squared length of a vector.
+#[inline(always)]
+fn squared_length<S: Simd, const N: usize>(vector: &[Wide<S>; N]) -> Wide<S> {
+    let mut length = vector[0] * vector[0];
+    for v in &vector[1..] {
+        length += *v * *v;
+    }
+    length
+}
+
 /// Direction of the largest scatter, of any length; zero where all texels are equal.
 #[inline(always)]
-pub(super) fn principal_axis<const N: usize>(scatter: &[[f32; N]; N]) -> [f32; N] {
+pub(super) fn principal_axis<S: Simd, const N: usize>(simd: S, scatter: &[[Wide<S>; N]; N]) -> [Wide<S>; N] {
+    let (zero, one) = (Wide::splat(simd, 0.0), Wide::splat(simd, 1.0));
     if N == 1 {
-        return [1.0; N];
+        return [one; N];
     }
     // Eight power iterations as three squarings; the best-aligned column of the result.
     let mut power = *scatter;
     for _ in 0..3 {
-        let trace: f32 = (0..N).map(|i| power[i][i]).sum();
-        let scale = if trace > 1e-6 { 1.0 / trace } else { 0.0 };
+        let trace = trace(&power);
+        let scale = trace.simd_gt(1e-6).select(one / trace, zero);
         for row in &mut power {
             for v in row {
                 *v *= scale;
             }
         }
-        let mut square = [[0.0; N]; N];
+        let mut square = [[zero; N]; N];
         for a in 0..N {
             for b in a..N {
-                square[a][b] = (0..N).map(|k| power[a][k] * power[k][b]).sum();
+                for k in 0..N {
+                    square[a][b] += power[a][k] * power[k][b];
+                }
                 square[b][a] = square[a][b];
             }
         }
         power = square;
     }
-    let mut best = 0;
+    let mut best = power[0][0];
+    let mut axis = power[0];
     for c in 1..N {
-        if power[c][c] > power[best][best] {
-            best = c;
+        let is_larger = power[c][c].simd_gt(best);
+        best = is_larger.select(power[c][c], best);
+        for a in 0..N {
+            axis[a] = is_larger.select(power[c][a], axis[a]);
         }
     }
-    power[best]
+    axis
 }
 
 /// Scatter along `axis`, the larger eigenvalue if the axis is principal.
 #[inline(always)]
-pub(super) fn scatter_along<const N: usize>(scatter: &[[f32; N]; N], axis: &[f32; N]) -> f32 {
-    let length: f32 = axis.iter().map(|a| a * a).sum();
-    let mut along = 0.0;
+pub(super) fn scatter_along<S: Simd, const N: usize>(
+    simd: S,
+    scatter: &[[Wide<S>; N]; N],
+    axis: &[Wide<S>; N],
+) -> Wide<S> {
+    let zero = Wide::splat(simd, 0.0);
+    let length = squared_length(axis);
+    let mut along = zero;
     for a in 0..N {
         for b in 0..N {
             along += axis[a] * axis[b] * scatter[a][b];
         }
     }
-    if length > 0.0 { along / length } else { 0.0 }
+    length.simd_gt(0.0).select(along / length, zero)
 }
 
-/// Moments of some of the channels.
-pub(super) fn part<const N: usize, const M: usize>(m: &Moments<N>, channels: [usize; M]) -> Moments<M> {
-    Moments {
-        count: m.count,
-        sums: channels.map(|c| m.sums[c]),
-        scatter: channels.map(|a| channels.map(|b| m.scatter[a][b])),
+/// `axis` with length 1; zero stays.
+#[inline(always)]
+pub(super) fn unit<S: Simd, const N: usize>(simd: S, axis: &[Wide<S>; N]) -> [Wide<S>; N] {
+    let (zero, one) = (Wide::splat(simd, 0.0), Wide::splat(simd, 1.0));
+    let length = squared_length(axis);
+    let scale = length.simd_gt(0.0).select(one / Real::sqrt(length), zero);
+    let mut axis = *axis;
+    for a in &mut axis {
+        *a *= scale;
     }
+    axis
 }

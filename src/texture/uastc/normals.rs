@@ -1,110 +1,127 @@
-//! Choice of the mode of a block of normals.
+//! Choice of the mode of blocks of normals.
 //!
 //! A normal is two numbers. Lines and planes are fitted to x and y alone, which costs less than to three channels; z
-//! follows by regression on their weights, and all three are then judged by direction.
+//! follows by regression on their weights, and all three are then judged by direction ([`Blocks::aim`]).
 
-use fearless_simd::Simd;
+use fearless_simd::{Simd, SimdBase, prelude::*};
 
+use super::blocks::Blocks;
 use super::candidate::{Split, one_line, split_lines, two_planes};
-use super::direction::normals;
-use super::moments::{ALL, Lane, moments, principal_axis, scatter_along};
-use super::pack::Block;
+use super::direction::{Normals, normals};
+use super::lanes::Grid;
+use super::moments::{moments, principal_axis, scatter_along};
 use super::partition::likely_patterns;
-use super::search::Winner;
 use super::tables::{MODE_0, MODE_1, MODE_2, MODE_3, MODE_4, MODE_5, MODE_6, MODE_18};
+use crate::simd::{Real, Wide};
 
-/// A quickly found block.
+/// Quickly found blocks, fitted to x and y.
 #[inline(always)]
-pub(super) fn fast<S: Simd>(simd: S, texels: &[Lane; 3]) -> Block {
+pub(super) fn fast<S: Simd>(simd: S, texels: &[Grid<S>; 3]) -> Blocks<S> {
     /// Estimates are right within a factor of 2 for most blocks.
     const DOUBT: f32 = 2.0;
     /// Below this squared error of x and y (1 per texel and channel) a second subset hardly ever wins.
     const GOOD: f32 = 30.0;
 
     let xy = [texels[0], texels[1]];
-    let all = moments(&xy, &ALL);
-    let axis = principal_axis(&all.scatter);
-    let along = scatter_along(&all.scatter, &axis);
+    let all = moments(simd, &xy, None);
+    let axis = principal_axis(simd, &all.scatter);
+    let along = scatter_along(simd, &all.scatter, &axis);
     let off = all.scatter[0][0] + all.scatter[1][1] - along;
-    let planes_estimate = 0.07 * (along + off) + 3.0;
-    let line_estimate = 1.05 * off + 0.003 * along + 2.0;
-    let line = || {
-        if along < 300.0 {
-            one_line::<_, 2, 3>(simd, &xy, &all, &axis, &[1.0; 2], &MODE_5, 1)
-        } else if along > 25000.0 && off < 0.02 * along {
-            one_line::<_, 2, 5>(simd, &xy, &all, &axis, &[1.0; 2], &MODE_18, 1)
-        } else {
-            one_line::<_, 2, 4>(simd, &xy, &all, &axis, &[1.0; 2], &MODE_0, 1)
-        }
-    };
-    let planes = || two_planes::<_, 2, 2>(simd, &xy, &all, 0, &[1.0; 2], &MODE_6, 1);
-    let mut winner = Winner(if planes_estimate < line_estimate { planes() } else { line() });
-    if planes_estimate < line_estimate {
-        if line_estimate < DOUBT * planes_estimate {
-            winner.offer(line());
-        }
-    } else if planes_estimate < DOUBT * line_estimate {
-        winner.offer(planes());
+    let planes_estimate = (along + off) * 0.07 + 3.0;
+    let line_estimate = off * 1.05 + along * 0.003 + 2.0;
+    let mut winner = Blocks::none(simd);
+    let is_plane_likely = planes_estimate.simd_lt(line_estimate * DOUBT);
+    if is_plane_likely.any_true() {
+        let selector = Wide::splat(simd, 0.0);
+        winner.offer(&two_planes::<_, 2, 2>(simd, &xy, &all, selector, &[1.0; 2], &MODE_6, 1), is_plane_likely);
     }
-    if winner.0.error > GOOD {
-        let [pattern] = likely_patterns(&xy, &all, &axis);
-        let split = Split::in_two(&xy, pattern);
-        let (off, along) = split.scatter();
-        if off + along / 12.0 < 1.4 * winner.0.error {
-            winner.offer(split_lines::<_, 2, 2, 2>(simd, &xy, &split, &[1.0; 2], &MODE_4, 1));
-            // Sixteen levels an endpoint are too coarse for less.
-            if winner.0.error > 150.0 {
-                winner.offer(split_lines::<_, 2, 2, 3>(simd, &xy, &split, &[1.0; 2], &MODE_2, 1));
-            }
+    let is_line_likely = line_estimate.simd_lt(planes_estimate * DOUBT);
+    let is_short = along.simd_lt(300.0);
+    let is_long = along.simd_gt(25000.0) & off.simd_lt(along * 0.02);
+    let [short, long] = [is_line_likely & is_short, is_line_likely & is_long];
+    let middle = is_line_likely & !is_short & !is_long;
+    if short.any_true() {
+        winner.offer(&one_line::<_, 2, 3>(simd, &xy, &all, &axis, &[1.0; 2], &MODE_5, 1), short);
+    }
+    if long.any_true() {
+        winner.offer(&one_line::<_, 2, 5>(simd, &xy, &all, &axis, &[1.0; 2], &MODE_18, 1), long);
+    }
+    if middle.any_true() {
+        winner.offer(&one_line::<_, 2, 4>(simd, &xy, &all, &axis, &[1.0; 2], &MODE_0, 1), middle);
+    }
+    if winner.error.simd_gt(GOOD).any_true() {
+        let [pattern] = likely_patterns(simd, &xy, &all, &axis);
+        let split = Split::in_two(simd, &xy, pattern);
+        let (off, along) = split.scatter(simd);
+        let is_likely = winner.error.simd_gt(GOOD) & (off + along / 12.0).simd_lt(winner.error * 1.4);
+        if is_likely.any_true() {
+            winner.offer(&split_lines::<_, 2, 2, 2>(simd, &xy, &split, &[1.0; 2], &MODE_4, 1), is_likely);
+        }
+        // Sixteen levels an endpoint are too coarse for less.
+        let is_coarse = is_likely & winner.error.simd_gt(150.0);
+        if is_coarse.any_true() {
+            winner.offer(&split_lines::<_, 2, 2, 3>(simd, &xy, &split, &[1.0; 2], &MODE_2, 1), is_coarse);
         }
     }
-    winner.0.aim(simd, &normals(texels), 2, 0);
-    winner.0
+    winner
 }
 
-/// The best block found.
-#[inline(always)]
-pub(super) fn best<S: Simd>(simd: S, texels: &[Lane; 3]) -> Block {
-    let xy = [texels[0], texels[1]];
-    let target = normals(texels);
-    let all = moments(&xy, &ALL);
-    let axis = principal_axis(&all.scatter);
-    let along = scatter_along(&all.scatter, &axis);
-    let mut winner = Winner(fast(simd, texels));
-    let mut offer = |mut block: Block| {
-        if block.error >= winner.0.error {
-            return;
+impl<S: Simd> Blocks<S> {
+    /// [`Blocks::offer`] of blocks whose error is still that of x and y, by their directions to `target`.
+    #[inline(always)]
+    fn offer_aimed(&mut self, simd: S, target: &Normals<S>, mut blocks: Self, allowed: <Wide<S> as Real>::Mask) {
+        let is_hopeful = allowed & blocks.error.simd_lt(self.error);
+        if is_hopeful.any_true() {
+            blocks.aim(simd, target, 2, 0);
+            self.offer(&blocks, is_hopeful);
         }
-        block.aim(simd, &target, 2, 0);
-        winner.offer(block);
-    };
-    offer(one_line::<_, 2, 4>(simd, &xy, &all, &axis, &[1.0; 2], &MODE_0, 2));
-    if along > 400.0 {
-        offer(one_line::<_, 2, 5>(simd, &xy, &all, &axis, &[1.0; 2], &MODE_18, 2));
     }
-    if along < 3000.0 {
-        offer(one_line::<_, 2, 3>(simd, &xy, &all, &axis, &[1.0; 2], &MODE_5, 2));
+}
+
+/// The best blocks found, starting from `winner`, whose error is that of directions.
+#[inline(always)]
+pub(super) fn best<S: Simd>(simd: S, texels: &[Grid<S>; 3], mut winner: Blocks<S>) -> Blocks<S> {
+    let xy = [texels[0], texels[1]];
+    let target = normals(simd, texels);
+    let all = moments(simd, &xy, None);
+    let axis = principal_axis(simd, &all.scatter);
+    let along = scatter_along(simd, &all.scatter, &axis);
+    let every = along.simd_ge(0.0) | along.simd_lt(0.0);
+    winner.offer_aimed(simd, &target, one_line::<_, 2, 4>(simd, &xy, &all, &axis, &[1.0; 2], &MODE_0, 2), every);
+    let is_long = along.simd_gt(400.0);
+    if is_long.any_true() {
+        winner.offer_aimed(simd, &target, one_line::<_, 2, 5>(simd, &xy, &all, &axis, &[1.0; 2], &MODE_18, 2), is_long);
     }
-    if along < 200.0 {
-        offer(one_line::<_, 2, 2>(simd, &xy, &all, &axis, &[1.0; 2], &MODE_1, 2));
+    let is_short = along.simd_lt(3000.0);
+    if is_short.any_true() {
+        winner.offer_aimed(simd, &target, one_line::<_, 2, 3>(simd, &xy, &all, &axis, &[1.0; 2], &MODE_5, 2), is_short);
     }
-    for selector in 0..2 {
-        offer(two_planes::<_, 2, 2>(simd, &xy, &all, selector, &[1.0; 2], &MODE_6, 2));
+    let is_shortest = along.simd_lt(200.0);
+    if is_shortest.any_true() {
+        winner.offer_aimed(
+            simd,
+            &target,
+            one_line::<_, 2, 2>(simd, &xy, &all, &axis, &[1.0; 2], &MODE_1, 2),
+            is_shortest,
+        );
     }
-    for pattern in likely_patterns::<2, 2>(&xy, &all, &axis) {
-        let split = Split::in_two(&xy, pattern);
-        offer(split_lines::<_, 2, 2, 2>(simd, &xy, &split, &[1.0; 2], &MODE_4, 2));
-        offer(split_lines::<_, 2, 2, 3>(simd, &xy, &split, &[1.0; 2], &MODE_2, 2));
+    for selector in [0.0, 1.0] {
+        let selector = Wide::splat(simd, selector);
+        winner.offer_aimed(
+            simd,
+            &target,
+            two_planes::<_, 2, 2>(simd, &xy, &all, selector, &[1.0; 2], &MODE_6, 2),
+            every,
+        );
     }
-    let mut splits = Split::in_three(&xy);
-    let expected = |split: &Split<2, 3>| {
-        let (off, along) = split.scatter();
-        off + along / 12.0
-    };
-    splits.sort_by(|a, b| expected(a).total_cmp(&expected(b)));
-    for split in &splits[..2] {
-        offer(split_lines::<_, 2, 3, 2>(simd, &xy, split, &[1.0; 2], &MODE_3, 2));
+    for pattern in likely_patterns::<_, 2, 2>(simd, &xy, &all, &axis) {
+        let split = Split::in_two(simd, &xy, pattern);
+        winner.offer_aimed(simd, &target, split_lines::<_, 2, 2, 2>(simd, &xy, &split, &[1.0; 2], &MODE_4, 2), every);
+        winner.offer_aimed(simd, &target, split_lines::<_, 2, 2, 3>(simd, &xy, &split, &[1.0; 2], &MODE_2, 2), every);
     }
-    winner.0.aim(simd, &target, 0, 2);
-    winner.0
+    for pattern in Split::likely_thirds::<2>(simd, &xy) {
+        let split = Split::in_three(simd, &xy, pattern);
+        winner.offer_aimed(simd, &target, split_lines::<_, 2, 3, 2>(simd, &xy, &split, &[1.0; 2], &MODE_3, 2), every);
+    }
+    winner
 }

@@ -23,6 +23,11 @@ pub(super) struct Block {
 }
 
 impl Block {
+    /// A block of `mode`, all zeros.
+    pub fn empty(mode: &'static Mode) -> Self {
+        Self { mode, pattern: 0, selector: 0, endpoints: [[[0; 2]; 4]; 3], weights: [[0; 16]; 2], error: 0.0 }
+    }
+
     /// The texels of a subset, bit i for texel i.
     pub fn members(&self, subset: usize) -> u16 {
         match (self.mode.subsets, subset) {

@@ -1,129 +1,124 @@
 //! Which of the two-subset patterns suit a block.
 
-#![expect(clippy::needless_range_loop, reason = "lane loops read several arrays at one index")]
+use fearless_simd::{Select, Simd, SimdBase};
 
-use super::moments::{Lane, Moments, principal_axis, scatter_along};
+use super::lanes::Grid;
+use super::moments::{Moments, principal_axis, scatter_along, unit};
 use super::tables::PATTERNS;
+use crate::simd::{Real, Wide};
 
-/// Patterns by eights in the ranking's inner loop, with room for two that do not exist.
-const GROUPS: usize = 4;
+/// The `K` patterns with the least errors, the least first.
+pub(super) struct Least<S: Simd, const K: usize> {
+    pub patterns: [Wide<S>; K],
+    errors: [Wide<S>; K],
+}
 
-/// 1 where a texel belongs to subset 1 of a pattern, per group of patterns and texel.
-static MEMBERS: [[[f32; 8]; 16]; GROUPS] = members();
-
-const fn members() -> [[[f32; 8]; 16]; GROUPS] {
-    let mut members = [[[0.0; 8]; 16]; GROUPS];
-    let mut pattern = 0;
-    while pattern < PATTERNS.len() {
-        let mut i = 0;
-        while i < 16 {
-            members[pattern / 8][i][pattern % 8] = (PATTERNS[pattern] >> i & 1) as f32;
-            i += 1;
-        }
-        pattern += 1;
+impl<S: Simd, const K: usize> Least<S, K> {
+    #[inline(always)]
+    pub fn new(simd: S) -> Self {
+        Self { patterns: [Wide::splat(simd, 0.0); K], errors: [Wide::splat(simd, f32::INFINITY); K] }
     }
-    members
+
+    /// Another pattern; earlier ones win ties.
+    #[inline(always)]
+    pub fn offer(&mut self, mut error: Wide<S>, mut pattern: Wide<S>) {
+        let mut is_before = error.simd_lt(self.errors[0]);
+        for k in 0..K {
+            is_before |= error.simd_lt(self.errors[k]);
+            let (own_error, own_pattern) = (self.errors[k], self.patterns[k]);
+            self.errors[k] = is_before.select(error, own_error);
+            self.patterns[k] = is_before.select(pattern, own_pattern);
+            // What it displaces moves down.
+            error = is_before.select(own_error, error);
+            pattern = is_before.select(own_pattern, pattern);
+        }
+    }
 }
 
 /// The `K` patterns with the least squared error to expect of lines of 2-bit weights, in the plane
 /// of the two largest principal axes of the block (the first of them given as `axis`).
 #[inline(always)]
-pub(super) fn likely_patterns<const N: usize, const K: usize>(
-    texels: &[Lane; N],
-    all: &Moments<N>,
-    axis: &[f32; N],
-) -> [usize; K] {
-    let first = unit(axis);
-    let along = scatter_along(&all.scatter, &first);
-    let mut left = all.scatter;
-    for a in 0..N {
-        for b in 0..N {
-            left[a][b] -= along * first[a] * first[b];
-        }
-    }
-    let second = unit(&principal_axis(&left));
-    let errors = expected_errors(&place(texels, all, &first), &place(texels, all, &second));
-    let mut ranked = [(f32::INFINITY, 0); K];
-    for (pattern, &error) in errors.as_flattened()[..PATTERNS.len()].iter().enumerate() {
-        if error < ranked[K - 1].0 {
-            // Insertion from the end; earlier patterns win ties.
-            let mut at = K - 1;
-            while at > 0 && error < ranked[at - 1].0 {
-                ranked[at] = ranked[at - 1];
-                at -= 1;
+pub(super) fn likely_patterns<S: Simd, const N: usize, const K: usize>(
+    simd: S,
+    texels: &[Grid<S>; N],
+    all: &Moments<S, N>,
+    axis: &[Wide<S>; N],
+) -> [Wide<S>; K] {
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            let first = unit(simd, axis);
+            let along = scatter_along(simd, &all.scatter, &first);
+            let mut left = all.scatter;
+            for a in 0..N {
+                for b in 0..N {
+                    left[a][b] -= along * first[a] * first[b];
+                }
             }
-            ranked[at] = (error, pattern);
-        }
-    }
-    ranked.map(|(_, pattern)| pattern)
-}
-
-#[inline(always)]
-fn unit<const N: usize>(axis: &[f32; N]) -> [f32; N] {
-    let length: f32 = axis.iter().map(|a| a * a).sum();
-    let scale = if length > 0.0 { 1.0 / length.sqrt() } else { 0.0 };
-    axis.map(|a| a * scale)
+            let second = unit(simd, &principal_axis(simd, &left));
+            let (u, v) = (place(simd, texels, all, &first), place(simd, texels, all, &second));
+            likely(simd, &u, &v)
+        },
+    )
 }
 
 /// Texels along a unit `axis`, from their mean.
 #[inline(always)]
-fn place<const N: usize>(texels: &[Lane; N], all: &Moments<N>, axis: &[f32; N]) -> Lane {
-    let mut centre = 0.0;
-    for c in 0..N {
-        centre += axis[c] * all.sums[c];
+fn place<S: Simd, const N: usize>(simd: S, texels: &[Grid<S>; N], all: &Moments<S, N>, axis: &[Wide<S>; N]) -> Grid<S> {
+    let mut centre = Wide::splat(simd, 0.0);
+    for (axis, sum) in axis.iter().zip(all.sums) {
+        centre += *axis * sum;
     }
     centre /= all.count;
-    let mut places = [0.0; 16];
+    let mut places = [0.0 - centre; 16];
     for (i, place) in places.iter_mut().enumerate() {
-        *place = -centre;
-        for c in 0..N {
-            *place += axis[c] * texels[c][i];
+        for (axis, levels) in axis.iter().zip(texels) {
+            *place += *axis * levels[i];
         }
     }
     places
 }
 
-/// Error to expect of every pattern for texels at (u, v), whose mean is 0.
+/// The patterns with the least error to expect for texels at (u, v), whose mean is 0.
 #[inline(always)]
-fn expected_errors(u: &Lane, v: &Lane) -> [[f32; 8]; GROUPS] {
-    let mut features = [[0.0; 5]; 16];
-    let mut total = [0.0; 5];
-    for i in 0..16 {
-        features[i] = [u[i], v[i], u[i] * u[i], u[i] * v[i], v[i] * v[i]];
+fn likely<S: Simd, const K: usize>(simd: S, u: &Grid<S>, v: &Grid<S>) -> [Wide<S>; K] {
+    let zero = Wide::splat(simd, 0.0);
+    let mut features = [[zero; 5]; 16];
+    let mut total = [zero; 5];
+    for (i, feature) in features.iter_mut().enumerate() {
+        *feature = [u[i], v[i], u[i] * u[i], u[i] * v[i], v[i] * v[i]];
         for f in 0..5 {
-            total[f] += features[i][f];
+            total[f] += feature[f];
         }
     }
-    let mut errors = [[0.0; 8]; GROUPS];
-    for (members, errors) in MEMBERS.iter().zip(&mut errors) {
-        // Count, sums and products over subset 1; subset 0 is the rest.
-        let mut count = [0.0; 8];
-        let mut sums = [[0.0; 8]; 5];
-        for i in 0..16 {
-            for j in 0..8 {
-                count[j] += members[i][j];
-                for f in 0..5 {
-                    sums[f][j] += members[i][j] * features[i][f];
-                }
-            }
-        }
-        for j in 0..8 {
-            let one = sums.map(|s| s[j]);
-            let mut zero = total;
+    let mut least = Least::new(simd);
+    for (pattern, &members) in PATTERNS.iter().enumerate() {
+        // Sums over subset 1; subset 0 is the rest.
+        let mut one = [zero; 5];
+        let mut bits = members;
+        while bits != 0 {
+            let feature = &features[bits.trailing_zeros() as usize & 15];
             for f in 0..5 {
-                zero[f] -= one[f];
+                one[f] += feature[f];
             }
-            errors[j] = expected_error(count[j], &one) + expected_error(16.0 - count[j], &zero);
+            bits &= bits - 1;
         }
+        let mut other = total;
+        for f in 0..5 {
+            other[f] -= one[f];
+        }
+        let count = members.count_ones() as f32;
+        let error = expected_error(count, &one) + expected_error(16.0 - count, &other);
+        least.offer(error, Wide::splat(simd, pattern as f32));
     }
-    errors
+    least.patterns
 }
 
 /// The smaller eigenvalue of a subset's 2x2 scatter and a twelfth of the larger.
 #[inline(always)]
-fn expected_error(count: f32, [u, v, uu, uv, vv]: &[f32; 5]) -> f32 {
+fn expected_error<S: Simd>(count: f32, &[u, v, uu, uv, vv]: &[Wide<S>; 5]) -> Wide<S> {
     let share = 1.0 / count;
     let (a, b, c) = (uu - u * u * share, uv - u * v * share, vv - v * v * share);
-    let radius = (0.25 * (a - c) * (a - c) + b * b).sqrt();
-    0.5 * (a + c) * (13.0 / 12.0) - radius * (11.0 / 12.0)
+    let radius = Real::sqrt((a - c) * 0.25 * (a - c) + b * b);
+    (a + c) * 0.5 * (13.0 / 12.0) - radius * (11.0 / 12.0)
 }

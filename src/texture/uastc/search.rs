@@ -1,155 +1,206 @@
-//! Choice of the mode of a block.
+//! Choice of the mode of blocks of colours.
 //!
 //! Both efforts fit candidates and keep the one with the least squared error. `best_rgb` fits all
 //! that pay; `fast_rgb` first estimates errors from the moments of the colours and fits only what
 //! can win: on 83,000 blocks of eighteen real maps the gates below cost 0.03 dB.
 
-use fearless_simd::Simd;
+use fearless_simd::{Select, Simd, SimdBase, prelude::*};
 
-use super::candidate::{Split, one_line, rest, split_lines, two_planes};
-use super::moments::{ALL, Lane, Moments, moments, principal_axis, scatter_along};
-use super::pack::Block;
+use super::blocks::Blocks;
+use super::candidate::{Split, one_line, split_lines, two_planes};
+use super::lanes::{Grid, sum};
+use super::line::Points;
+use super::moments::{Moments, moments, principal_axis, scatter_along};
 use super::partition::likely_patterns;
 use super::tables::{
-    MODE_0, MODE_1, MODE_2, MODE_4, MODE_5, MODE_6, MODE_9, MODE_10, MODE_11, MODE_12, MODE_14, MODE_18,
+    MODE_0, MODE_1, MODE_2, MODE_4, MODE_5, MODE_6, MODE_9, MODE_10, MODE_11, MODE_12, MODE_14, MODE_15, MODE_18, Mode,
 };
+use crate::simd::{Real, Wide};
 
 /// Rounds of regression for opaque blocks; a third gains 0.04 dB.
 const ROUNDS: usize = 2;
 
-/// The candidate with the least error so far; the earlier one wins ties.
-pub(super) struct Winner(pub Block);
-
-impl Winner {
-    pub fn offer(&mut self, block: Block) {
-        if block.error < self.0.error {
-            self.0 = block;
+impl<S: Simd> Blocks<S> {
+    /// [`Blocks::offer`] of lines of one number where all texels are grey, with `passes` over single endpoints: on maps of
+    /// heights that gains 1 to 3 dB.
+    #[inline(always)]
+    fn offer_grey(&mut self, simd: S, [r, g, b]: &[Grid<S>; 3], passes: usize) {
+        let off = sum(
+            #[inline(always)]
+            |i| (r[i] - g[i]) * (r[i] - g[i]) + (b[i] - g[i]) * (b[i] - g[i]),
+        );
+        let is_grey = off.simd_eq(0.0);
+        if is_grey.any_true() {
+            self.offer(&grey::<_, 4>(simd, &[*g], &MODE_15, passes), is_grey);
+            self.offer(&grey::<_, 5>(simd, &[*g], &MODE_18, passes), is_grey);
         }
     }
 }
 
-/// The best block found for opaque `texels`, whose channels have `scale` per level.
+/// Blocks of grey `texels`.
 #[inline(always)]
-pub(super) fn best_rgb<S: Simd>(simd: S, texels: &[Lane; 3], scale: &[f32; 3]) -> Block {
-    let all = moments(texels, &ALL);
-    let axis = principal_axis(&all.scatter);
-    let mut winner = Winner(one_line::<_, 3, 4>(simd, texels, &all, &axis, scale, &MODE_0, ROUNDS));
+fn grey<S: Simd, const BITS: u32>(simd: S, texels: &[Grid<S>; 1], mode: &'static Mode, passes: usize) -> Blocks<S> {
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            let one = [Wide::splat(simd, 1.0)];
+            let points = Points { texels, subset: None, scale: one, range: mode.range };
+            let mut line = points.fit::<BITS>(simd, &moments(simd, texels, None), &one, ROUNDS);
+            let (mut low, mut high) = (texels[0][0], texels[0][0]);
+            for level in texels[0] {
+                low = Real::min(low, level);
+                high = Real::max(high, level);
+            }
+            // Of exact endpoints that are as far apart as there are weights, each weight gives the next level. Decoding
+            // rounds down, by less the brighter a level is.
+            let last = ((1 << BITS) - 1) as f32;
+            let apart = low.simd_lt(51.0).select(Wide::splat(simd, last + 1.0), Wide::splat(simd, last));
+            low = Real::min(low, Wide::splat(simd, 255.0 - last));
+            high = Real::max(high, low + apart);
+            let (spanning, _) = points.settle::<BITS>(simd, &[low], &[high]);
+            line.take(&spanning, spanning.error.simd_lt(line.error));
+            line = points.polish::<BITS>(simd, line, passes);
+            let mut blocks = Blocks::empty(simd, mode);
+            blocks.place(&line, 0, None);
+            let [grey, ..] = blocks.endpoints[0];
+            let alpha = [Wide::splat(simd, 255.0); 2];
+            blocks.endpoints[0] = if mode.has_alpha() { [grey, alpha, grey, grey] } else { [grey; 4] };
+            blocks.error *= 3.0;
+            blocks
+        },
+    )
+}
+
+/// The best blocks found for opaque `texels`, whose channels have `scale` per level.
+#[inline(always)]
+pub(super) fn best_rgb<S: Simd>(simd: S, texels: &[Grid<S>; 3], scale: &[f32; 3]) -> Blocks<S> {
+    let all = moments(simd, texels, None);
+    let axis = principal_axis(simd, &all.scatter);
+    let mut winner = one_line::<_, 3, 4>(simd, texels, &all, &axis, scale, &MODE_0, ROUNDS);
+    let every = winner.error.simd_ge(0.0);
     // Many weights serve long lines, exact endpoints short ones.
-    let along = scatter_along(&all.scatter, &axis);
-    if along > 400.0 {
-        winner.offer(one_line::<_, 3, 5>(simd, texels, &all, &axis, scale, &MODE_18, ROUNDS));
+    let along = scatter_along(simd, &all.scatter, &axis);
+    let is_long = along.simd_gt(400.0);
+    if is_long.any_true() {
+        winner.offer(&one_line::<_, 3, 5>(simd, texels, &all, &axis, scale, &MODE_18, ROUNDS), is_long);
     }
-    if along < 3000.0 {
-        winner.offer(one_line::<_, 3, 3>(simd, texels, &all, &axis, scale, &MODE_5, ROUNDS));
+    let is_short = along.simd_lt(3000.0);
+    if is_short.any_true() {
+        winner.offer(&one_line::<_, 3, 3>(simd, texels, &all, &axis, scale, &MODE_5, ROUNDS), is_short);
     }
-    if along < 200.0 {
-        winner.offer(one_line::<_, 3, 2>(simd, texels, &all, &axis, scale, &MODE_1, ROUNDS));
+    let is_shortest = along.simd_lt(200.0);
+    if is_shortest.any_true() {
+        winner.offer(&one_line::<_, 3, 2>(simd, texels, &all, &axis, scale, &MODE_1, ROUNDS), is_shortest);
     }
-    for selector in 0..3 {
-        winner.offer(two_planes::<_, 3, 2>(simd, texels, &all, selector, scale, &MODE_6, ROUNDS));
+    for selector in [0.0, 1.0, 2.0] {
+        let selector = Wide::splat(simd, selector);
+        winner.offer(&two_planes::<_, 3, 2>(simd, texels, &all, selector, scale, &MODE_6, ROUNDS), every);
     }
-    for pattern in likely_patterns::<3, 2>(texels, &all, &axis) {
-        let split = Split::in_two(texels, pattern);
-        if split.scatter().0 > winner.0.error {
+    for pattern in likely_patterns::<_, 3, 2>(simd, texels, &all, &axis) {
+        let split = Split::in_two(simd, texels, pattern);
+        let is_likely = split.scatter(simd).0.simd_le(winner.error);
+        if !is_likely.any_true() {
             continue;
         }
-        winner.offer(split_lines::<_, 3, 2, 2>(simd, texels, &split, scale, &MODE_4, ROUNDS));
+        winner.offer(&split_lines::<_, 3, 2, 2>(simd, texels, &split, scale, &MODE_4, ROUNDS), is_likely);
         // Sixteen levels an endpoint are too coarse for less.
-        if winner.0.error > 150.0 {
-            winner.offer(split_lines::<_, 3, 2, 3>(simd, texels, &split, scale, &MODE_2, ROUNDS));
+        let is_coarse = is_likely & winner.error.simd_gt(150.0);
+        if is_coarse.any_true() {
+            winner.offer(&split_lines::<_, 3, 2, 3>(simd, texels, &split, scale, &MODE_2, ROUNDS), is_coarse);
         }
     }
-    winner.0.polish(simd, texels, scale, 2);
-    winner.0
+    winner.offer_grey(simd, texels, 2);
+    winner
 }
 
-/// A quickly found block for opaque `texels`, whose channels have `scale` per level.
+/// Quickly found blocks for opaque `texels`, whose channels have `scale` per level.
 #[inline(always)]
-pub(super) fn fast_rgb<S: Simd>(simd: S, texels: &[Lane; 3], scale: &[f32; 3]) -> Block {
+pub(super) fn fast_rgb<S: Simd>(simd: S, texels: &[Grid<S>; 3], scale: &[f32; 3]) -> Blocks<S> {
     /// Estimates are right within a factor of 2 for 90 % of blocks.
     const DOUBT: f32 = 2.0;
     /// Below this error of a block (1 per texel and channel) a second subset hardly ever wins.
     const GOOD: f32 = 50.0;
 
-    let all = moments(texels, &ALL);
-    let axis = principal_axis(&all.scatter);
-    let along = scatter_along(&all.scatter, &axis);
-    let off = (0..3).map(|c| all.scatter[c][c]).sum::<f32>() - along;
-    let (selector, planes_estimate) = likely_planes(&all);
-    let line_estimate = 1.05 * off + 0.003 * along + 3.0;
+    let all = moments(simd, texels, None);
+    let axis = principal_axis(simd, &all.scatter);
+    let along = scatter_along(simd, &all.scatter, &axis);
+    let off = all.scatter[0][0] + all.scatter[1][1] + all.scatter[2][2] - along;
+    let (selector, planes_estimate) = likely_planes(simd, &all);
+    let line_estimate = off * 1.05 + along * 0.003 + 3.0;
+    let mut winner = Blocks::none(simd);
 
-    let line = || {
-        if along < 300.0 {
-            // Short lines gain more from exact endpoints than from sixteen weights,
-            one_line::<_, 3, 3>(simd, texels, &all, &axis, scale, &MODE_5, ROUNDS)
-        } else if along > 25000.0 && off < 0.02 * along {
-            // and long ones more from 32 weights: 4 dB on a grey map.
-            one_line::<_, 3, 5>(simd, texels, &all, &axis, scale, &MODE_18, ROUNDS)
-        } else {
-            one_line::<_, 3, 4>(simd, texels, &all, &axis, scale, &MODE_0, ROUNDS)
-        }
-    };
-    let planes = || two_planes::<_, 3, 2>(simd, texels, &all, selector, scale, &MODE_6, ROUNDS);
-    let mut winner = if planes_estimate < line_estimate {
-        let mut winner = Winner(planes());
-        if line_estimate < DOUBT * planes_estimate {
-            winner.offer(line());
-        }
-        winner
-    } else {
-        let mut winner = Winner(line());
-        if planes_estimate < DOUBT * line_estimate {
-            winner.offer(planes());
-        }
-        winner
-    };
-    if winner.0.error > GOOD {
-        let [pattern] = likely_patterns(texels, &all, &axis);
-        let split = Split::in_two(texels, pattern);
-        let (off, along) = split.scatter();
-        if off + along / 12.0 < 1.4 * winner.0.error {
-            winner.offer(split_lines::<_, 3, 2, 2>(simd, texels, &split, scale, &MODE_4, ROUNDS));
+    let is_line_likely = line_estimate.simd_lt(planes_estimate * DOUBT);
+    let is_short = along.simd_lt(300.0);
+    let is_long = along.simd_gt(25000.0) & off.simd_lt(along * 0.02);
+    let [short, long] = [is_line_likely & is_short, is_line_likely & is_long];
+    let middle = is_line_likely & !is_short & !is_long;
+    if short.any_true() {
+        // Short lines gain more from exact endpoints than from sixteen weights,
+        winner.offer(&one_line::<_, 3, 3>(simd, texels, &all, &axis, scale, &MODE_5, ROUNDS), short);
+    }
+    if long.any_true() {
+        // and long ones more from 32 weights: 4 dB on a grey map.
+        winner.offer(&one_line::<_, 3, 5>(simd, texels, &all, &axis, scale, &MODE_18, ROUNDS), long);
+    }
+    if middle.any_true() {
+        winner.offer(&one_line::<_, 3, 4>(simd, texels, &all, &axis, scale, &MODE_0, ROUNDS), middle);
+    }
+    let is_plane_likely = planes_estimate.simd_lt(line_estimate * DOUBT);
+    if is_plane_likely.any_true() {
+        let planes = two_planes::<_, 3, 2>(simd, texels, &all, selector, scale, &MODE_6, ROUNDS);
+        winner.offer(&planes, is_plane_likely);
+    }
+    if winner.error.simd_gt(GOOD).any_true() {
+        let [pattern] = likely_patterns(simd, texels, &all, &axis);
+        let split = Split::in_two(simd, texels, pattern);
+        let (off, along) = split.scatter(simd);
+        let is_likely = winner.error.simd_gt(GOOD) & (off + along / 12.0).simd_lt(winner.error * 1.4);
+        if is_likely.any_true() {
+            winner.offer(&split_lines::<_, 3, 2, 2>(simd, texels, &split, scale, &MODE_4, ROUNDS), is_likely);
         }
     }
-    winner.0
+    winner.offer_grey(simd, texels, 1);
+    winner
 }
 
 /// The channel that is best given a plane of its own, and the squared error to expect then.
 #[inline(always)]
-fn likely_planes(all: &Moments<3>) -> (usize, f32) {
-    let mut least = (0, f32::INFINITY);
+fn likely_planes<S: Simd>(simd: S, all: &Moments<S, 3>) -> (Wide<S>, Wide<S>) {
+    let mut least = (Wide::splat(simd, 0.0), Wide::splat(simd, f32::INFINITY));
     for alone in 0..3 {
-        let [p, q] = rest(alone);
+        let [p, q] = [[1, 2], [0, 2], [0, 1]][alone];
         let (a, b, c) = (all.scatter[p][p], all.scatter[p][q], all.scatter[q][q]);
-        let radius = (0.25 * (a - c) * (a - c) + b * b).sqrt();
-        let middle = 0.5 * (a + c);
+        let radius = Real::sqrt((a - c) * 0.25 * (a - c) + b * b);
+        let middle = (a + c) * 0.5;
         // 2-bit weights leave about a twelfth of the scatter along their line.
         let error = (middle - radius) + (middle + radius + all.scatter[alone][alone]) / 12.0;
-        if error < least.1 {
-            least = (alone, error);
-        }
+        let is_less = error.simd_lt(least.1);
+        least.0 = is_less.select(Wide::splat(simd, alone as f32), least.0);
+        least.1 = is_less.select(error, least.1);
     }
-    (least.0, 0.85 * least.1 + 4.0)
+    (least.0, least.1 * 0.85 + 4.0)
 }
 
-/// A block with alpha.
+/// Blocks with alpha.
 #[inline(always)]
-pub(super) fn rgba<S: Simd>(simd: S, texels: &[Lane; 4], thorough: bool) -> Block {
+pub(super) fn rgba<S: Simd>(simd: S, texels: &[Grid<S>; 4], thorough: bool) -> Blocks<S> {
     let rounds = if thorough { 4 } else { 2 };
-    let all = moments(texels, &ALL);
-    let axis = principal_axis(&all.scatter);
-    let mut winner = Winner(one_line::<_, 4, 4>(simd, texels, &all, &axis, &[1.0; 4], &MODE_10, rounds));
-    winner.offer(one_line::<_, 4, 3>(simd, texels, &all, &axis, &[1.0; 4], &MODE_12, rounds));
-    winner.offer(two_planes::<_, 4, 2>(simd, texels, &all, 3, &[1.0; 4], &MODE_11, rounds));
+    let all = moments(simd, texels, None);
+    let axis = principal_axis(simd, &all.scatter);
+    let mut winner = one_line::<_, 4, 4>(simd, texels, &all, &axis, &[1.0; 4], &MODE_10, rounds);
+    let every = winner.error.simd_ge(0.0);
+    winner.offer(&one_line::<_, 4, 3>(simd, texels, &all, &axis, &[1.0; 4], &MODE_12, rounds), every);
+    let selectors: &[f32] = if thorough { &[3.0, 0.0, 1.0, 2.0] } else { &[3.0] };
+    for &selector in selectors {
+        let selector = Wide::splat(simd, selector);
+        winner.offer(&two_planes::<_, 4, 2>(simd, texels, &all, selector, &[1.0; 4], &MODE_11, rounds), every);
+    }
     if thorough {
-        winner.offer(one_line::<_, 4, 2>(simd, texels, &all, &axis, &[1.0; 4], &MODE_14, rounds));
-        for selector in 0..3 {
-            winner.offer(two_planes::<_, 4, 2>(simd, texels, &all, selector, &[1.0; 4], &MODE_11, rounds));
-        }
-        for pattern in likely_patterns::<4, 4>(texels, &all, &axis) {
-            let split = Split::in_two(texels, pattern);
-            winner.offer(split_lines::<_, 4, 2, 2>(simd, texels, &split, &[1.0; 4], &MODE_9, rounds));
+        winner.offer(&one_line::<_, 4, 2>(simd, texels, &all, &axis, &[1.0; 4], &MODE_14, rounds), every);
+        for pattern in likely_patterns::<_, 4, 4>(simd, texels, &all, &axis) {
+            let split = Split::in_two(simd, texels, pattern);
+            winner.offer(&split_lines::<_, 4, 2, 2>(simd, texels, &split, &[1.0; 4], &MODE_9, rounds), every);
         }
     }
-    winner.0
+    winner
 }

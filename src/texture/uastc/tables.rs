@@ -4,11 +4,16 @@
 //! endpoint ranges, the Khronos Data Format Specification 1.3, section 23.12 "Endpoint
 //! unquantization" (ASTC).
 
+/// Modes of the format.
+pub(super) const MODES: usize = 19;
+
 /// What a mode stores. Only the modes that this encoder writes have an entry.
 pub(super) struct Mode {
+    /// Number in the specification.
+    pub number: u8,
     /// Prefix code and its length in bits.
     pub code: (u8, u8),
-    /// Colour channels that the endpoints carry: 3 (RGB) or 4 (RGBA).
+    /// Colour channels that the endpoints carry: 2 (grey and alpha), 3 (RGB) or 4 (RGBA).
     pub channels: usize,
     /// Subsets of texels with their own pair of endpoints.
     pub subsets: usize,
@@ -22,40 +27,49 @@ pub(super) struct Mode {
     pub full_hints: bool,
 }
 
-const fn rgb(code: (u8, u8), weight_bits: u32, range: &'static Range) -> Mode {
-    Mode { code, channels: 3, subsets: 1, planes: 1, weight_bits, range, full_hints: true }
+impl Mode {
+    /// Whether blocks carry alpha.
+    pub fn has_alpha(&self) -> bool {
+        self.channels != 3
+    }
 }
 
-const fn rgba(code: (u8, u8), weight_bits: u32, range: &'static Range, full_hints: bool) -> Mode {
-    Mode { channels: 4, full_hints, ..rgb(code, weight_bits, range) }
+const fn rgb(number: u8, code: (u8, u8), weight_bits: u32, range: &'static Range) -> Mode {
+    Mode { number, code, channels: 3, subsets: 1, planes: 1, weight_bits, range, full_hints: true }
+}
+
+const fn rgba(number: u8, code: (u8, u8), weight_bits: u32, range: &'static Range, full_hints: bool) -> Mode {
+    Mode { channels: 4, full_hints, ..rgb(number, code, weight_bits, range) }
 }
 
 /// Mode 0: RGB, 16 weights.
-pub(super) static MODE_0: Mode = rgb((0x1, 4), 4, &RANGE_192);
+pub(super) static MODE_0: Mode = rgb(0, (0x1, 4), 4, &RANGE_192);
 /// Mode 1: RGB, 4 weights, exact endpoints.
-pub(super) static MODE_1: Mode = rgb((0x35, 6), 2, &RANGE_256);
+pub(super) static MODE_1: Mode = rgb(1, (0x35, 6), 2, &RANGE_256);
 /// Mode 2: RGB, two subsets of 8 weights.
-pub(super) static MODE_2: Mode = Mode { subsets: 2, ..rgb((0x1d, 5), 3, &RANGE_16) };
+pub(super) static MODE_2: Mode = Mode { subsets: 2, ..rgb(2, (0x1d, 5), 3, &RANGE_16) };
 /// Mode 3: RGB, three subsets of 4 weights.
-pub(super) static MODE_3: Mode = Mode { subsets: 3, ..rgb((0x3, 5), 2, &RANGE_12) };
+pub(super) static MODE_3: Mode = Mode { subsets: 3, ..rgb(3, (0x3, 5), 2, &RANGE_12) };
 /// Mode 4: RGB, two subsets of 4 weights.
-pub(super) static MODE_4: Mode = Mode { subsets: 2, ..rgb((0x13, 5), 2, &RANGE_40) };
+pub(super) static MODE_4: Mode = Mode { subsets: 2, ..rgb(4, (0x13, 5), 2, &RANGE_40) };
 /// Mode 5: RGB, 8 weights, exact endpoints.
-pub(super) static MODE_5: Mode = rgb((0xb, 5), 3, &RANGE_256);
+pub(super) static MODE_5: Mode = rgb(5, (0xb, 5), 3, &RANGE_256);
 /// Mode 6: RGB, two planes of 4 weights.
-pub(super) static MODE_6: Mode = Mode { planes: 2, ..rgb((0x1b, 5), 2, &RANGE_160) };
+pub(super) static MODE_6: Mode = Mode { planes: 2, ..rgb(6, (0x1b, 5), 2, &RANGE_160) };
 /// Mode 9: RGBA, two subsets of 4 weights.
-pub(super) static MODE_9: Mode = Mode { subsets: 2, ..rgba((0xf, 5), 2, &RANGE_16, true) };
+pub(super) static MODE_9: Mode = Mode { subsets: 2, ..rgba(9, (0xf, 5), 2, &RANGE_16, true) };
 /// Mode 10: RGBA, 16 weights.
-pub(super) static MODE_10: Mode = rgba((0x2, 3), 4, &RANGE_48, false);
+pub(super) static MODE_10: Mode = rgba(10, (0x2, 3), 4, &RANGE_48, false);
 /// Mode 11: RGBA, two planes of 4 weights.
-pub(super) static MODE_11: Mode = Mode { planes: 2, ..rgba((0x0, 2), 2, &RANGE_48, false) };
+pub(super) static MODE_11: Mode = Mode { planes: 2, ..rgba(11, (0x0, 2), 2, &RANGE_48, false) };
 /// Mode 12: RGBA, 8 weights.
-pub(super) static MODE_12: Mode = rgba((0x6, 3), 3, &RANGE_192, false);
+pub(super) static MODE_12: Mode = rgba(12, (0x6, 3), 3, &RANGE_192, false);
 /// Mode 14: RGBA, 4 weights, exact endpoints.
-pub(super) static MODE_14: Mode = rgba((0xd, 5), 2, &RANGE_256, true);
+pub(super) static MODE_14: Mode = rgba(14, (0xd, 5), 2, &RANGE_256, true);
+/// Mode 15: grey and alpha, 16 weights, exact endpoints.
+pub(super) static MODE_15: Mode = Mode { channels: 2, ..rgb(15, (0x5, 7), 4, &RANGE_256) };
 /// Mode 18: RGB, 32 weights.
-pub(super) static MODE_18: Mode = rgb((0x9, 4), 5, &RANGE_32);
+pub(super) static MODE_18: Mode = rgb(18, (0x9, 4), 5, &RANGE_32);
 
 /// Prefix code of mode 8, one colour for all texels.
 pub(super) const SOLID_CODE: (u8, u8) = (0x17, 5);
@@ -70,6 +84,8 @@ pub(super) struct Range {
     pub code: [u8; 256],
     /// The level that the nearest code stands for.
     pub level: [u8; 256],
+    /// The next levels below and above each of the range, or that level itself at either end.
+    pub neighbour: [[u8; 256]; 2],
 }
 
 static RANGE_12: Range = Range::new(2, 3);
@@ -83,7 +99,7 @@ static RANGE_256: Range = Range::new(8, 1);
 
 impl Range {
     const fn new(bits: u32, base: u32) -> Self {
-        let mut range = Self { bits, base, code: [0; 256], level: [0; 256] };
+        let mut range = Self { bits, base, code: [0; 256], level: [0; 256], neighbour: [[0; 256]; 2] };
         let mut target = 0;
         while target < 256 {
             let mut best = u32::MAX;
@@ -100,18 +116,21 @@ impl Range {
             }
             target += 1;
         }
+        let mut level = 0;
+        while level < 256 {
+            let own = range.level[level];
+            let (mut below, mut above) = (level, level);
+            while below > 0 && range.level[below] >= own {
+                below -= 1;
+            }
+            while above < 255 && range.level[above] <= own {
+                above += 1;
+            }
+            range.neighbour[0][level] = if range.level[below] < own { range.level[below] } else { own };
+            range.neighbour[1][level] = if range.level[above] > own { range.level[above] } else { own };
+            level += 1;
+        }
         range
-    }
-
-    /// The next level above or below one of the range, or that level itself at either end.
-    pub fn neighbour(&self, level: u8, up: bool) -> u8 {
-        let nearest = |v: u8| self.level[usize::from(v)];
-        let beyond = if up {
-            (level..=255).map(nearest).find(|&l| l > level)
-        } else {
-            (0..=level).rev().map(nearest).find(|&l| l < level)
-        };
-        beyond.unwrap_or(level)
     }
 }
 

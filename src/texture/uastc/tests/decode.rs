@@ -1,73 +1,66 @@
 //! Blocks decode to exactly what the encoder took them for.
 
+use super::super::blocks::Blocks;
 use super::super::candidate::{Split, one_line, split_lines, two_planes};
 use super::super::hints::Hints;
-use super::super::moments::{ALL, Lane, moments, principal_axis};
+use super::super::lanes::{Grid, channels};
+use super::super::moments::{moments, principal_axis};
 use super::super::pack::Block;
 use super::super::tables::*;
 use super::*;
-use crate::simd::dispatch;
+use crate::simd::{LANES, Wide, dispatch};
 use basisu::uastc::bise::{astc_get_levels, unquant_astc_endpoint_val};
 use basisu::uastc::huff_modes::HUFF_MODES;
 use basisu::uastc::patterns::{ASTC_BC7_PATTERNS2, ASTC_BC7_PATTERNS3};
-use fearless_simd::{Level, Simd};
-
-pub(super) fn lanes<const N: usize>(texels: &Texels) -> [Lane; N] {
-    std::array::from_fn(|c| texels.map(|t| f32::from(t[c])))
-}
+use fearless_simd::{Level, Simd, SimdBase};
 
 /// One block of every mode with `N` channels.
 pub(super) fn every_mode<const N: usize>(texels: &Texels) -> Vec<(u8, Block)> {
-    dispatch!(Level::new(), simd => every_mode_with::<_, N>(simd, texels))
+    // Any lane will do.
+    let blocks = dispatch!(Level::new(), simd => every_mode_with::<_, N>(simd, texels));
+    let one = |(k, blocks): (usize, [Block; LANES])| blocks[k % LANES].clone();
+    blocks.into_iter().enumerate().map(one).map(|block| (block.mode.number, block)).collect()
 }
 
-fn every_mode_with<S: Simd, const N: usize>(simd: S, texels: &Texels) -> Vec<(u8, Block)> {
-    let lanes = lanes::<N>(texels);
-    let all = moments(&lanes, &ALL);
-    let axis = principal_axis(&all.scatter);
-    let mut blocks = Vec::new();
+fn every_mode_with<S: Simd, const N: usize>(simd: S, texels: &Texels) -> Vec<[Block; LANES]> {
+    let lanes: [Grid<S>; N] = channels(simd, &[*texels; LANES]);
+    let all = moments(simd, &lanes, None);
+    let axis = principal_axis(simd, &all.scatter);
+    let splat = |number: usize| Wide::splat(simd, number as f32);
+    let ones = &[1.0; N];
+    let mut blocks: Vec<Blocks<S>> = Vec::new();
     for rounds in [1, 3] {
         if N == 3 {
-            blocks.push((0, one_line::<_, N, 4>(simd, &lanes, &all, &axis, &[1.0; N], &MODE_0, rounds)));
-            blocks.push((1, one_line::<_, N, 2>(simd, &lanes, &all, &axis, &[1.0; N], &MODE_1, rounds)));
-            blocks.push((5, one_line::<_, N, 3>(simd, &lanes, &all, &axis, &[1.0; N], &MODE_5, rounds)));
-            blocks.push((18, one_line::<_, N, 5>(simd, &lanes, &all, &axis, &[1.0; N], &MODE_18, rounds)));
+            blocks.push(one_line::<_, N, 4>(simd, &lanes, &all, &axis, ones, &MODE_0, rounds));
+            blocks.push(one_line::<_, N, 2>(simd, &lanes, &all, &axis, ones, &MODE_1, rounds));
+            blocks.push(one_line::<_, N, 3>(simd, &lanes, &all, &axis, ones, &MODE_5, rounds));
+            blocks.push(one_line::<_, N, 5>(simd, &lanes, &all, &axis, ones, &MODE_18, rounds));
             for selector in 0..3 {
-                let block = two_planes::<_, N, 2>(simd, &lanes, &all, selector, &[1.0; N], &MODE_6, rounds);
-                blocks.push((6, block));
+                blocks.push(two_planes::<_, N, 2>(simd, &lanes, &all, splat(selector), ones, &MODE_6, rounds));
             }
             for pattern in 0..PATTERNS.len() {
-                let split = Split::in_two(&lanes, pattern);
-                blocks.push((2, split_lines::<_, N, 2, 3>(simd, &lanes, &split, &[1.0; N], &MODE_2, rounds)));
-                blocks.push((4, split_lines::<_, N, 2, 2>(simd, &lanes, &split, &[1.0; N], &MODE_4, rounds)));
+                let split = Split::in_two(simd, &lanes, splat(pattern));
+                blocks.push(split_lines::<_, N, 2, 3>(simd, &lanes, &split, ones, &MODE_2, rounds));
+                blocks.push(split_lines::<_, N, 2, 2>(simd, &lanes, &split, ones, &MODE_4, rounds));
             }
-            for split in Split::in_three(&lanes) {
-                blocks.push((3, split_lines::<_, N, 3, 2>(simd, &lanes, &split, &[1.0; N], &MODE_3, rounds)));
+            for pattern in 0..THIRDS.len() {
+                let split = Split::in_three(simd, &lanes, splat(pattern));
+                blocks.push(split_lines::<_, N, 3, 2>(simd, &lanes, &split, ones, &MODE_3, rounds));
             }
         } else {
-            blocks.push((10, one_line::<_, N, 4>(simd, &lanes, &all, &axis, &[1.0; N], &MODE_10, rounds)));
-            blocks.push((12, one_line::<_, N, 3>(simd, &lanes, &all, &axis, &[1.0; N], &MODE_12, rounds)));
-            blocks.push((14, one_line::<_, N, 2>(simd, &lanes, &all, &axis, &[1.0; N], &MODE_14, rounds)));
+            blocks.push(one_line::<_, N, 4>(simd, &lanes, &all, &axis, ones, &MODE_10, rounds));
+            blocks.push(one_line::<_, N, 3>(simd, &lanes, &all, &axis, ones, &MODE_12, rounds));
+            blocks.push(one_line::<_, N, 2>(simd, &lanes, &all, &axis, ones, &MODE_14, rounds));
             for selector in 0..4 {
-                let block = two_planes::<_, N, 2>(simd, &lanes, &all, selector, &[1.0; N], &MODE_11, rounds);
-                blocks.push((11, block));
+                blocks.push(two_planes::<_, N, 2>(simd, &lanes, &all, splat(selector), ones, &MODE_11, rounds));
             }
             for pattern in 0..PATTERNS.len() {
-                blocks.push((
-                    9,
-                    split_lines::<_, N, 2, 2>(
-                        simd,
-                        &lanes,
-                        &Split::in_two(&lanes, pattern),
-                        &[1.0; N],
-                        &MODE_9,
-                        rounds,
-                    ),
-                ));
+                let split = Split::in_two(simd, &lanes, splat(pattern));
+                blocks.push(split_lines::<_, N, 2, 2>(simd, &lanes, &split, ones, &MODE_9, rounds));
             }
         }
     }
-    blocks
+    blocks.iter().map(Blocks::store).collect()
 }
 
 /// The specification's decoder, in its slowest form.
@@ -172,6 +165,21 @@ fn solid_blocks_are_exact() {
             let [r, g, b, _] = colour;
             let block = encode_block(&[colour; 16], Metric::Rgb, effort);
             assert_eq!(decoded(&block), [[r, g, b, 255]; 16]);
+        }
+    }
+}
+
+#[test]
+fn up_to_eight_greys_in_a_row_are_exact() {
+    let mut random = Random(5);
+    for _ in 0..2000 {
+        let (least, span) = (random.byte().min(240), 1 + random.next() % 8);
+        let texels = std::array::from_fn(|_| {
+            let grey = least + (random.next() % span) as u8;
+            [grey, grey, grey, 255]
+        });
+        for effort in EFFORTS {
+            assert_eq!(decoded(&encode_block(&texels, Metric::Rgb, effort)), texels);
         }
     }
 }

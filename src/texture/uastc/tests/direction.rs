@@ -1,11 +1,13 @@
 //! The metric of normals against its slow definition, and what it gains.
 
-use super::super::direction::{LONG, Normals, REBUILT, SHORT, normals as unit_normals};
+use super::super::blocks::Blocks;
+use super::super::direction::{LONG, REBUILT, SHORT, normals as unit_normals};
 use super::super::hints::Hints;
+use super::super::lanes::channels;
 use super::super::pack::Block;
-use super::decode::{every_mode, expected, lanes};
+use super::decode::{every_mode, expected};
 use super::*;
-use crate::simd::dispatch;
+use crate::simd::{LANES, dispatch};
 use fearless_simd::Level;
 
 type Vector = [f64; 3];
@@ -57,17 +59,20 @@ fn least_error(block: &Block, source: &Texels) -> f64 {
     least.iter().sum()
 }
 
-fn aim(block: &mut Block, target: &Normals, rounds: usize, passes: usize) {
-    dispatch!(Level::new(), simd => block.aim(simd, target, rounds, passes));
+fn aim(block: &mut Block, source: &Texels, rounds: usize, passes: usize) {
+    dispatch!(Level::new(), simd => {
+        let mut blocks = Blocks::load(simd, [&*block; LANES]);
+        blocks.aim(simd, &unit_normals(simd, &channels(simd, &[*source; LANES])), rounds, passes);
+        *block = blocks.store()[0].clone();
+    });
 }
 
 #[test]
 fn errors_and_weights_are_those_of_the_definition() {
     let scale = 127.5 * 127.5;
     for source in normals(0.1, 16).into_iter().chain(normals(1.5, 16)).chain(all_kinds().into_iter().step_by(17)) {
-        let target = unit_normals(&lanes(&source));
         for (mode, mut block) in every_mode::<3>(&source).into_iter().step_by(7) {
-            aim(&mut block, &target, 2, 1);
+            aim(&mut block, &source, 2, 1);
             let claimed = f64::from(block.error) / scale;
             let (found, least) = (expected(&block), least_error(&block, &source));
             let actual = total(&found, &source);
@@ -81,11 +86,10 @@ fn errors_and_weights_are_those_of_the_definition() {
 #[test]
 fn more_work_is_never_worse() {
     for source in normals(0.4, 64) {
-        let target = unit_normals(&lanes(&source));
         for (_, block) in every_mode::<3>(&source).into_iter().step_by(5) {
             let errors = [(1, 0), (2, 0), (2, 1), (2, 2)].map(|(rounds, passes)| {
                 let mut block = block.clone();
-                aim(&mut block, &target, rounds, passes);
+                aim(&mut block, &source, rounds, passes);
                 block.error
             });
             assert!(errors.is_sorted_by(|a, b| b <= a), "{errors:?}");
@@ -139,9 +143,8 @@ fn little_is_left_for_more_search() {
     let sources = normals(0.4, 12);
     let mut sums = [0.0; 2];
     for source in &sources {
-        let target = unit_normals(&lanes(source));
         let least = every_mode::<3>(source).into_iter().map(|(_, mut block)| {
-            aim(&mut block, &target, 8, 8);
+            aim(&mut block, source, 8, 8);
             f64::from(block.error) / (127.5 * 127.5)
         });
         sums[0] += least.fold(f64::INFINITY, f64::min);

@@ -7,10 +7,9 @@ mod hints;
 mod level;
 mod quality;
 
+use super::lanes::Texels;
 use super::{BLOCK_BYTES, Effort, Metric, encode_level};
 use basisu::uastc::unpack::unpack_uastc;
-
-pub(super) type Texels = [[u8; 4]; 16];
 
 /// SplitMix64, so that the cases are the same everywhere.
 pub(super) struct Random(pub u64);
@@ -121,6 +120,15 @@ pub(super) fn all_kinds() -> Vec<Texels> {
                 })
             }));
         }
+    }
+    for spread in [4, 30, 255] {
+        // Grey slopes with noise.
+        blocks.extend((0..20).map(|k| {
+            std::array::from_fn(|i| {
+                let v = (k * 9 + i as u64 % 4 * (spread / 4) + random.next() % spread).min(255) as u8;
+                [v, v, v, 255]
+            })
+        }));
     }
     blocks.extend(normals(0.0, 32));
     blocks.extend(normals(0.1, 32));

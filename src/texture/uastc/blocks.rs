@@ -1,0 +1,136 @@
+//! Eight blocks that are being searched, and their way from and to single ones.
+
+use fearless_simd::{Simd, SimdBase, SimdCvtFloat, SimdCvtTruncate, prelude::*, u32x8};
+
+use super::lanes::{Grid, take};
+use super::pack::Block;
+use super::tables::{MODE_0, Mode};
+use crate::simd::{LANES, Real, Wide};
+
+/// [`Block`]s, all numbers as whole floats.
+#[derive(Clone, Copy)]
+pub(super) struct Blocks<S: Simd> {
+    pub modes: [&'static Mode; LANES],
+    pub pattern: Wide<S>,
+    pub selector: Wide<S>,
+    pub endpoints: [[[Wide<S>; 2]; 4]; 3],
+    pub weights: [Grid<S>; 2],
+    pub error: Wide<S>,
+}
+
+impl<S: Simd> Blocks<S> {
+    /// Blocks of one mode, all zeros.
+    #[inline(always)]
+    pub fn empty(simd: S, mode: &'static Mode) -> Self {
+        let zero = Wide::splat(simd, 0.0);
+        Self {
+            modes: [mode; LANES],
+            pattern: zero,
+            selector: zero,
+            endpoints: [[[zero; 2]; 4]; 3],
+            weights: [[zero; 16]; 2],
+            error: zero,
+        }
+    }
+
+    /// Blocks that any other is better than.
+    #[inline(always)]
+    pub fn none(simd: S) -> Self {
+        Self { error: Wide::splat(simd, f32::INFINITY), ..Self::empty(simd, &MODE_0) }
+    }
+
+    /// Becomes `other`, whose blocks are of one mode, where that is `allowed` and has the lesser error.
+    #[inline(always)]
+    pub fn offer(&mut self, other: &Self, allowed: <Wide<S> as Real>::Mask) {
+        let is_better = other.error.simd_lt(self.error) & allowed;
+        if is_better.any_true() {
+            self.take(other, is_better);
+        }
+    }
+
+    /// Becomes `other`, whose blocks are of one mode, where `mask` holds.
+    #[inline(always)]
+    pub fn take(&mut self, other: &Self, mask: <Wide<S> as Real>::Mask) {
+        let mode = other.modes[0];
+        for (j, own) in self.modes.iter_mut().enumerate() {
+            if mask.to_bitmask() >> j & 1 == 1 {
+                *own = mode;
+            }
+        }
+        take(&mut self.pattern, other.pattern, mask);
+        take(&mut self.selector, other.selector, mask);
+        take(&mut self.error, other.error, mask);
+        for (own, other) in self.endpoints.iter_mut().zip(&other.endpoints).take(mode.subsets) {
+            for (own, other) in own.as_flattened_mut().iter_mut().zip(other.as_flattened()).take(2 * mode.channels) {
+                take(own, *other, mask);
+            }
+        }
+        for (own, other) in self.weights.iter_mut().zip(&other.weights).take(mode.planes) {
+            for (own, other) in own.iter_mut().zip(other) {
+                take(own, *other, mask);
+            }
+        }
+    }
+
+    /// From single blocks.
+    #[inline(always)]
+    pub fn load(simd: S, blocks: [&Block; LANES]) -> Self {
+        let mut all = Self::empty(simd, blocks[0].mode);
+        all.modes = blocks.map(|block| block.mode);
+        all.pattern = Wide::simd_from(simd, blocks.map(|block| block.pattern as f32));
+        all.selector = Wide::simd_from(simd, blocks.map(|block| block.selector as f32));
+        all.error = Wide::simd_from(simd, blocks.map(|block| block.error));
+        for (k, four) in all.endpoints.as_flattened_mut().as_flattened_mut().as_chunks_mut().0.iter_mut().enumerate() {
+            *four = unpacked(simd, blocks.map(|block| block.endpoints.as_flattened().as_flattened().as_chunks().0[k]));
+        }
+        for (k, four) in all.weights.as_flattened_mut().as_chunks_mut().0.iter_mut().enumerate() {
+            *four = unpacked(simd, blocks.map(|block| block.weights.as_flattened().as_chunks().0[k]));
+        }
+        all
+    }
+
+    /// To single blocks.
+    #[inline(always)]
+    pub fn store(&self) -> [Block; LANES] {
+        let (pattern, selector): ([f32; LANES], [f32; LANES]) = (self.pattern.into(), self.selector.into());
+        let error: [f32; LANES] = self.error.into();
+        let mut blocks: [Block; LANES] = std::array::from_fn(|j| Block {
+            pattern: pattern[j] as usize,
+            selector: selector[j] as usize,
+            error: error[j],
+            ..Block::empty(self.modes[j])
+        });
+        for (k, four) in self.endpoints.as_flattened().as_flattened().as_chunks().0.iter().enumerate() {
+            for (block, bytes) in blocks.iter_mut().zip(packed(four)) {
+                block.endpoints.as_flattened_mut().as_flattened_mut().as_chunks_mut().0[k] = bytes;
+            }
+        }
+        for (k, four) in self.weights.as_flattened().as_chunks().0.iter().enumerate() {
+            for (block, bytes) in blocks.iter_mut().zip(packed(four)) {
+                block.weights.as_flattened_mut().as_chunks_mut().0[k] = bytes;
+            }
+        }
+        blocks
+    }
+}
+
+/// Four bytes of each block, one vector for each.
+#[inline(always)]
+fn unpacked<S: Simd>(simd: S, bytes: [[u8; 4]; LANES]) -> [Wide<S>; 4] {
+    let words = u32x8::simd_from(simd, bytes.map(u32::from_le_bytes));
+    [
+        Wide::float_from(words & 255),
+        Wide::float_from((words >> 8) & 255),
+        Wide::float_from((words >> 16) & 255),
+        Wide::float_from(words >> 24),
+    ]
+}
+
+/// The reverse.
+#[inline(always)]
+fn packed<S: Simd>([a, b, c, d]: &[Wide<S>; 4]) -> [[u8; 4]; LANES] {
+    let [a, b, c, d] =
+        [u32x8::truncate_from(*a), u32x8::truncate_from(*b), u32x8::truncate_from(*c), u32x8::truncate_from(*d)];
+    let words: [u32; LANES] = (a | b << 8 | c << 16 | d << 24).into();
+    words.map(u32::to_le_bytes)
+}
