@@ -1,0 +1,91 @@
+"""Runs of commands that alternate: wall time, processor seconds and peak memory of each."""
+
+import json
+import os
+import shutil
+import statistics
+import subprocess
+import tempfile
+import threading
+import time
+from dataclasses import dataclass
+
+# Seconds after which a run is given up.
+LIMIT = 900
+
+
+class Failed(Exception):
+    """Why a command gave no measurement."""
+
+
+@dataclass
+class Contender:
+    """A command beside others."""
+
+    argv: list
+    # Removed before each run.
+    out: str | None = None
+    # Whether the command prints the times of what counts, as JSON; else the whole process counts.
+    tells: bool = False
+    # In which rounds it takes part: all, or so many first ones where one run takes long.
+    rounds: int | None = None
+
+
+def once(contender):
+    """One run: `wall` and `cpu` in seconds, `peak` in MiB, `said` as the command printed it."""
+    if contender.out:
+        shutil.rmtree(contender.out, ignore_errors=True)
+        os.makedirs(contender.out)
+    with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
+        start = time.perf_counter()
+        try:
+            process = subprocess.Popen(contender.argv, stdin=subprocess.DEVNULL, stdout=out, stderr=err)
+        except OSError as error:
+            raise Failed(f"{contender.argv[0]}: {error.strerror}") from error
+        timer = threading.Timer(LIMIT, process.kill)
+        timer.start()
+        # `wait4` and not `wait`: it tells what this child used, not all of them together.
+        _, status, usage = os.wait4(process.pid, 0)
+        wall = time.perf_counter() - start
+        timer.cancel()
+        process.returncode = os.waitstatus_to_exitcode(status)
+        out.seek(0)
+        err.seek(0)
+        if process.returncode != 0:
+            lines = err.read().decode(errors="replace").split("\n")
+            said = next((line.strip() for line in reversed(lines) if line.strip()), "no message")
+            raise Failed(f"ended with {process.returncode}: {said[:160]}")
+        run = {"wall": wall, "cpu": usage.ru_utime + usage.ru_stime, "peak": usage.ru_maxrss / 1024}
+        if contender.tells:
+            run |= json.loads(out.read())
+        return run
+
+
+def alternate(contenders, rounds, note=print):
+    """Rounds in which every contender runs once, in turn. By name: medians of `wall` and `cpu`, the largest `peak`, the
+    `least` and `most` wall time, the `runs`; or `failed`, the reason."""
+    runs = {name: [] for name in contenders}
+    failed = {}
+    for index in range(rounds):
+        for name, contender in contenders.items():
+            if name in failed or index >= (contender.rounds or rounds):
+                continue
+            try:
+                runs[name].append(once(contender))
+            except Failed as reason:
+                failed[name] = str(reason)
+        note(f"  round {index + 1} of {rounds}")
+    return {name: {"failed": failed[name]} if name in failed else summary(runs[name]) for name in contenders}
+
+
+def summary(runs):
+    """Of several runs of one contender."""
+    walls = [run["wall"] for run in runs]
+    return {
+        "wall": statistics.median(walls),
+        "cpu": statistics.median(run["cpu"] for run in runs),
+        "peak": max(run["peak"] for run in runs),
+        "least": min(walls),
+        "most": max(walls),
+        "runs": len(runs),
+    }

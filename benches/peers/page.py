@@ -1,0 +1,207 @@
+"""docs/performance.md from the results."""
+
+from statistics import mean
+
+from bars import bars, share
+
+# What each contender is, as the tables name it.
+NAMES = {
+    "two textures": "Roughcast, two textures: `bake --gltf strict --model isotropic --threads 2`",
+    "default": "Roughcast, default: `bake --threads 2`",
+    "maketx": "`maketx --bumpslopes -d half --threads 2`",
+    "decoding in turn": "decoding both images, one after the other",
+    "decoding side by side": "decoding both images side by side",
+    "moments": "mean and K of all levels",
+    "shape": "mean, K, third and fourth moments of all levels",
+    "fast": "Roughcast `fast`, by direction",
+    "best": "Roughcast `best`, by direction",
+    "fast rgb": "Roughcast `fast`, by colour",
+    "best rgb": "Roughcast `best`, by colour",
+    **{f"level {i}{s}": f"basis_universal level {i}{s and ', C interface' + s}" for i in (0, 1) for s in ("", " with statistics")},
+    "level 2": "basis_universal level 2",
+}
+
+
+def page(results):
+    """The whole document."""
+    sections = [head(results)]
+    sections += [of(results[name]) for name, of in SECTIONS.items() if name in results]
+    return "\n\n".join(sections) + "\n"
+
+
+def table(header, rows):
+    """Markdown."""
+    lines = [header, ["---"] + ["---:"] * (len(header) - 1), *rows]
+    return "\n".join("| " + " | ".join(str(cell) for cell in line) + " |" for line in lines)
+
+
+def timed(times, base, extra=lambda name: [], columns=(), pack="pack"):
+    """A row for each contender: times, the ratio to `base`, memory."""
+    rows = []
+    wall = times.get(base, {}).get("wall")
+    for name, run in times.items():
+        label = pack if name == "pack" else NAMES.get(name, name)
+        if "failed" in run:
+            rows.append([label, "failed: " + run["failed"].replace("|", "/"), *[""] * (5 + len(columns))])
+            continue
+        beside = f"{run['wall'] / wall:.2f}" if wall else "-"
+        rows.append([label, seconds(run["wall"]), f"{seconds(run['least'])} - {seconds(run['most'])}", seconds(run["cpu"]),
+                     beside, f"{run['peak']:.0f}", run["runs"], *extra(name)])
+    short = NAMES.get(base, base).split(":")[0]
+    return table(["", "wall s", "least - most", "CPU s", f"ratio to {short}", "peak MiB", "runs", *columns], rows)
+
+
+def seconds(value):
+    """Three figures."""
+    return f"{value:.3g}" if value < 100 else f"{value:.0f}"
+
+
+def lobes(errors):
+    """Mean of all levels and the worst."""
+    return f"{mean(errors):.3f}, {max(errors):.3f}" if errors else "-"
+
+
+def head(results):
+    quick = any(part.get("quick") for part in results.values())
+    lines = ["# Performance", ""]
+    if quick:
+        lines += ["**Some of this is of `--quick`: small maps, one run each. It shows that everything runs; its figures are none.**", ""]
+    lines += [
+        "Roughcast beside others that do parts of its work, on one machine, in alternating runs. `python3 benches/peers/run.py` writes this",
+        "page (Linux, 25 minutes; needs Rust, a C++ compiler, Python 3.10 with venv): it installs OpenImageIO from PyPI into a",
+        "scratch environment under `target/peers`, builds, makes the inputs, measures, and prints the same tables.",
+        "`--only PART` measures one of encoders, kernels, decoders, whole, growth again.",
+        "",
+        "Times are medians of the runs, which the tables count. CPU seconds are those of all threads; peak memory is the process's resident",
+        "set. The inputs are PNGs of 8 bits: normals from tiles of `../shared/data/maps` (wool, sand, bricks), each turned and",
+        "mirrored so that none repeats nearby, or synthetic where there are none; roughness is synthetic.",
+        "",
+        "## The machine",
+        "",
+    ]
+    lines += [f"- {fact}: {value}" for fact, value in results.get("machine", {}).items() if fact != "quick"]
+    lines += ["", "## What was promised", ""]
+    verdicts = [[*row[:3], row[3] if row[3] == "met" else f"**{row[3]}**"] for row in bars(results)]
+    lines += [table(["", "bound", "measured", ""], verdicts)]
+    return "\n".join(lines)
+
+
+def square(size):
+    return f"{size} x {size}"
+
+
+def encoders(part):
+    lobes = part["lobes"]
+    known = {} if "failed" in lobes else lobes
+    lobe = lambda name: [f"{mean(row[name] for row in known.values()):.4f}" if known and name in next(iter(known.values())) else "-"]
+    same = {"level 0 with statistics": "level 0", "level 1 with statistics": "level 1"}
+    lines = [
+        f"## UASTC: one level of {square(part['size'])}",
+        "",
+        "`--only encoders`. The encoding alone, the texels being in memory; normals. basis_universal's C interface computes PSNR, SSIM and",
+        "PSNR-HVS-M on the side and cannot be told not to; without it is the C++ function underneath, told not to. The bars",
+        "name the latter, which is the faster. Lobe errors are means of real normal maps, levels 1 to 4, alpha 0.2, baked to ellipses",
+        "whose normals alone are encoded" + (f"; of half floats it is {lobe('half floats')[0]}." if known else "."),
+        "",
+        timed(part["times"], "level 0", lambda name: lobe(same.get(name, name)), ["lobe error"]),
+        "",
+        "How near decoded texels are to their source (PSNR of red, green and blue in dB; angles of normals, root mean square in degrees):",
+        "",
+    ]
+    if "failed" in part["quality"]:
+        return "\n".join([*lines, f"failed: {part['quality']['failed']}"])
+    psnr, angle = ["fast rgb", "best rgb", "level 0", "level 1", "level 2"], ["fast", "best", "level 0", "level 1", "level 2"]
+    rows = []
+    for name, row in part["quality"].items():
+        angles = [f"{row[e]['degrees']:.2f}" if "degrees" in row[e] else "" for e in angle]
+        rows.append([name, *[f"{row[e]['psnr']:.1f}" for e in psnr], *angles])
+    means = lambda keys, key: [
+        f"{mean(row[e][key] for row in part['quality'].values() if key in row[e]):.2f}" for e in keys
+        if any(key in row[e] for row in part["quality"].values())
+    ]
+    rows.append(["mean", *means(psnr, "psnr"), *means(angle, "degrees")])
+    header = ["", "`fast` dB", "`best` dB", "level 0 dB", "level 1 dB", "level 2 dB"]
+    return "\n".join([*lines, table([*header, "`fast` °", "`best` °", "level 0 °", "level 1 °", "level 2 °"], rows)])
+
+
+def kernels(part):
+    return "\n".join([
+        f"## From a normal map to its pyramid: {square(part['size'])}",
+        "",
+        "`--only kernels`. From 8-bit texels in memory to the means and covariances K (20 bytes a texel) of all coarser levels, or with the moments",
+        "of shape (56 bytes); the copies read and write as many bytes: the input and the levels. All into new memory, on two threads, in the",
+        "second run of a process. Nothing is encoded and no lobe is fitted, so there is no lobe error.",
+        "",
+        timed(part["times"], "copy of moments"),
+    ])
+
+
+def decoders(part):
+    return "\n".join([
+        f"## Decoders: {square(part['size'])} normals",
+        "",
+        "`--only decoders`. From a file in memory to 8-bit texels. Roughcast decodes PNG with `png` (through `image`) and JPEG with",
+        "`zune-jpeg`. Decoding is exact, or for JPEG within rounding: lobe errors do not depend on it.",
+        "",
+        timed(part["times"], "PNG, png"),
+    ])
+
+
+def whole(part):
+    found = part["errors"]
+    model = {"two textures": "isotropic", "default": "default", "pack": "none"}
+    pack = "`ktx create --encode uastc --uastc-quality 0 --zstd 5`" if part["ktx"] else PACK
+    return "\n".join([
+        f"## A whole bake: one material, normal and roughness of {square(part['size'])}",
+        "",
+        "`--only whole`. From PNGs on disk to files on disk, mips included. `maketx` and the stand-in read the normal map only. Lobe errors",
+        "(mean of all levels, worst level) are what the bake itself reports of what engines decode after encoding; plain",
+        "mips, as `ktx create` makes them, keep the material's roughness. What `maketx` writes is for renderers that fold it themselves.",
+        "",
+        timed(part["times"], "two textures", lambda name: [lobes(found.get(model.get(name)))], ["lobe error"], pack),
+    ])
+
+
+PACK = "stand-in for `ktx create --generate-mipmap --encode uastc --uastc-quality 0 --zstd 5` (boxes, basis_universal level 0, zstd)"
+
+
+def growth(part):
+    def cells(run, more=()):
+        if "failed" in run:
+            return [run["failed"]] + [""] * (2 + len(more))
+        return [seconds(run["wall"]), seconds(run["cpu"]), f"{run['peak']:.0f}", *more]
+
+    sizes = []
+    for size, point in part["sizes"].items():
+        found = point["errors"]
+        other = [seconds(point[name]["wall"]) if "wall" in point.get(name, {}) else "-" for name in ("maketx", "pack")]
+        two, default = point["two textures"], point["default"]
+        sizes.append([square(size), *cells(two, [lobes(found.get("isotropic"))]), *cells(default, [lobes(found.get("default"))]), *other,
+                      two.get("runs", 0)])
+    counts = []
+    for count, point in part["counts"].items():
+        two, default = point["two textures"], point["default"]
+        busy = lambda run: [f"{share(run):.0f}" if "cpu" in run else ""]
+        counts.append([count, *cells(two, busy(two)), *cells(default, busy(default)), two.get("runs", 0)])
+    header = [f"{form}: {what}" for form in ("two textures", "default") for what in ("wall s", "CPU s", "peak MiB", "{}")]
+    with_last = lambda last: [column.format(last) for column in header]
+    return "\n".join([
+        "## How cost grows",
+        "",
+        "`--only growth`. One material of rising size; other tools up to 8192 x 8192, on its normal map. Lobe errors: mean of all levels, worst level.",
+        "",
+        "![Time of bakes against the side of maps and against the number of materials](pictures/growth.svg)",
+        "",
+        table(["", *with_last("lobe error"), "maketx: wall s", "level 0 and zstd: wall s", "runs"], sizes),
+        "",
+        "Materials of 512 x 512, each in a document of its own, in one bake; busy is the share of both cores. Every material has the texels of",
+        "the row 512 x 512 above, and its lobe errors.",
+        "",
+        table(["", *with_last("busy %"), "runs"], counts),
+        "",
+        "Ten materials of the largest maps of the section above at a time: "
+        + "; ".join(f"{form} {run['peak']:.0f} MiB, {seconds(run['wall'])} s" for form, run in part["ten"].items() if "wall" in run) + ".",
+    ])
+
+
+SECTIONS = {"encoders": encoders, "kernels": kernels, "decoders": decoders, "whole": whole, "growth": growth}

@@ -1,0 +1,170 @@
+"""What is measured. Each part returns data; `page.py` makes tables of it, `bars.py` verdicts."""
+
+import json
+import os
+from pathlib import Path
+
+from measure import Contender, Failed, alternate, once
+from prepare import inputs
+
+# The two forms of a bake: the fewest textures, and what `roughcast bake` does when told nothing.
+TWO = ["--gltf", "strict", "--model", "isotropic"]
+DEFAULT = []
+
+
+class Bench:
+    """What parts share."""
+
+    def __init__(self, tools, data, quick):
+        self.tools, self.data, self.quick = tools, data, quick
+        self.maps = data / "maps" if data else None
+        self.size = 1024 if quick else 4096
+        self.rounds = 1 if quick else 5
+        self.out = str(tools.work / "out")
+
+    def sizes(self):
+        """Sides of the maps of growing materials."""
+        return [256, 512, 1024, 2048] + ([] if self.quick else [4096, 8192, 16384])
+
+    def folder(self, size=None, count=None):
+        """Assets with maps of `size`: as many as any part wants of that size."""
+        size = size or self.size
+        most = {512: 100 if self.quick else 1000, self.size: 10}
+        return inputs(self.tools, self.maps, size, most.get(size, 1))
+
+    def normal(self, size=None):
+        return str(self.folder(size) / "maps" / "normal.png")
+
+    def surface(self):
+        return str(self.folder() / "maps" / "surface.png")
+
+    def bake(self, size, count, form, rounds=None):
+        """Roughcast on `count` assets."""
+        assets = [str(self.folder(size) / f"{index:04}.gltf") for index in range(count)]
+        argv = [self.tools.roughcast, "bake", *assets, "-o", self.out, "--threads", "2", "--quiet", *form]
+        return Contender(argv, out=self.out, rounds=rounds)
+
+    def maketx(self, size=None, rounds=None):
+        argv = [self.tools.maketx, "--bumpslopes", "--bumpformat", "normal", "-d", "half", "--threads", "2"]
+        return Contender([*argv, self.normal(size), "-o", f"{self.out}/slopes.exr"], out=self.out, rounds=rounds)
+
+    def pack(self, size=None, rounds=None):
+        """`ktx create` where there is one, else our stand-in."""
+        target = f"{self.out}/packed.ktx2"
+        if self.tools.ktx:
+            argv = [self.tools.ktx, "create", "--format", "R8G8B8_UNORM", "--assign-tf", "linear", "--generate-mipmap"]
+            argv += ["--encode", "uastc", "--uastc-quality", "0", "--zstd", "5", "--threads", "2"]
+            return Contender([*argv, self.normal(size), target], out=self.out, rounds=rounds)
+        return Contender([self.tools.peers, "pack", self.normal(size), target], out=self.out, rounds=rounds)
+
+    def inner(self, *argv, rounds=None):
+        """A subcommand of our crate that times itself."""
+        return Contender([self.tools.peers, *argv], tells=True, rounds=rounds)
+
+    def real(self, *names):
+        """Files of the data whose names hold one of `names`; our own inputs where there is no data."""
+        if not self.data:
+            return [self.normal()]
+        files = sorted(path for path in self.data.rglob("*") if path.suffix in (".png", ".jpg"))
+        return [str(path) for path in files if any(name in path.stem.lower() for name in names)]
+
+
+def encoders(bench):
+    """UASTC, one level: time, then what is left of real maps."""
+    contender = lambda name, rounds=None: bench.inner("encode", name, bench.normal(), rounds=rounds)
+    names = ["fast", "level 0", "level 0 with statistics", "best", "level 1", "level 1 with statistics", "fast rgb"]
+    # The slowest is shown, and no bar names it.
+    slow = {"level 1 with statistics": 1}
+    times = alternate({name: contender(name, slow.get(name)) for name in names}, bench.rounds)
+    print("  distance from the source, lobe errors")
+    maps = bench.real("normal", "_nor_", "rough", "depth", "_arm_")
+    few = bench.real("sand_normal", "water_normal", "wool_normal", "bricks_normal", "aluminium_normal")
+    if bench.quick:
+        maps, few = maps[-4:], few[-1:]
+    return {
+        "size": bench.size,
+        "times": times,
+        "quality": told(bench, "quality", *maps),
+        "lobes": told(bench, "lobes", *few),
+    }
+
+
+def told(bench, *argv):
+    """What a subcommand prints, or why it does not."""
+    try:
+        run = once(bench.inner(*argv))
+    except Failed as reason:
+        return {"failed": str(reason)}
+    return {name: row for name, row in run.items() if isinstance(row, dict)}
+
+
+def kernels(bench):
+    """The pyramid's kernel beside copies."""
+    names = ["copy of moments", "moments", "copy of shape", "shape"]
+    contenders = {name: bench.inner("kernel", name, bench.normal()) for name in names}
+    return {"size": bench.size, "times": alternate(contenders, bench.rounds if bench.quick else 9)}
+
+
+def decoders(bench):
+    """PNG and JPEG decoders."""
+    jpeg = f"{bench.tools.work}/normal.jpg"
+    os.path.exists(jpeg) or once(bench.inner("inputs", "jpeg", bench.normal(), jpeg))
+    contenders = {f"PNG, {name}": bench.inner("decode", name, bench.normal()) for name in ["png", "zune-png", "roughcast"]}
+    contenders |= {f"JPEG, {name}": bench.inner("decode", name, jpeg) for name in ["zune-jpeg", "jpeg-decoder", "roughcast"]}
+    return {"size": bench.size, "times": alternate(contenders, bench.rounds)}
+
+
+def whole(bench):
+    """One material from files to files."""
+    both = [bench.normal(), bench.surface()]
+    contenders = {
+        "decoding in turn": bench.inner("images", "in turn", *both),
+        "decoding side by side": bench.inner("images", "side by side", *both),
+        "two textures": bench.bake(bench.size, 1, TWO),
+        "default": bench.bake(bench.size, 1, DEFAULT),
+        "maketx": bench.maketx(),
+        "pack": bench.pack(),
+    }
+    times = alternate(contenders, bench.rounds)
+    return {"size": bench.size, "times": times, "errors": errors(bench, bench.size), "ktx": bool(bench.tools.ktx)}
+
+
+def errors(bench, size):
+    """Lobe errors by level, as decoded from blocks, of each model in full size and of what a bake takes (`default`); or nothing."""
+    report = Path(bench.tools.work) / "report.json"
+    contender = bench.bake(size, 1, DEFAULT)
+    contender.argv += ["--report", str(report)]
+    try:
+        once(contender)
+        choice = json.loads(report.read_text())["assets"][0]["layers"][0]["choice"]
+    except (Failed, KeyError, IndexError):
+        return {}
+    candidates = choice["candidates"]
+    finest = min(candidate["first"] for candidate in candidates)
+    found = {c["model"]: c["errors"] for c in candidates if c["first"] == finest}
+    return found | {"default": candidates[choice["chosen"]]["errors"]}
+
+
+def growth(bench):
+    """Time and memory against size and number of materials."""
+    counts = [1, 10, 100] + ([] if bench.quick else [200, 1000])
+    result = {"sizes": {}, "counts": {}}
+    for size in bench.sizes():
+        print(f"  {size} x {size}")
+        rounds = 1 if bench.quick or size > 8192 else 3 if size > 2048 else 5
+        contenders = {"two textures": bench.bake(size, 1, TWO), "default": bench.bake(size, 1, DEFAULT)}
+        if size <= 8192:
+            contenders |= {"maketx": bench.maketx(size), "pack": bench.pack(size)}
+        result["sizes"][str(size)] = alternate(contenders, rounds, lambda _: None) | {"errors": errors(bench, size)}
+    for count in counts:
+        print(f"  {count} materials")
+        rounds = 1 if bench.quick or count > 200 else 3 if count > 10 else 5
+        forms = {"two textures": bench.bake(512, count, TWO), "default": bench.bake(512, count, DEFAULT)}
+        result["counts"][str(count)] = alternate(forms, rounds, lambda _: None)
+    print("  ten maps at a time")
+    forms = {"two textures": bench.bake(bench.size, 10, TWO), "default": bench.bake(bench.size, 10, DEFAULT)}
+    result["ten"] = alternate(forms, 1, lambda _: None)
+    return result
+
+
+PARTS = {"encoders": encoders, "kernels": kernels, "decoders": decoders, "whole": whole, "growth": growth}

@@ -1,0 +1,58 @@
+"""Roughcast beside its peers: installs, builds, makes inputs, measures, prints, and writes docs/performance.md.
+
+python3 benches/peers/run.py [--only PART ...] [--quick] [--data DIR]
+"""
+
+import argparse
+import json
+import os
+import sys
+import time
+from pathlib import Path
+
+import page
+import plot
+from parts import PARTS, Bench
+from prepare import ROOT, Tools, build, install, machine, pin_to_two_cores
+
+
+def main():
+    parser = argparse.ArgumentParser(description="Measures Roughcast beside its peers and writes docs/performance.md.")
+    parser.add_argument("--only", nargs="+", choices=PARTS, metavar="PART", help=f"measure only these: {', '.join(PARTS)}")
+    parser.add_argument("--quick", action="store_true", help="small maps, one run each: shows that it works")
+    parser.add_argument("--data", type=Path, default=ROOT.parent / "shared" / "data", help="real materials, used where present")
+    options = parser.parse_args()
+    start = time.monotonic()
+    step = lambda text: print(f"== {text} ({time.monotonic() - start:.0f} s)", flush=True)
+
+    tools = Tools(Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")))
+    # Of other work: before ours begins.
+    load = " ".join(f"{load:.1f}" for load in os.getloadavg())
+    step("OpenImageIO")
+    missing = install(tools)
+    if missing:
+        print(f"  not installed, its rows say so: {missing}")
+    step("builds")
+    build(tools)
+    cores = pin_to_two_cores()
+
+    stored = tools.work / "results.json"
+    results = json.loads(stored.read_text()) if stored.exists() else {}
+    results["machine"] = machine(tools, cores, load)
+    bench = Bench(tools, options.data if options.data.is_dir() else None, options.quick)
+    step("inputs")
+    for size in bench.sizes():
+        bench.folder(size)
+    for name in options.only or PARTS:
+        step(name)
+        results[name] = PARTS[name](bench) | {"quick": options.quick}
+        stored.write_text(json.dumps(results, indent=1))
+        print(page.SECTIONS[name](results[name]), flush=True)
+    (ROOT / "docs" / "performance.md").write_text(page.page(results))
+    if "growth" in results:
+        (ROOT / "docs" / "pictures" / "growth.svg").write_text(plot.growth(results["growth"]))
+    step("docs/performance.md")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,10 @@
+//! The synthetic maps of the other benches.
+
+#![allow(dead_code, reason = "not all of it is needed here")]
+
+#[path = "../../common/maps.rs"]
+pub mod maps;
+#[path = "../../../examples/generate_fixtures/fixtures/noise.rs"]
+mod noise;
+#[path = "../../../examples/generate_fixtures/fixtures/picture.rs"]
+mod picture;

@@ -1,0 +1,101 @@
+//! The UASTC encoders.
+
+use std::hint::black_box;
+use std::path::Path;
+
+use roughcast::map::{DecodeOptions, Image, Samples, decode};
+use roughcast::texture::Format;
+use roughcast::texture::ktx2::{Ktx2, decode_payload};
+use roughcast::texture::uastc::{Effort, Metric, encode_level};
+use serde_json::Value;
+
+use crate::Failure;
+use crate::basisu::{self, Interface};
+use crate::clock::Time;
+
+/// Who encodes.
+#[derive(Clone, Copy)]
+pub enum Encoder {
+    /// Ours.
+    Roughcast(Metric, Effort),
+    /// basis_universal at a level from 0 to 4.
+    Basisu(u32, Interface),
+}
+
+impl Encoder {
+    /// By its name: `fast`, `best`, `fast rgb`, `best rgb`, `level 0`, `level 0 with statistics` and so on.
+    fn named(name: &str) -> Option<Self> {
+        Some(match name {
+            "fast" => Self::Roughcast(Metric::Direction, Effort::Fast),
+            "best" => Self::Roughcast(Metric::Direction, Effort::Best),
+            "fast rgb" => Self::Roughcast(Metric::Rgb, Effort::Fast),
+            "best rgb" => Self::Roughcast(Metric::Rgb, Effort::Best),
+            _ => {
+                let level = name.strip_prefix("level ")?;
+                match level.strip_suffix(" with statistics") {
+                    Some(level) => Self::Basisu(level.parse().ok()?, Interface::Statistics),
+                    None => Self::Basisu(level.parse().ok()?, Interface::Plain),
+                }
+            }
+        })
+    }
+
+    /// One level of RGBA8 texels to blocks.
+    ///
+    /// # Errors
+    /// Where basis_universal fails.
+    pub fn blocks(self, rgba: &[u8], width: u32, height: u32) -> Result<Vec<u8>, Failure> {
+        match self {
+            Self::Roughcast(metric, effort) => Ok(encode_level(rgba, width, height, metric, effort)),
+            Self::Basisu(level, interface) => {
+                let file = basisu::encode(rgba, width, height, level, interface)?;
+                Ok(Ktx2::parse(&file)?.level_bytes(0)?.into_owned())
+            }
+        }
+    }
+
+    /// The level as an engine decodes it: by Roughcast's decoder, whoever encoded.
+    ///
+    /// # Errors
+    /// As [`Encoder::blocks`].
+    pub fn decoded(self, rgba: &[u8], width: u32, height: u32) -> Result<Image, Failure> {
+        let blocks = self.blocks(rgba, width, height)?;
+        Ok(decode_payload(&blocks, Format::UastcRgb, (width, height)).ok_or("blocks that decode")?)
+    }
+}
+
+/// Times the encoder of that name on `image`, once.
+///
+/// # Errors
+/// Where the image cannot be read, or nothing has that name.
+pub fn measure(contender: &str, image: &Path) -> Result<Value, Failure> {
+    let encoder = Encoder::named(contender).ok_or("an encoder's name")?;
+    let (rgba, width, height) = read(image)?;
+    basisu::prepare();
+    let (blocks, time) = Time::of(|| encoder.blocks(black_box(&rgba), width, height));
+    black_box(blocks?);
+    Ok(time.to_json())
+}
+
+/// An image as opaque RGBA8, with its size.
+///
+/// # Errors
+/// Where it cannot be read.
+pub fn read(image: &Path) -> Result<(Vec<u8>, u32, u32), Failure> {
+    let image = decode(&std::fs::read(image)?, &DecodeOptions::default())?;
+    Ok((rgba(&image), image.width, image.height))
+}
+
+/// Grey becomes three equal channels; alpha is dropped.
+pub fn rgba(image: &Image) -> Vec<u8> {
+    let channels = image.channels as usize;
+    let colours = if channels < 3 { [0, 0, 0] } else { [0, 1, 2] };
+    let texel = |get: &dyn Fn(usize) -> u8| [get(colours[0]), get(colours[1]), get(colours[2]), 255];
+    match &image.samples {
+        Samples::U8(values) => values.chunks_exact(channels).flat_map(|t| texel(&|c| t[c])).collect(),
+        samples => {
+            let byte = |i: usize| (samples.get(i).unwrap_or(0.0).clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
+            (0..samples.len() / channels).flat_map(|i| texel(&|c| byte(i * channels + c))).collect()
+        }
+    }
+}

@@ -1,0 +1,85 @@
+//! How near decoded blocks are to their source, map by map.
+
+use std::path::Path;
+
+use roughcast::map::Image;
+use roughcast::texture::uastc::{Effort, Metric};
+use serde_json::{Map, Value, json};
+
+use crate::Failure;
+use crate::basisu::{self, Interface};
+use crate::encoders::{Encoder, read};
+
+/// What is compared, by the names of the table. PSNR goes by those that fit colours, angles by those that fit directions.
+const ENCODERS: [(&str, Encoder); 7] = [
+    ("fast rgb", Encoder::Roughcast(Metric::Rgb, Effort::Fast)),
+    ("best rgb", Encoder::Roughcast(Metric::Rgb, Effort::Best)),
+    ("fast", Encoder::Roughcast(Metric::Direction, Effort::Fast)),
+    ("best", Encoder::Roughcast(Metric::Direction, Effort::Best)),
+    ("level 0", Encoder::Basisu(0, Interface::Plain)),
+    ("level 1", Encoder::Basisu(1, Interface::Plain)),
+    ("level 2", Encoder::Basisu(2, Interface::Plain)),
+];
+
+/// PSNR of each encoder on each image, and on normal maps (by their name) the angle between normals.
+///
+/// # Errors
+/// Where an image cannot be read or encoded.
+pub fn measure(images: &[&str]) -> Result<Value, Failure> {
+    basisu::prepare();
+    let mut maps = Map::new();
+    for image in images {
+        let path = Path::new(image);
+        let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+        let is_normal = is_normal_map(&name);
+        let (rgba, width, height) = read(path)?;
+        let mut row = Map::new();
+        for (encoder, of) in ENCODERS {
+            let decoded = of.decoded(&rgba, width, height)?;
+            let mut found = json!({ "psnr": psnr(&rgba, &decoded) });
+            if is_normal {
+                found["degrees"] = json!(degrees(&rgba, &decoded));
+            }
+            row.insert(encoder.to_owned(), found);
+        }
+        maps.insert(name, Value::Object(row));
+    }
+    Ok(Value::Object(maps))
+}
+
+/// Whether a map of that name holds normals.
+pub fn is_normal_map(name: &str) -> bool {
+    let name = name.to_ascii_lowercase();
+    name.contains("normal") || name.contains("_nor_")
+}
+
+/// The texels in [0, 255], source and decoded.
+fn pairs<'a>(rgba: &'a [u8], decoded: &'a Image) -> impl Iterator<Item = [[f64; 3]; 2]> + 'a {
+    let channels = decoded.channels as usize;
+    rgba.as_chunks::<4>().0.iter().enumerate().map(move |(i, texel)| {
+        let value = |c: usize| f64::from(decoded.samples.get(i * channels + c).unwrap_or(0.0)) * 255.0;
+        [[0, 1, 2].map(|c| f64::from(texel[c])), [0, 1, 2].map(value)]
+    })
+}
+
+/// Of red, green and blue together, in dB.
+fn psnr(rgba: &[u8], decoded: &Image) -> f64 {
+    let squares: f64 = pairs(rgba, decoded).map(|[a, b]| (0..3).map(|c| (a[c] - b[c]).powi(2)).sum::<f64>()).sum();
+    10.0 * (255.0 * 255.0 / (squares / (rgba.len() / 4 * 3) as f64)).log10()
+}
+
+/// Root of the mean squared angle between normals, in degrees.
+fn degrees(rgba: &[u8], decoded: &Image) -> f64 {
+    let unit = |texel: [f64; 3]| {
+        let vector = texel.map(|c| c / 127.5 - 1.0);
+        let length = vector.iter().map(|x| x * x).sum::<f64>().sqrt().max(f64::MIN_POSITIVE);
+        vector.map(|x| x / length)
+    };
+    // By the chord: the cosine loses small angles.
+    let square = |[a, b]: [[f64; 3]; 2]| {
+        let (a, b) = (unit(a), unit(b));
+        let chord = (0..3).map(|c| (a[c] - b[c]).powi(2)).sum::<f64>().sqrt();
+        (2.0 * (0.5 * chord).min(1.0).asin()).to_degrees().powi(2)
+    };
+    (pairs(rgba, decoded).map(square).sum::<f64>() / (rgba.len() / 4) as f64).sqrt()
+}
