@@ -7,48 +7,50 @@ def bars(results):
     """Rows of the promise, its bound, what was measured, and the verdict; parts that were not measured have none."""
     rows = []
     for name, of in PARTS.items():
-        try:
-            rows += of(results[name]) if name in results else []
-        except KeyError as missing:
-            rows.append((f"those of {name}", "", f"no figure for {missing}", "not measured"))
+        rows += of(results[name]) if name in results else []
     return rows
 
 
 def at_most(promise, bound, measured, form="{:.2f}"):
     """A row that is met by figures up to `bound`."""
-    return (promise, "at most " + form.format(bound), form.format(measured), "met" if measured <= bound else "not met")
+    return (promise, "at most " + form.format(bound), *verdict(measured, lambda: measured <= bound, form))
 
 
 def at_least(promise, bound, measured, form="{:.2f}"):
     """A row that is met by figures from `bound` on."""
-    return (promise, "at least " + form.format(bound), form.format(measured), "met" if measured >= bound else "not met")
+    return (promise, "at least " + form.format(bound), *verdict(measured, lambda: measured >= bound, form))
 
 
-def ratio(times, one, other, what="wall"):
-    """Time of one beside that of the other."""
-    return times[one][what] / times[other][what]
+def verdict(measured, is_met, form):
+    """The figure and what it says; `None` where a run failed."""
+    if measured is None:
+        return "-", "not measured"
+    return form.format(measured), "met" if is_met() else "not met"
+
+
+def ratio(times, one, other):
+    """Time of one beside that of the other; `None` where either failed."""
+    runs = times[one], times[other]
+    return runs[0]["wall"] / runs[1]["wall"] if all("wall" in run for run in runs) else None
 
 
 def encoders(part):
-    times, quality = part["times"], part["quality"]
+    times, quality = part["times"], {name: row for name, row in part["quality"].items() if name != "failed"}
     gap = lambda a, b, key: {name: row[a][key] - row[b][key] for name, row in quality.items() if key in row.get(a, {})}
-    psnr, angle = gap("fast rgb", "level 0", "psnr"), gap("best rgb", "level 2", "psnr")
+    worst = lambda gaps: min(gaps.items(), key=lambda gap: gap[1], default=("none", None))
+    (fast_map, fast), (best_map, best) = worst(gap("fast rgb", "level 0", "psnr")), worst(gap("best rgb", "level 2", "psnr"))
+    average = lambda values: mean(values) if values else None
     directions = [row for row in quality.values() if "degrees" in row["fast"]]
-    worst = lambda gaps: min(gaps, key=gaps.get)
-    rows = [
+    turned = average([row["fast"]["degrees"] for row in directions]), average([row["level 1"]["degrees"] for row in directions])
+    return [
         at_most("UASTC `fast` beside level 0, time", 1 / 5, ratio(times, "fast", "level 0")),
         at_most("the same beside level 0 with statistics", 1 / 5, ratio(times, "fast", "level 0 with statistics")),
-        at_least(f"`fast` less level 0, PSNR on the worst map ({worst(psnr)}), dB", 0, psnr[worst(psnr)]),
-        at_least("`fast` less level 1, mean PSNR, dB", -1, mean(gap("fast rgb", "level 1", "psnr").values())),
-    ]
-    if directions:
-        turned = lambda name: mean(row[name]["degrees"] for row in directions)
-        rows.append(at_most("`fast` beside level 1, mean angle of normals", 1, turned("fast") / turned("level 1")))
-    rows += [
-        at_least(f"`best` less level 2, PSNR on the worst map ({worst(angle)}), dB", 0, angle[worst(angle)]),
+        at_least(f"`fast` less level 0, PSNR on the worst map ({fast_map}), dB", 0, fast),
+        at_least("`fast` less level 1, mean PSNR, dB", -1, average(list(gap("fast rgb", "level 1", "psnr").values()))),
+        at_most("`fast` beside level 1, mean angle of normals", 1, turned[0] and turned[0] / turned[1]),
+        at_least(f"`best` less level 2, PSNR on the worst map ({best_map}), dB", 0, best),
         at_most("`best` beside level 1, time", 1 / 4, ratio(times, "best", "level 1")),
     ]
-    return rows
 
 
 def kernels(part):
@@ -74,18 +76,19 @@ def growth(part):
     rows = []
     for form in ("two textures", "default"):
         if "16384" in part["sizes"]:
-            peak = part["sizes"]["16384"][form]["peak"]
+            peak = part["sizes"]["16384"][form].get("peak")
             rows.append(at_most(f"a material of 16384 x 16384, {form}: peak memory, MiB", 2048, peak, "{:.0f}"))
-        rows.append(at_most(f"ten large maps at a time, {form}: peak memory, MiB", 2048, part["ten"][form]["peak"], "{:.0f}"))
+        peak = part["ten"][form].get("peak")
+        rows.append(at_most(f"ten large maps at a time, {form}: peak memory, MiB", 2048, peak, "{:.0f}"))
         if "200" in part["counts"]:
-            run = part["counts"]["200"][form]
-            rows.append(at_least(f"200 materials of 512 x 512, {form}: share of both cores, %", 90, share(run), "{:.0f}"))
+            busy = share(part["counts"]["200"][form])
+            rows.append(at_least(f"200 materials of 512 x 512, {form}: share of both cores, %", 90, busy, "{:.0f}"))
     return rows
 
 
 def share(run):
-    """Of two cores, in percent."""
-    return 100 * run["cpu"] / (2 * run["wall"])
+    """Of two cores, in percent; `None` where the run failed."""
+    return 100 * run["cpu"] / (2 * run["wall"]) if "cpu" in run else None
 
 
 PARTS = {"encoders": encoders, "kernels": kernels, "whole": whole, "growth": growth}

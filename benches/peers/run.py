@@ -41,7 +41,7 @@ def main():
     results["machine"] = machine(tools, cores, load)
     bench = Bench(tools, options.data if options.data.is_dir() else None, options.quick)
     step("inputs")
-    for size in bench.sizes():
+    for size in bench.sizes() if "growth" in (options.only or PARTS) else [bench.size]:
         bench.folder(size)
     for name in options.only or PARTS:
         step(name)

@@ -18,8 +18,10 @@ use crate::mosaic::Mosaic;
 pub fn assets(folder: &Path, size: u32, count: usize, data: Option<&Path>) -> Result<Value, Failure> {
     let maps = folder.join("maps");
     fs::create_dir_all(&maps)?;
-    png(&maps.join("normal.png"), size, &Mosaic::normals(data)?)?;
-    png(&maps.join("surface.png"), size, &Mosaic::surface())?;
+    let (normals, surface) = (Mosaic::normals(data)?, Mosaic::surface());
+    let file = |name: &str, mosaic| png(&maps.join(name), size, mosaic).map_err(|error| error.to_string());
+    let (normals, surface) = rayon::join(|| file("normal.png", &normals), || file("surface.png", &surface));
+    normals.and(surface)?;
     for index in 0..count {
         for kind in ["normal", "surface"] {
             let link = folder.join(format!("{index:04}_{kind}.png"));
