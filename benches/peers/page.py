@@ -105,7 +105,8 @@ def encoders(part):
         "",
         timed(part["times"], "level 0", lambda name: lobe(same.get(name, name)), ["lobe error"]),
         "",
-        "How near decoded texels are to their source (PSNR of red, green and blue in dB; angles of normals, root mean square in degrees):",
+        "How near decoded texels are to their source (PSNR of red, green and blue in dB by the encoders that fit colours, 99 for no",
+        "difference; angles of normals, root mean square in degrees, by those that fit directions):",
         "",
     ]
     if "failed" in part["quality"]:
@@ -180,7 +181,7 @@ def growth(part):
                       two.get("runs", 0)])
     counts = []
     for count, point in part["counts"].items():
-        two, default = point["two textures"], point["default"]
+        two, default = point["two textures"], point.get("default", {"failed": "-"})
         busy = lambda run: [f"{share(run):.0f}" if "cpu" in run else ""]
         counts.append([count, *cells(two, busy(two)), *cells(default, busy(default)), two.get("runs", 0)])
     header = [f"{form}: {what}" for form in ("two textures", "default") for what in ("wall s", "CPU s", "peak MiB", "{}")]

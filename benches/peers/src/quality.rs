@@ -62,10 +62,14 @@ fn pairs<'a>(rgba: &'a [u8], decoded: &'a Image) -> impl Iterator<Item = [[f64; 
     })
 }
 
+/// What stands for no difference, in dB: more than 8 bits can tell.
+const EXACT: f64 = 99.0;
+
 /// Of red, green and blue together, in dB.
 fn psnr(rgba: &[u8], decoded: &Image) -> f64 {
     let squares: f64 = pairs(rgba, decoded).map(|[a, b]| (0..3).map(|c| (a[c] - b[c]).powi(2)).sum::<f64>()).sum();
-    10.0 * (255.0 * 255.0 / (squares / (rgba.len() / 4 * 3) as f64)).log10()
+    let mean = squares / (rgba.len() / 4 * 3) as f64;
+    (10.0 * (255.0 * 255.0 / mean).log10()).min(EXACT)
 }
 
 /// Root of the mean squared angle between normals, in degrees.
