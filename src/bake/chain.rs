@@ -6,7 +6,7 @@ use super::png::fallback;
 use super::settings::{Form, Settings};
 use crate::texture::ktx2::{Key, Ktx2Writer, StoredLevel};
 use crate::texture::uastc::{Effort, Metric};
-use crate::texture::{EncodeError, Format, Target, Texels, encode};
+use crate::texture::{EncodeError, Format, Target, Texels, encode, lower_rate};
 
 /// A texture with all its levels encoded.
 pub struct Chain {
@@ -33,6 +33,8 @@ pub struct Encoding {
     pub metric: Metric,
     /// Search effort of block encoders and of compression.
     pub effort: Effort,
+    /// How much signal-to-noise ratio each UASTC level may lose for fewer bytes, in dB.
+    pub rdo: Option<f64>,
     /// Finest level that is written; a coarser one where its size does not suit the format.
     pub finest: usize,
     /// Whether level 0 becomes a PNG, too.
@@ -46,6 +48,7 @@ impl Encoding {
             format: settings.target.format(channels),
             metric: Metric::Rgb,
             effort: settings.effort,
+            rdo: settings.rdo,
             finest: 0,
             fallback: settings.form == Form::Fallback,
         }
@@ -116,7 +119,11 @@ pub fn encode_chain(sizes: &[(u32, u32)], encoding: Encoding, row: &LevelRow<'_>
     let encode_level = |(level, &(width, height)): (usize, &(u32, u32))| {
         let row = |y: u32, out: &mut [[f32; 4]]| row(first + level, y, out);
         let Encoding { format, metric, effort, .. } = encoding;
-        let level = encode(&Texels { width, height, row: &row }, format, metric, effort)?;
+        let texels = Texels { width, height, row: &row };
+        let mut level = encode(&texels, format, metric, effort)?;
+        if let (Format::UastcRgb, Some(loss)) = (format, encoding.rdo) {
+            lower_rate(&mut level, &texels, metric, loss);
+        }
         Ok(StoredLevel::new(level, format, effort))
     };
     let (width, height) = kept[0];

@@ -92,6 +92,9 @@ pub struct Settings {
     pub target: Target,
     /// Search effort of block encoders.
     pub effort: Effort,
+    /// How much signal-to-noise ratio each level of [`Target::Basis`] may lose for fewer bytes, in dB: 0 to 6. None leaves its
+    /// blocks as they are.
+    pub rdo: Option<f64>,
     /// How textures are referenced.
     pub form: Form,
     /// Write .glb instead of .gltf with external files.
@@ -118,6 +121,7 @@ impl Default for Settings {
             family: Family::default(),
             target: Target::default(),
             effort: Effort::Fast,
+            rdo: None,
             form: Form::default(),
             glb: false,
             frame: Frame::default(),
@@ -155,6 +159,9 @@ impl Settings {
         });
         if model != self.model {
             settings["asked"] = json!(self.model);
+        }
+        if let Some(loss) = self.rdo {
+            settings["rdo"] = json!(loss);
         }
         if let Some(view) = self.view {
             settings["view"] = json!(view);

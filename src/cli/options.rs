@@ -26,6 +26,10 @@ pub struct TextureOptions {
     /// How well lobes are fitted and how long block encoders search. [default: fast]
     #[arg(long, value_enum)]
     quality: Option<QualityName>,
+    /// Make UASTC textures smaller after zstd: rewrite their blocks so that each level loses less than this much of its
+    /// signal-to-noise ratio (above 0, up to 6). For example --rdo 0.5: files become a sixth smaller.
+    #[arg(long, value_parser = decibels, allow_negative_numbers = true, value_name = "DB")]
+    rdo: Option<f64>,
     /// Shape that the slopes under a texel are taken to have; auto goes by the slopes themselves. [default: auto]
     #[arg(long, value_enum)]
     distribution: Option<DistributionName>,
@@ -73,6 +77,7 @@ impl TextureOptions {
             model: self.model.map(Into::into),
             max_error: self.max_error,
             quality: self.quality.map(Into::into),
+            rdo: self.rdo,
             distribution: self.distribution.map(Into::into),
             target: self.target.map(Into::into),
             max_texels: self.max_texels,
@@ -245,6 +250,12 @@ pub fn finite(text: &str) -> Result<f32, String> {
 fn unit_interval_f64(text: &str) -> Result<f64, String> {
     unit_interval(text)?;
     finite_f64(text)
+}
+
+fn decibels(text: &str) -> Result<f64, String> {
+    finite_f64(text).and_then(|n| {
+        if 0.0 < n && n <= 6.0 { Ok(n) } else { Err(format!("expected a number above 0, up to 6, found {n}")) }
+    })
 }
 
 fn finite_f64(text: &str) -> Result<f64, String> {

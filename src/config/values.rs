@@ -19,6 +19,7 @@ pub struct Values {
     pub model: Option<Model>,
     pub max_error: Option<f64>,
     pub quality: Option<Effort>,
+    pub rdo: Option<f64>,
     pub distribution: Option<Distribution>,
     pub lobe: Option<Family>,
     pub target: Option<Target>,
@@ -167,6 +168,7 @@ impl Values {
         };
         let max_error = within("max-error", self.max_error, "a number from 0 to 1", |x| (0.0..=1.0).contains(&x))?;
         let height_scale = within("height-scale", self.height_scale, "a finite number", |_| true)?;
+        let rdo = within("rdo", self.rdo, "a number above 0, up to 6", |x| 0.0 < x && x <= 6.0)?;
         Ok(Settings {
             profile: self.profile.unwrap_or_default(),
             model: self.model.unwrap_or_default(),
@@ -175,6 +177,7 @@ impl Values {
             family: self.lobe.unwrap_or_default(),
             target: self.target.unwrap_or_default(),
             effort: self.quality.unwrap_or(defaults.effort),
+            rdo,
             form,
             glb,
             frame: self.frame()?,

@@ -57,7 +57,8 @@ impl Drop for Seat<'_> {
 }
 
 /// About what a bake of `job` takes: its maps are baked one after another, and the largest takes most. With three textures
-/// 0.4 GB at 4096^2 and 1.4 GB at 16384^2, where the largest levels are not kept.
+/// 0.4 GB at 4096^2 and 1.4 GB at 16384^2, where the largest levels are not kept. With `rdo` a level is held as RGBA8 beside three
+/// copies of its blocks.
 fn memory(job: &Job) -> u64 {
     let texels = |input: &JobInput| match imagesize::size(&input.path) {
         Ok(size) => size.width as u64 * size.height as u64,
@@ -66,7 +67,8 @@ fn memory(job: &Job) -> u64 {
         Err(_) => 0,
     };
     let largest = job.inputs.iter().map(texels).max().unwrap_or(0);
-    20 * largest.min(1 << 24) + 5 * largest
+    let rewritten = if job.settings.contains_key("rdo") { 7 * largest } else { 0 };
+    20 * largest.min(1 << 24) + 5 * largest + rewritten
 }
 
 #[cfg(test)]

@@ -126,6 +126,12 @@ fn encode_uastc(texels: &Texels<'_>, metric: Metric, effort: Effort) -> Vec<u8> 
     blocks
 }
 
+/// Makes the UASTC `blocks` of `texels` smaller after zstd, as [`uastc::lower_rate`] does: neither error grows by as much as
+/// `loss` dB. The level is held as RGBA8 meanwhile.
+pub fn lower_rate(blocks: &mut [u8], texels: &Texels<'_>, metric: Metric, loss: f64) {
+    uastc::lower_rate(blocks, &texels.to_rgba8(), texels.width, texels.height, metric, loss);
+}
+
 impl Target {
     /// Whether this build can encode the target.
     ///

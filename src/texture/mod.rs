@@ -7,5 +7,5 @@ mod format;
 pub mod ktx2;
 pub mod uastc;
 
-pub use encode::{EncodeError, Texels, encode};
+pub use encode::{EncodeError, Texels, encode, lower_rate};
 pub use format::{Format, Target};

@@ -89,6 +89,8 @@ fn usage_errors() {
             "roughcast bake",
             "roughcast bake brushed",
             "roughcast bake brushed -o out --max-error 2",
+            "roughcast bake brushed -o out --rdo 0",
+            "roughcast bake brushed -o out --rdo 6.5",
             "roughcast bake brushed -o out --target etc1s",
             "roughcast bake brushed -o out --main-direction 0,0,0",
             "roughcast bake brushed -o out --glb --gltf dual",

@@ -102,6 +102,8 @@ fn wrong_values_are_told_by_line() {
     for (text, parts) in [
         ("target = 'etc1s'", ["line 1: target", "`basis`"]),
         ("\n\nmax-error = 2", ["line 3: max-error", "0 to 1"]),
+        ("rdo = 0", ["line 1: rdo", "above 0"]),
+        ("rdo = 6.5", ["line 1: rdo", "up to 6"]),
         ("max-error = nan", ["line 1: max-error", "finite"]),
         ("glb = 'yes'", ["line 1: glb", "boolean"]),
         ("screen-height = -1", ["line 1: screen-height", "-1"]),

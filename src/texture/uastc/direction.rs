@@ -35,15 +35,42 @@ pub(super) const LONG: f32 = 0.1;
 
 /// The normals that `texels` stand for.
 #[inline(always)]
-pub(super) fn normals<S: Simd>(simd: S, texels: &[Grid<S>; 3]) -> Normals<S> {
+pub(super) fn normals<S: Simd>(texels: &[Grid<S>; 3]) -> Normals<S> {
     let mut normals = *texels;
     for i in 0..16 {
-        let [x, y, z] = [texels[0][i] - UNIT, texels[1][i] - UNIT, texels[2][i] - UNIT];
-        // Never 0: levels are whole numbers.
-        let scale = Wide::splat(simd, UNIT) / Real::sqrt(x * x + y * y + z * z);
-        (normals[0][i], normals[1][i], normals[2][i]) = (x * scale, y * scale, z * scale);
+        let [x, y, z] = normal([texels[0][i] - UNIT, texels[1][i] - UNIT, texels[2][i] - UNIT]);
+        (normals[0][i], normals[1][i], normals[2][i]) = (x, y, z);
     }
     normals
+}
+
+/// A vector at length [`UNIT`]. It is not 0, since levels are whole numbers.
+#[inline(always)]
+pub(super) fn normal<F: Real>([x, y, z]: [F; 3]) -> [F; 3] {
+    let scale = x.like(UNIT) / (x * x + y * y + z * z).sqrt();
+    [x * scale, y * scale, z * scale]
+}
+
+/// A decoded vector as engines see it, such that its error is a squared distance: the mean of its directions as read and
+/// as rebuilt, and the part of the error that does not depend on the normal.
+#[inline(always)]
+pub(super) fn seen<F: Real>([x, y, z]: [F; 3]) -> ([F; 3], F) {
+    let like = |value: f32| x.like(value);
+    let unit = like(UNIT);
+    let flat = x * x + y * y;
+    let length = (flat + z * z).sqrt();
+    let scale = unit / length;
+    let rebuilt = (unit * unit - flat).max(like(0.0)).sqrt();
+    let stay = like(LONG).or(like(SHORT), unit.at_most(length));
+    let mut loss = stay * (length - unit) * (length - unit);
+    let mut direction = [x; 3];
+    // (1 - r) |u - n|^2 + r |v - n|^2 = |w - n|^2 + r (1 - r) |u - v|^2 with w = (1 - r) u + r v.
+    for (c, (read, rebuilt)) in [(x, x), (y, y), (z, rebuilt)].into_iter().enumerate() {
+        let u = read * scale;
+        loss = loss + (u - rebuilt) * like(REBUILT * (1.0 - REBUILT)) * (u - rebuilt);
+        direction[c] = u * like(1.0 - REBUILT) + rebuilt * like(REBUILT);
+    }
+    (direction, loss)
 }
 
 /// One of the vectors that all weights give between two endpoints.
@@ -122,19 +149,7 @@ impl<S: Simd, const P: usize, const BITS: u32> Subset<'_, S, P, BITS> {
         let zero = Wide::splat(simd, 0.0);
         let mut palette = [Entry { direction: [zero; 3], loss: zero }; P];
         for (at, entry) in palette.iter_mut().enumerate() {
-            let [x, y, z] = self.decoded(ends, Wide::splat(simd, at as f32));
-            let flat = x * x + y * y;
-            let length = Real::sqrt(flat + z * z);
-            let scale = UNIT / length;
-            let rebuilt = Real::sqrt(Real::max(UNIT * UNIT - flat, zero));
-            let stay = length.simd_lt(UNIT).select(Wide::splat(simd, SHORT), Wide::splat(simd, LONG));
-            entry.loss = stay * (length - UNIT) * (length - UNIT);
-            // (1 - r) |u - n|^2 + r |v - n|^2 = |w - n|^2 + r (1 - r) |u - v|^2 with w = (1 - r) u + r v.
-            for (c, (read, rebuilt)) in [(x, x), (y, y), (z, rebuilt)].into_iter().enumerate() {
-                let u = read * scale;
-                entry.loss += (u - rebuilt) * (REBUILT * (1.0 - REBUILT)) * (u - rebuilt);
-                entry.direction[c] = u * (1.0 - REBUILT) + rebuilt * REBUILT;
-            }
+            (entry.direction, entry.loss) = seen(self.decoded(ends, Wide::splat(simd, at as f32)));
         }
         palette
     }

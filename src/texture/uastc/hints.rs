@@ -50,6 +50,13 @@ impl Hints {
         }
     }
 
+    /// The fields as they stand in a block of `mode`, after its code.
+    pub fn bits(&self, mode: &Mode) -> u128 {
+        let mut out = Bits::default();
+        self.write(mode, &mut out);
+        out.get()
+    }
+
     /// Hints for a block of `mode` made from `texels`.
     #[inline(always)]
     pub fn of(texels: &Texels, mode: &Mode) -> Self {

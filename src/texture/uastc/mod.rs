@@ -20,16 +20,19 @@ mod normals;
 mod pack;
 mod partition;
 mod polish;
+mod rate;
 mod row;
 mod search;
 mod tables;
 #[cfg(test)]
 mod tests;
+mod unpack;
 
 use fearless_simd::{Level, Simd};
 use hints::{Hints, solid_etc1};
 use lanes::Texels;
 use pack::pack_solid;
+pub use rate::lower_rate;
 use rayon::prelude::*;
 use row::Row;
 

@@ -82,7 +82,7 @@ impl<S: Simd> Blocks<S> {
 #[inline(always)]
 pub(super) fn best<S: Simd>(simd: S, texels: &[Grid<S>; 3], mut winner: Blocks<S>) -> Blocks<S> {
     let xy = [texels[0], texels[1]];
-    let target = normals(simd, texels);
+    let target = normals(texels);
     let all = moments(simd, &xy, None);
     let axis = principal_axis(simd, &all.scatter);
     let along = scatter_along(simd, &all.scatter, &axis);

@@ -39,7 +39,7 @@ impl Block {
     }
 
     /// The texel of a subset whose weights lack their top bit.
-    fn anchor(&self, subset: usize) -> u32 {
+    pub fn anchor(&self, subset: usize) -> u32 {
         self.members(subset).trailing_zeros()
     }
 
@@ -210,5 +210,10 @@ impl Bits {
     pub fn push(&mut self, value: u64, len: u32) {
         self.bits |= u128::from(value) << self.len;
         self.len += len;
+    }
+
+    /// All of them.
+    pub fn get(&self) -> u128 {
+        self.bits
     }
 }

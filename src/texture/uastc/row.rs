@@ -138,5 +138,5 @@ fn colours<S: Simd>(simd: S, texels: &[Texels; LANES], scale: &[f32; 3]) -> [Gri
 /// [`Blocks::aim`] at the normals that `texels` stand for.
 #[inline(always)]
 fn aim<S: Simd>(simd: S, blocks: &mut Blocks<S>, texels: &[Texels; LANES], rounds: usize, passes: usize) {
-    blocks.aim(simd, &normals(simd, &channels(simd, texels)), rounds, passes);
+    blocks.aim(simd, &normals(&channels(simd, texels)), rounds, passes);
 }

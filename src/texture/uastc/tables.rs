@@ -132,6 +132,11 @@ impl Range {
         }
         range
     }
+
+    /// The level that `code` stands for.
+    pub fn level_of(&self, code: u32) -> u8 {
+        unquantize(code, self.bits, self.base) as u8
+    }
 }
 
 /// Level 0..=255 of an endpoint code (Khronos Data Format 1.3, section 23.12, table 121).

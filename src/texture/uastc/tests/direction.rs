@@ -41,7 +41,7 @@ fn error(texel: [u8; 4], normal: Vector) -> f64 {
     directions + f64::from(if off < 0.0 { SHORT } else { LONG }) * off * off
 }
 
-fn total(found: &Texels, source: &Texels) -> f64 {
+pub(super) fn total(found: &Texels, source: &Texels) -> f64 {
     found.iter().zip(source).map(|(f, s)| error(*f, read(vector(*s)))).sum()
 }
 
@@ -62,7 +62,7 @@ fn least_error(block: &Block, source: &Texels) -> f64 {
 fn aim(block: &mut Block, source: &Texels, rounds: usize, passes: usize) {
     dispatch!(Level::new(), simd => {
         let mut blocks = Blocks::load(simd, [&*block; LANES]);
-        blocks.aim(simd, &unit_normals(simd, &channels(simd, &[*source; LANES])), rounds, passes);
+        blocks.aim(simd, &unit_normals(&channels(simd, &[*source; LANES])), rounds, passes);
         *block = blocks.store()[0].clone();
     });
 }

@@ -6,6 +6,7 @@ mod direction;
 mod hints;
 mod level;
 mod quality;
+mod rate;
 
 use super::lanes::Texels;
 use super::{BLOCK_BYTES, Effort, Metric, encode_level};

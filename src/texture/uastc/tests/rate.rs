@@ -1,0 +1,193 @@
+//! Blocks that were rewritten for fewer bytes, judged by what the reference transcoder decodes them to.
+
+use super::super::hints::Hints;
+use super::super::lower_rate;
+use super::super::unpack::{Unpacked, unpack};
+use super::decode::{every_mode, expected};
+use super::*;
+use proptest::prelude::*;
+
+/// A level of smooth normals with noise of the given slope.
+fn level(width: usize, height: usize, noise: f64) -> Vec<u8> {
+    let mut random = Random((width * 1000 + height) as u64);
+    let mut texel = |k: usize| {
+        let (x, y) = ((k % width) as f64, (k / width) as f64);
+        let mut wobble = || (random.unit() - 0.5) * noise;
+        normal(0.3 * (x * 0.21 + (y * 0.05).sin()).sin() + wobble(), 0.3 * (y * 0.13).cos() + wobble())
+    };
+    (0..width * height).flat_map(|k| texel(k)).collect()
+}
+
+fn blocks_of(texels: &[u8], width: usize, height: usize) -> Vec<Texels> {
+    let columns = width.div_ceil(4);
+    let block = |k: usize| {
+        std::array::from_fn(|i| {
+            let x = (k % columns * 4 + i % 4).min(width - 1);
+            let y = (k / columns * 4 + i / 4).min(height - 1);
+            texels[(y * width + x) * 4..][..4].try_into().expect("a texel")
+        })
+    };
+    (0..columns * height.div_ceil(4)).map(block).collect()
+}
+
+/// Squared errors over the texels that are inside of the level: by `metric`, and of red, green and blue.
+fn errors(blocks: &[u8], texels: &[u8], (width, height): (usize, usize), metric: Metric) -> [f64; 2] {
+    let columns = width.div_ceil(4);
+    let mut errors = [0.0; 2];
+    for (k, (block, source)) in blocks.chunks(BLOCK_BYTES).zip(blocks_of(texels, width, height)).enumerate() {
+        let found = decoded(block.try_into().expect("a block"));
+        for i in 0..16 {
+            if k % columns * 4 + i % 4 >= width || k / columns * 4 + i / 4 >= height {
+                continue;
+            }
+            let [r, g, b] = [0, 1, 2].map(|c| f64::from(found[i][c].abs_diff(source[i][c])).powi(2));
+            errors[0] += match metric {
+                Metric::Direction => direction::total(&[found[i]; 16], &[source[i]; 16]) / 16.0 * 127.5 * 127.5,
+                Metric::Surface => g + (r + b) / 16.0,
+                _ => r + g + b,
+            };
+            errors[1] += r + g + b;
+        }
+    }
+    errors
+}
+
+fn lowered(texels: &[u8], size: (usize, usize), metric: Metric, effort: Effort, loss: f64) -> [Vec<u8>; 2] {
+    let (width, height) = (size.0 as u32, size.1 as u32);
+    let before = encode_level(texels, width, height, metric, effort);
+    let mut after = before.clone();
+    lower_rate(&mut after, texels, width, height, metric, loss);
+    [before, after]
+}
+
+#[test]
+fn blocks_come_back_as_they_were_packed() {
+    let hints = Hints { bias: 13, flip: true, tables: [3, 6], ..Hints::default() };
+    for texels in all_kinds() {
+        for (_, block) in every_mode::<3>(&texels) {
+            let (mode, levels) = (block.mode, expected(&block));
+            let bytes = block.pack(&hints);
+            assert_eq!(mode.hints_in(&bytes), hints.bits(mode));
+            let Some(found) = unpack(&bytes) else { panic!("a mode of this encoder: {bytes:x?}") };
+            let read = found.levels();
+            for i in 0..16 {
+                assert_eq!([0, 1, 2].map(|c| read[c][i]), [0, 1, 2].map(|c| f32::from(levels[i][c])));
+            }
+            let Unpacked::Block(found) = found else { panic!("not of one colour: {bytes:x?}") };
+            assert_eq!(found.pack(&hints), bytes);
+        }
+    }
+}
+
+#[test]
+fn alpha_and_foreign_bytes_are_not_read() {
+    for texels in all_kinds() {
+        for (_, block) in every_mode::<4>(&texels) {
+            assert!(unpack(&block.pack(&Hints::default())).is_none());
+        }
+    }
+    let mut random = Random(5);
+    for _ in 0..10_000 {
+        // Whatever is read decodes as the reference has it, which refuses what is no block.
+        let bytes: [u8; BLOCK_BYTES] = std::array::from_fn(|_| random.byte());
+        let (found, reference) = (unpack(&bytes), basisu::uastc::unpack::unpack_uastc(&bytes, false));
+        if let (Some(found), Some(reference)) = (found, reference) {
+            for (c, levels) in found.levels().iter().enumerate() {
+                assert_eq!(*levels, std::array::from_fn(|i| f32::from(reference[i].c[c])), "{bytes:x?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn normals_become_smaller() {
+    let size = (256, 256);
+    for noise in [0.02, 0.1, 0.5] {
+        let texels = level(size.0, size.1, noise);
+        for (effort, compression, share) in [(Effort::Fast, 5, 0.9), (Effort::Best, 18, 0.95)] {
+            let [before, after] = lowered(&texels, size, Metric::Direction, effort, 0.5)
+                .map(|blocks| zstd::bulk::compress(&blocks, compression).expect("in memory").len() as f64);
+            assert!(after < share * before, "noise {noise}, {effort:?}: {after} of {before}");
+        }
+    }
+}
+
+#[test]
+fn nothing_allowed_changes_nothing() {
+    let texels = level(37, 22, 0.3);
+    for loss in [0.0, -1.0, f64::NAN] {
+        let [before, after] = lowered(&texels, (37, 22), Metric::Direction, Effort::Fast, loss);
+        assert_eq!(before, after, "{loss}");
+    }
+    // Lengths that do not fit.
+    let blocks = encode_level(&texels, 37, 22, Metric::Rgb, Effort::Fast);
+    for (width, height) in [(37, 23), (0, 0), (u32::MAX, u32::MAX), (22, 37)] {
+        let mut after = blocks.clone();
+        lower_rate(&mut after, &texels[..texels.len() - 4], width, height, Metric::Rgb, 3.0);
+        assert_eq!(after, blocks);
+    }
+}
+
+#[test]
+fn blocks_with_alpha_stay() {
+    let mut random = Random(11);
+    let texels: Vec<u8> = (0..64 * 64).flat_map(|_| random.next().to_le_bytes()[..4].to_vec()).collect();
+    let [before, after] = lowered(&texels, (64, 64), Metric::Rgba, Effort::Fast, 6.0);
+    assert_eq!(before, after);
+}
+
+#[test]
+fn rates_do_not_depend_on_threads() {
+    let texels = level(67, 301, 0.2);
+    let with = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| METRICS.map(|metric| lowered(&texels, (67, 301), metric, Effort::Fast, 1.0)))
+    };
+    assert_eq!(with(1), with(4));
+}
+
+/// Transcoders go by the hints: they suit the source, or another block with the same bytes.
+#[test]
+fn hints_stay_right() {
+    let size = (128, 128);
+    let texels = level(size.0, size.1, 0.1);
+    let [before, after] = lowered(&texels, size, Metric::Direction, Effort::Fast, 0.5);
+    let sources = blocks_of(&texels, size.0, size.1);
+    let blocks: Vec<_> = after.as_chunks::<BLOCK_BYTES>().0.to_vec();
+    assert_ne!(before, after);
+    let suits = |bytes: &[u8; BLOCK_BYTES], source: &Texels| match unpack(bytes) {
+        Some(Unpacked::Block(block)) => block.mode.hints_in(bytes) == Hints::of(source, block.mode).bits(block.mode),
+        _ => true,
+    };
+    let mut own = 0;
+    for (bytes, source) in blocks.iter().zip(&sources) {
+        let suits_it = suits(bytes, source);
+        own += usize::from(suits_it);
+        let of_another = || blocks.iter().zip(&sources).any(|(other, source)| other == bytes && suits(bytes, source));
+        assert!(suits_it || of_another(), "{bytes:x?}");
+    }
+    assert!(own > blocks.len() / 2);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    #[test]
+    fn losses_stay_below_the_bound(
+        (width, height) in (1usize..90, 1usize..70),
+        noise in 0.0f64..1.5,
+        metric in 0usize..3,
+        best: bool,
+        loss in prop_oneof![0.01f64..1.0, 1.0f64..6.0],
+    ) {
+        let metric = [Metric::Rgb, Metric::Surface, Metric::Direction][metric];
+        let effort = if best { Effort::Best } else { Effort::Fast };
+        let texels = level(width, height, noise);
+        let [before, after] = lowered(&texels, (width, height), metric, effort, loss);
+        let of = |blocks: &[u8]| errors(blocks, &texels, (width, height), metric);
+        for (before, after) in of(&before).into_iter().zip(of(&after)) {
+            // Directions are summed in single precision by the encoder.
+            prop_assert!(after <= before || 10.0 * (after / before).log10() < loss + 1e-4, "{before} {after}");
+        }
+    }
+}
