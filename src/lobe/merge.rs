@@ -21,8 +21,6 @@ const POINTS: usize = 12;
 /// Radii, in alphas, within which 1/6, 1/2 and 5/6 of a GGX lobe lie (r^2 = p / (1 - p)). Any such symmetric choice
 /// gives back the lobe itself when it is merged alone.
 const RADII: [f32; 3] = [0.447_213_6, 1.0, 2.236_068];
-/// Points of all parts.
-const CAPACITY: usize = MAX_PARTS * POINTS;
 /// Sums are kept for every eighth point and then added, which rounds less than one sum does.
 const STRIDE: usize = 8;
 /// EM steps. Twice as many change the lobe error of `../shared/data` by less than 0.001.
@@ -154,7 +152,13 @@ fn merged<F: Real>(weights: &[F], parts: &[Parts<F>]) -> Parts<F> {
     let start = Start::of(weights, parts, about);
     let mut slopes = start.slopes;
     if !F::all(start.is_smooth) {
-        slopes = slopes.or(Points::of(weights, parts, about).likeliest(slopes), start.is_smooth);
+        // Four parts are the rule; room for more would be cleared for nothing.
+        let likeliest = if parts.len() <= 4 {
+            Points::<F, { 4 * POINTS }>::new(zero).likeliest(weights, parts, about, slopes)
+        } else {
+            Points::<F, { MAX_PARTS * POINTS }>::new(zero).likeliest(weights, parts, about, slopes)
+        };
+        slopes = slopes.or(likeliest, start.is_smooth);
     }
     // Normals that cancel have no frame.
     parts[0].or(tilted(about, slopes), length.is_zero())
@@ -229,19 +233,23 @@ impl<F: Real> Start<F> {
 }
 
 /// Slopes of half-vectors about the mean normal, each with twice its share.
-struct Points<F> {
+struct Points<F, const CAPACITY: usize> {
     all: [[F; 3]; CAPACITY],
     count: usize,
 }
 
-impl<F: Real> Points<F> {
+impl<F: Real, const CAPACITY: usize> Points<F, CAPACITY> {
     #[inline(always)]
-    fn of(weights: &[F], parts: &[Parts<F>], about: [[F; 3]; 3]) -> Self {
+    fn new(zero: F) -> Self {
+        Self { all: [[zero; 3]; CAPACITY], count: 0 }
+    }
+
+    #[inline(always)]
+    fn fill(&mut self, weights: &[F], parts: &[Parts<F>], about: [[F; 3]; 3]) {
         let zero = weights[0].like(0.0);
         let (one, least, least_cosine) = (zero.like(1.0), zero.like(MIN_SQUARED_ALPHA), zero.like(LEAST_COSINE));
-        let mut all = [[zero; 3]; CAPACITY];
         let patterns: &[[[f32; 2]; POINTS]; MAX_PARTS] = &PATTERNS;
-        let targets = all.as_chunks_mut::<POINTS>().0;
+        let targets = self.all.as_chunks_mut::<POINTS>().0;
         for (((w, part), pattern), points) in weights.iter().zip(parts).zip(patterns).zip(targets) {
             // The part's axes, scaled by its lobe (A = L L^T, L lower triangular), in the common frame.
             let [t, b, n] = frame(part.normal);
@@ -267,11 +275,13 @@ impl<F: Real> Points<F> {
                 *point = [h[0] * scale, h[1] * scale, share];
             }
         }
-        Self { all, count: parts.len() * POINTS }
+        self.count = parts.len() * POINTS;
     }
 
+    /// The likeliest lobe, by EM from `start`.
     #[inline(always)]
-    fn likeliest(&self, start: Slopes<F>) -> Slopes<F> {
+    fn likeliest(mut self, weights: &[F], parts: &[Parts<F>], about: [[F; 3]; 3], start: Slopes<F>) -> Slopes<F> {
+        self.fill(weights, parts, about);
         let Slopes { mut mean, mut a } = start;
         for _ in 0..STEPS {
             let [weight, x, y, xx, xy, yy] = self.sums(mean, a);
@@ -375,9 +385,9 @@ mod tests {
         // EM itself, without the short cut for smooth parts.
         let part = lobe([0.5, 0.2], [0.09, 0.02, 0.04]);
         let about = frame(part.normal);
-        let points = Points::of(&[0.25; 4], &[Parts::of(part.values()); 4], about);
-        let wide = Matrix { uu: 0.2, uv: 0.0, vv: 0.2 };
-        let slopes = points.likeliest(Slopes { mean: [0.0; 2], a: wide });
+        let wide = Slopes { mean: [0.0; 2], a: Matrix { uu: 0.2, uv: 0.0, vv: 0.2 } };
+        let points = Points::<f32, { 4 * POINTS }>::new(0.0);
+        let slopes = points.likeliest(&[0.25; 4], &[Parts::of(part.values()); 4], about, wide);
         assert_alike(OrientedLobe::from_values(tilted(about, slopes).values()), part, 0.01);
     }
 

@@ -60,14 +60,17 @@ impl Rows for Rgba<'_> {
 }
 
 fn expand<T: Copy>(samples: &[T], channels: usize, out: &mut [[f32; 4]], value: impl Fn(T) -> f32) {
-    for (rgba, texel) in out.iter_mut().zip(samples.chunks_exact(channels)) {
-        let at = |c: usize| value(texel[c]);
-        *rgba = match channels {
-            1 => [at(0), at(0), at(0), 1.0],
-            2 => [at(0), at(1), 0.0, 1.0],
-            3 => [at(0), at(1), at(2), 1.0],
-            _ => [at(0), at(1), at(2), at(3)],
-        };
+    match channels {
+        1 => each(samples, out, |&[grey]| [value(grey), value(grey), value(grey), 1.0]),
+        2 => each(samples, out, |&[red, green]| [value(red), value(green), 0.0, 1.0]),
+        3 => each(samples, out, |&[red, green, blue]| [value(red), value(green), value(blue), 1.0]),
+        _ => each(samples, out, |texel: &[T; 4]| texel.map(&value)),
+    }
+}
+
+fn each<T, const N: usize>(samples: &[T], out: &mut [[f32; 4]], rgba: impl Fn(&[T; N]) -> [f32; 4]) {
+    for (out, texel) in out.iter_mut().zip(samples.as_chunks::<N>().0) {
+        *out = rgba(texel);
     }
 }
 
