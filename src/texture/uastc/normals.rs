@@ -36,19 +36,7 @@ pub(super) fn fast<S: Simd>(simd: S, texels: &[Grid<S>; 3]) -> Blocks<S> {
         winner.offer(&two_planes::<_, 2, 2>(simd, &xy, &all, selector, &[1.0; 2], &MODE_6, 1), is_plane_likely);
     }
     let is_line_likely = line_estimate.simd_lt(planes_estimate * DOUBT);
-    let is_short = along.simd_lt(300.0);
-    let is_long = along.simd_gt(25000.0) & off.simd_lt(along * 0.02);
-    let [short, long] = [is_line_likely & is_short, is_line_likely & is_long];
-    let middle = is_line_likely & !is_short & !is_long;
-    if short.any_true() {
-        winner.offer(&one_line::<_, 2, 3>(simd, &xy, &all, &axis, &[1.0; 2], &MODE_5, 1), short);
-    }
-    if long.any_true() {
-        winner.offer(&one_line::<_, 2, 5>(simd, &xy, &all, &axis, &[1.0; 2], &MODE_18, 1), long);
-    }
-    if middle.any_true() {
-        winner.offer(&one_line::<_, 2, 4>(simd, &xy, &all, &axis, &[1.0; 2], &MODE_0, 1), middle);
-    }
+    winner.offer_line(simd, &xy, &all, &axis, &[1.0; 2], 1, is_line_likely);
     if winner.error.simd_gt(GOOD).any_true() {
         let [pattern] = likely_patterns(simd, &xy, &all, &axis);
         let split = Split::in_two(simd, &xy, pattern);

@@ -10,7 +10,7 @@ use super::blocks::Blocks;
 use super::candidate::{Split, one_line, split_lines, two_planes};
 use super::lanes::{Grid, sum};
 use super::line::Points;
-use super::moments::{Moments, moments, principal_axis, scatter_along};
+use super::moments::{Moments, moments, principal_axis, scatter_along, trace};
 use super::partition::likely_patterns;
 use super::tables::{
     MODE_0, MODE_1, MODE_2, MODE_4, MODE_5, MODE_6, MODE_9, MODE_10, MODE_11, MODE_12, MODE_14, MODE_15, MODE_18, Mode,
@@ -33,6 +33,39 @@ impl<S: Simd> Blocks<S> {
         if is_grey.any_true() {
             self.offer(&grey::<_, 4>(simd, &[*g], &MODE_15, passes), is_grey);
             self.offer(&grey::<_, 5>(simd, &[*g], &MODE_18, passes), is_grey);
+        }
+    }
+}
+
+impl<S: Simd> Blocks<S> {
+    /// [`Blocks::offer`] of a line in the mode that suits its length.
+    #[inline(always)]
+    #[expect(clippy::too_many_arguments, reason = "those of `one_line`")]
+    pub fn offer_line<const N: usize>(
+        &mut self,
+        simd: S,
+        texels: &[Grid<S>; N],
+        all: &Moments<S, N>,
+        axis: &[Wide<S>; N],
+        scale: &[f32; N],
+        rounds: usize,
+        allowed: <Wide<S> as Real>::Mask,
+    ) {
+        let along = scatter_along(simd, &all.scatter, axis);
+        let off = trace(&all.scatter) - along;
+        let is_short = along.simd_lt(300.0);
+        let is_long = along.simd_gt(25000.0) & off.simd_lt(along * 0.02);
+        let [short, long, middle] = [allowed & is_short, allowed & is_long, allowed & !is_short & !is_long];
+        if short.any_true() {
+            // Short lines gain more from exact endpoints than from sixteen weights,
+            self.offer(&one_line::<_, N, 3>(simd, texels, all, axis, scale, &MODE_5, rounds), short);
+        }
+        if long.any_true() {
+            // and long ones more from 32 weights: 4 dB on a grey map.
+            self.offer(&one_line::<_, N, 5>(simd, texels, all, axis, scale, &MODE_18, rounds), long);
+        }
+        if middle.any_true() {
+            self.offer(&one_line::<_, N, 4>(simd, texels, all, axis, scale, &MODE_0, rounds), middle);
         }
     }
 }
@@ -130,21 +163,7 @@ pub(super) fn fast_rgb<S: Simd>(simd: S, texels: &[Grid<S>; 3], scale: &[f32; 3]
     let mut winner = Blocks::none(simd);
 
     let is_line_likely = line_estimate.simd_lt(planes_estimate * DOUBT);
-    let is_short = along.simd_lt(300.0);
-    let is_long = along.simd_gt(25000.0) & off.simd_lt(along * 0.02);
-    let [short, long] = [is_line_likely & is_short, is_line_likely & is_long];
-    let middle = is_line_likely & !is_short & !is_long;
-    if short.any_true() {
-        // Short lines gain more from exact endpoints than from sixteen weights,
-        winner.offer(&one_line::<_, 3, 3>(simd, texels, &all, &axis, scale, &MODE_5, ROUNDS), short);
-    }
-    if long.any_true() {
-        // and long ones more from 32 weights: 4 dB on a grey map.
-        winner.offer(&one_line::<_, 3, 5>(simd, texels, &all, &axis, scale, &MODE_18, ROUNDS), long);
-    }
-    if middle.any_true() {
-        winner.offer(&one_line::<_, 3, 4>(simd, texels, &all, &axis, scale, &MODE_0, ROUNDS), middle);
-    }
+    winner.offer_line(simd, texels, &all, &axis, scale, ROUNDS, is_line_likely);
     let is_plane_likely = planes_estimate.simd_lt(line_estimate * DOUBT);
     if is_plane_likely.any_true() {
         let planes = two_planes::<_, 3, 2>(simd, texels, &all, selector, scale, &MODE_6, ROUNDS);

@@ -10,12 +10,12 @@ use proptest::prelude::*;
 /// A level of smooth normals with noise of the given slope.
 fn level(width: usize, height: usize, noise: f64) -> Vec<u8> {
     let mut random = Random((width * 1000 + height) as u64);
-    let mut texel = |k: usize| {
+    let texel = |k: usize| {
         let (x, y) = ((k % width) as f64, (k / width) as f64);
         let mut wobble = || (random.unit() - 0.5) * noise;
         normal(0.3 * (x * 0.21 + (y * 0.05).sin()).sin() + wobble(), 0.3 * (y * 0.13).cos() + wobble())
     };
-    (0..width * height).flat_map(|k| texel(k)).collect()
+    (0..width * height).flat_map(texel).collect()
 }
 
 fn blocks_of(texels: &[u8], width: usize, height: usize) -> Vec<Texels> {
