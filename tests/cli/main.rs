@@ -12,6 +12,7 @@ mod merge;
 mod notes;
 mod plan;
 mod process;
+mod rdo;
 mod render;
 mod survival;
 mod transcripts;
