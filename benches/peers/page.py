@@ -98,7 +98,8 @@ def encoders(part):
     lines = [
         f"## UASTC: one level of {square(part['size'])}",
         "",
-        "`--only encoders`. The encoding alone, the texels being in memory; normals. basis_universal's C interface computes PSNR, SSIM and",
+        "`--only encoders`. From texels in memory to blocks in memory; normals. basis_universal also wraps its blocks into a file in that time,",
+        "which cannot be left out of one call. Its C interface computes PSNR, SSIM and",
         "PSNR-HVS-M on the side and cannot be told not to; without it is the C++ function underneath, told not to. The bars",
         "name the latter, which is the faster. Lobe errors are means of real normal maps, levels 1 to 4, alpha 0.2, baked to ellipses",
         "whose normals alone are encoded" + (f"; of half floats it is {lobe('half floats')[0]}." if known else "."),
@@ -130,7 +131,7 @@ def kernels(part):
         f"## From a normal map to its pyramid: {square(part['size'])}",
         "",
         "`--only kernels`. From 8-bit texels in memory to the means and covariances K (20 bytes a texel) of all coarser levels, or with the moments",
-        "of shape (56 bytes); the copies read and write as many bytes: the input and the levels. All into new memory, on two threads, in the",
+        "of shape (56 bytes); the copies read the input and write as many bytes as the levels have. All into new memory, on two threads, in the",
         "second run of a process. Nothing is encoded and no lobe is fitted, so there is no lobe error.",
         "",
         timed(part["times"], "copy of moments"),

@@ -92,6 +92,13 @@ pub fn rgba(image: &Image) -> Vec<u8> {
     let colours = if channels < 3 { [0, 0, 0] } else { [0, 1, 2] };
     let texel = |get: &dyn Fn(usize) -> u8| [get(colours[0]), get(colours[1]), get(colours[2]), 255];
     match &image.samples {
+        Samples::U8(values) if channels == 3 => {
+            let mut out = vec![255; values.len() / 3 * 4];
+            for (out, texel) in out.as_chunks_mut::<4>().0.iter_mut().zip(values.as_chunks::<3>().0) {
+                out[..3].copy_from_slice(texel);
+            }
+            out
+        }
         Samples::U8(values) => values.chunks_exact(channels).flat_map(|t| texel(&|c| t[c])).collect(),
         samples => {
             let byte = |i: usize| (samples.get(i).unwrap_or(0.0).clamp(0.0, 1.0) * 255.0 + 0.5) as u8;

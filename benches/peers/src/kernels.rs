@@ -1,4 +1,5 @@
-//! From a normal map in memory to all levels of its pyramid, beside copies of as many bytes on the same threads.
+//! From a normal map in memory to all levels of its pyramid, beside copies of the map that write as many bytes, on the same
+//! threads.
 
 use std::hint::black_box;
 use std::path::Path;
@@ -26,8 +27,8 @@ pub fn measure(contender: &str, image: &Path) -> Result<Value, Failure> {
     let coarser: usize = level_sizes(width, height)[1..].iter().map(|(w, h)| *w as usize * *h as usize).sum();
     let map = NormalMap::new(image, NormalLayout::Auto, false)?;
     let copy = |texel: usize| {
-        let source = vec![1_u8; read + coarser * texel];
-        Box::new(move || drop(copied(black_box(&source)))) as Box<dyn Fn() + '_>
+        let source = vec![1_u8; read.max(CHUNK)];
+        Box::new(move || drop(copied(black_box(&source), coarser * texel))) as Box<dyn Fn() + '_>
     };
     let work: Box<dyn Fn() + '_> = match contender {
         "moments" => Box::new(|| drop(build(&NormalOffsets::new(black_box(&map))))),
@@ -41,10 +42,12 @@ pub fn measure(contender: &str, image: &Path) -> Result<Value, Failure> {
     Ok(time.to_json())
 }
 
-/// As the kernels do it: into memory that is new.
-fn copied(source: &[u8]) -> Vec<u8> {
-    let mut target = vec![0; source.len()];
-    let pairs = target.par_chunks_mut(CHUNK).zip(source.par_chunks(CHUNK));
-    pairs.for_each(|(target, source)| target.copy_from_slice(source));
+/// `size` bytes from all of `source`, over and over, into memory that is new, as the kernels do it.
+fn copied(source: &[u8], size: usize) -> Vec<u8> {
+    let mut target = vec![0; size];
+    let chunks = source.len() / CHUNK;
+    target.par_chunks_mut(CHUNK).enumerate().for_each(|(k, target)| {
+        target.copy_from_slice(&source[k % chunks * CHUNK..][..target.len()]);
+    });
     target
 }

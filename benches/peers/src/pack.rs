@@ -3,6 +3,7 @@
 
 use std::path::Path;
 
+use rayon::prelude::*;
 use roughcast::pyramid::level_sizes;
 use roughcast::texture::Format;
 use roughcast::texture::ktx2::{Ktx2Writer, StoredLevel};
@@ -36,18 +37,19 @@ pub fn measure(image: &Path, out: &Path) -> Result<Value, Failure> {
 }
 
 /// Boxes of 2 x 2 texels; the last column and row of odd sizes are left out.
-fn halved(rgba: &[u8], (fine_width, fine_height): (u32, u32), (width, height): (u32, u32)) -> Vec<u8> {
-    let texel = |x: u32, y: u32| {
-        let at = 4 * (y.min(fine_height - 1) as usize * fine_width as usize + x.min(fine_width - 1) as usize);
-        &rgba[at..at + 4]
-    };
-    let mut out = Vec::with_capacity(width as usize * height as usize * 4);
-    for y in 0..height {
-        for x in 0..width {
-            let parts =
-                [texel(2 * x, 2 * y), texel(2 * x + 1, 2 * y), texel(2 * x, 2 * y + 1), texel(2 * x + 1, 2 * y + 1)];
-            out.extend([0, 1, 2, 3].map(|c| ((parts.iter().map(|p| u32::from(p[c])).sum::<u32>() + 2) / 4) as u8));
+fn halved(rgba: &[u8], (fine_width, fine_height): (u32, u32), (width, _): (u32, u32)) -> Vec<u8> {
+    let (texels, fine_width, fine_height) = (rgba.as_chunks::<4>().0, fine_width as usize, fine_height as usize);
+    let width = width as usize;
+    let mut out = vec![[0; 4]; width * (fine_height / 2).max(1)];
+    out.par_chunks_exact_mut(width).enumerate().for_each(|(y, out)| {
+        let [above, below] = [2 * y, (2 * y + 1).min(fine_height - 1)].map(|y| &texels[y * fine_width..][..fine_width]);
+        for (x, out) in out.iter_mut().enumerate() {
+            let (left, right) = (2 * x, (2 * x + 1).min(fine_width - 1));
+            for c in 0..4 {
+                let sum = [above[left], above[right], below[left], below[right]].map(|texel| u32::from(texel[c]));
+                out[c] = ((sum.iter().sum::<u32>() + 2) / 4) as u8;
+            }
         }
-    }
-    out
+    });
+    out.into_flattened()
 }

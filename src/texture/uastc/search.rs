@@ -21,18 +21,26 @@ use crate::simd::{Real, Wide};
 const ROUNDS: usize = 2;
 
 impl<S: Simd> Blocks<S> {
-    /// [`Blocks::offer`] of lines of one number where all texels are grey, with `passes` over single endpoints: on maps of
-    /// heights that gains 1 to 3 dB.
+    /// [`Blocks::offer`] of lines of one number where all texels are grey, with `passes` over single endpoints.
     #[inline(always)]
-    fn offer_grey(&mut self, simd: S, [r, g, b]: &[Grid<S>; 3], passes: usize) {
+    fn offer_grey(&mut self, simd: S, texels: &[Grid<S>; 3], scale: &[f32; 3], passes: usize) {
+        let mut levels = *texels;
+        for (levels, scale) in levels.iter_mut().zip(scale) {
+            for level in levels {
+                // Exact: scales are powers of two.
+                *level *= 1.0 / scale;
+            }
+        }
+        let [r, g, b] = levels;
         let off = sum(
             #[inline(always)]
             |i| (r[i] - g[i]) * (r[i] - g[i]) + (b[i] - g[i]) * (b[i] - g[i]),
         );
         let is_grey = off.simd_eq(0.0);
         if is_grey.any_true() {
-            self.offer(&grey::<_, 4>(simd, &[*g], &MODE_15, passes), is_grey);
-            self.offer(&grey::<_, 5>(simd, &[*g], &MODE_18, passes), is_grey);
+            let weight = scale[0] * scale[0] + scale[1] * scale[1] + scale[2] * scale[2];
+            self.offer(&grey::<_, 4>(simd, &[g], weight, &MODE_15, passes), is_grey);
+            self.offer(&grey::<_, 5>(simd, &[g], weight, &MODE_18, passes), is_grey);
         }
     }
 }
@@ -61,7 +69,7 @@ impl<S: Simd> Blocks<S> {
             self.offer(&one_line::<_, N, 3>(simd, texels, all, axis, scale, &MODE_5, rounds), short);
         }
         if long.any_true() {
-            // and long ones more from 32 weights: 4 dB on a grey map.
+            // and long ones more from 32 weights.
             self.offer(&one_line::<_, N, 5>(simd, texels, all, axis, scale, &MODE_18, rounds), long);
         }
         if middle.any_true() {
@@ -70,9 +78,15 @@ impl<S: Simd> Blocks<S> {
     }
 }
 
-/// Blocks of grey `texels`.
+/// Blocks of grey `texels`, whose squared differences count `weight` times.
 #[inline(always)]
-fn grey<S: Simd, const BITS: u32>(simd: S, texels: &[Grid<S>; 1], mode: &'static Mode, passes: usize) -> Blocks<S> {
+fn grey<S: Simd, const BITS: u32>(
+    simd: S,
+    texels: &[Grid<S>; 1],
+    weight: f32,
+    mode: &'static Mode,
+    passes: usize,
+) -> Blocks<S> {
     simd.vectorize(
         #[inline(always)]
         || {
@@ -98,7 +112,7 @@ fn grey<S: Simd, const BITS: u32>(simd: S, texels: &[Grid<S>; 1], mode: &'static
             let [grey, ..] = blocks.endpoints[0];
             let alpha = [Wide::splat(simd, 255.0); 2];
             blocks.endpoints[0] = if mode.has_alpha() { [grey, alpha, grey, grey] } else { [grey; 4] };
-            blocks.error *= 3.0;
+            blocks.error *= weight;
             blocks
         },
     )
@@ -142,7 +156,7 @@ pub(super) fn best_rgb<S: Simd>(simd: S, texels: &[Grid<S>; 3], scale: &[f32; 3]
             winner.offer(&split_lines::<_, 3, 2, 3>(simd, texels, &split, scale, &MODE_2, ROUNDS), is_coarse);
         }
     }
-    winner.offer_grey(simd, texels, 2);
+    winner.offer_grey(simd, texels, scale, 2);
     winner
 }
 
@@ -178,7 +192,7 @@ pub(super) fn fast_rgb<S: Simd>(simd: S, texels: &[Grid<S>; 3], scale: &[f32; 3]
             winner.offer(&split_lines::<_, 3, 2, 2>(simd, texels, &split, scale, &MODE_4, ROUNDS), is_likely);
         }
     }
-    winner.offer_grey(simd, texels, 1);
+    winner.offer_grey(simd, texels, scale, 1);
     winner
 }
 

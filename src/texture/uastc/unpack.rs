@@ -29,7 +29,7 @@ impl Unpacked {
     }
 }
 
-/// Reads `bytes`; none where they have alpha a mode that this encoder does not write, or a pattern that does not exist.
+/// Reads `bytes`; none where they have alpha, a mode that this encoder does not write, or a pattern that does not exist.
 pub(super) fn unpack(bytes: &[u8; 16]) -> Option<Unpacked> {
     let bits = u128::from_le_bytes(*bytes);
     let has_code = |(code, length): (u8, u8)| bits & ((1 << length) - 1) == u128::from(code);

@@ -43,7 +43,7 @@ type Errors = [f64; 2];
 /// Rewrites the blocks of a level that [`super::encode_level`] made of the same `texels`, so that zstd makes them smaller.
 ///
 /// Neither the error by `metric` nor that of red, green and blue grows by as much as `loss` dB, over all texels of the
-/// level. Blocks with alpha stay as they are; so do all where the lengths do not fit, or `loss` is not above 0. The bytes
+/// level. Blocks with alpha or of greys (mode 15) stay as they are; so do all where the lengths do not fit, or `loss` is not above 0. The bytes
 /// depend on neither machine nor number of threads.
 pub fn lower_rate(blocks: &mut [u8], texels: &[u8], width: u32, height: u32, metric: Metric, loss: f64) {
     let (width, height) = (width as usize, height as usize);
@@ -81,11 +81,12 @@ impl Source<'_> {
             of(0).max(of(1))
         };
         let mut search = Search { lambda, within: None, beyond: None };
-        let mut best = None;
+        let (mut best, mut most_used) = (None, 0.0_f64);
         for _ in 0..PASSES {
             let mut rewritten = blocks.to_vec();
             self.rewrite(&mut rewritten, bits, search.lambda as f32, step);
             let used = used(self.errors(&rewritten, step));
+            most_used = most_used.max(used);
             if used < 1.0 {
                 best = Some(rewritten);
             }
@@ -93,7 +94,8 @@ impl Source<'_> {
                 break;
             }
         }
-        (search.lambda, best)
+        // Bands that cannot change tell nothing of lambda.
+        (if most_used > 0.0 { search.lambda } else { lambda }, best)
     }
 
     /// Rewrites every `step`th band.

@@ -178,8 +178,8 @@ fn up_to_eight_greys_in_a_row_are_exact() {
             let grey = least + (random.next() % span) as u8;
             [grey, grey, grey, 255]
         });
-        for effort in EFFORTS {
-            assert_eq!(decoded(&encode_block(&texels, Metric::Rgb, effort)), texels);
+        for (metric, effort) in [Metric::Rgb, Metric::Surface].into_iter().flat_map(|m| EFFORTS.map(|e| (m, e))) {
+            assert_eq!(decoded(&encode_block(&texels, metric, effort)), texels);
         }
     }
 }

@@ -31,6 +31,17 @@ fn best_is_never_worse_than_fast() {
 }
 
 #[test]
+fn surfaces_that_are_grey_by_weight_alone_keep_their_colour() {
+    // Red and blue are four times green: equal as the metric weighs them.
+    let texels: Texels =
+        std::array::from_fn(|i| [200 + 4 * (i as u8 % 8), 50 + i as u8 % 8, 200 + 4 * (i as u8 % 8), 255]);
+    for effort in EFFORTS {
+        let error = squared_error(&texels, &decoded(&encode_block(&texels, Metric::Surface, effort)), 3);
+        assert!(error < 200, "{effort:?}: {error}");
+    }
+}
+
+#[test]
 fn surfaces_keep_roughness_before_occlusion_and_metal() {
     // Sums of squared differences over all blocks, of roughness alone and with a sixteenth of the others.
     let sums = |metric, effort| {
