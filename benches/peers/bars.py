@@ -30,7 +30,7 @@ def verdict(measured, is_met, form):
 
 def ratio(times, one, other):
     """Time of one beside that of the other; `None` where either failed."""
-    runs = times[one], times[other]
+    runs = times.get(one, {}), times.get(other, {})
     return runs[0]["wall"] / runs[1]["wall"] if all("wall" in run for run in runs) else None
 
 
