@@ -31,6 +31,17 @@ macro_rules! dispatch {
 }
 pub(crate) use dispatch;
 
+/// What this machine can do, and less.
+#[cfg(test)]
+pub fn instruction_sets() -> Vec<fearless_simd::Level> {
+    let all = fearless_simd::Level::new();
+    #[cfg(target_arch = "x86_64")]
+    let sets = [all.as_sse2().map(fearless_simd::Level::Sse2), all.as_avx2().map(fearless_simd::Level::Avx2)];
+    #[cfg(not(target_arch = "x86_64"))]
+    let sets = [Some(all)];
+    sets.into_iter().flatten().collect()
+}
+
 /// A number, or one for each lane of a vector.
 pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> {
     /// A truth for each lane.

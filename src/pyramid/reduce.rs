@@ -183,17 +183,8 @@ mod tests {
     use crate::bump::Offset;
     use crate::lobe::{OrientedLobe, SquaredAlpha};
     use crate::pyramid::{Moments, ShapedMoments};
+    use crate::simd::instruction_sets;
     use crate::symmetric::Symmetric2;
-
-    /// What this machine can do, and less.
-    fn instruction_sets() -> Vec<InstructionSet> {
-        let all = InstructionSet::new();
-        #[cfg(target_arch = "x86_64")]
-        let sets = [all.as_sse2().map(InstructionSet::Sse2), all.as_avx2().map(InstructionSet::Avx2)];
-        #[cfg(not(target_arch = "x86_64"))]
-        let sets = [Some(all)];
-        sets.into_iter().flatten().collect()
-    }
 
     fn assert_lanes_are_single_texels<T: Merge + PartialEq + std::fmt::Debug>(texel: impl Fn(u32) -> T) {
         for (fine_width, fine_height) in [(1, 2), (2, 3), (5, 1), (16, 2), (19, 3), (37, 3), (64, 2)] {

@@ -22,6 +22,24 @@ pub(super) fn texel<S: Simd, const N: usize>(texels: &[Grid<S>; N], i: usize) ->
     texel
 }
 
+/// The channel at `selector` and, `M` of them, the others.
+#[inline(always)]
+pub(super) fn parted<S: Simd, const N: usize, const M: usize>(
+    texels: &[Grid<S>; N],
+    selector: Wide<S>,
+) -> ([Grid<S>; 1], [Grid<S>; M]) {
+    let (mut single, mut others) = ([texels[0]], [texels[0]; M]);
+    for i in 0..16 {
+        let texel = texel(texels, i);
+        single[0][i] = alone(selector, &texel);
+        let left: [Wide<S>; M] = rest(selector, &texel);
+        for k in 0..M {
+            others[k][i] = left[k];
+        }
+    }
+    (single, others)
+}
+
 /// A number per channel, in all lanes.
 #[inline(always)]
 pub(super) fn splat<S: Simd, const N: usize>(simd: S, numbers: &[f32; N]) -> [Wide<S>; N] {
@@ -144,15 +162,7 @@ fn planes<S: Simd, const N: usize, const M: usize, const BITS: u32>(
 ) -> Blocks<S> {
     let zero = Wide::splat(simd, 0.0);
     let scale = splat(simd, scale);
-    let (mut single, mut others) = ([[zero; 16]; 1], [[zero; 16]; M]);
-    for i in 0..16 {
-        let texel = texel(texels, i);
-        single[0][i] = alone(selector, &texel);
-        let left: [Wide<S>; M] = rest(selector, &texel);
-        for k in 0..M {
-            others[k][i] = left[k];
-        }
-    }
+    let (single, others) = parted::<_, N, M>(texels, selector);
     let (mut own, mut columns, mut scatter) = ([zero; N], [[zero; N]; M], [[zero; M]; M]);
     for c in 0..N {
         own[c] = all.scatter[c][c];
@@ -189,7 +199,7 @@ pub(super) struct Split<S: Simd, const N: usize, const K: usize> {
 
 /// 1 for the texels of a subset of a pattern, 0 for the others; `members` has bit i for texel i.
 #[inline(always)]
-pub(super) fn mask<S: Simd>(simd: S, pattern: Wide<S>, members: impl Fn(usize) -> u16) -> Grid<S> {
+fn mask<S: Simd>(simd: S, pattern: Wide<S>, members: impl Fn(usize) -> u16) -> Grid<S> {
     let pattern: [f32; LANES] = pattern.into();
     let bits = u32x8::simd_from(simd, pattern.map(|p| u32::from(members(p as usize))));
     let mut mask = [Wide::splat(simd, 0.0); 16];
@@ -199,12 +209,44 @@ pub(super) fn mask<S: Simd>(simd: S, pattern: Wide<S>, members: impl Fn(usize) -
     mask
 }
 
+/// The subsets of two-subset patterns.
+#[inline(always)]
+fn halves<S: Simd>(simd: S, pattern: Wide<S>) -> [Grid<S>; 2] {
+    let members = |p: usize| PATTERNS[p % PATTERNS.len()];
+    [mask(simd, pattern, |p| !members(p)), mask(simd, pattern, members)]
+}
+
+/// The subsets of three-subset patterns.
+#[inline(always)]
+fn thirds<S: Simd>(simd: S, pattern: Wide<S>) -> [Grid<S>; 3] {
+    let members = |p: usize| THIRDS[p % THIRDS.len()];
+    [
+        mask(simd, pattern, |p| members(p)[0]),
+        mask(simd, pattern, |p| members(p)[1]),
+        mask(simd, pattern, |p| members(p)[2]),
+    ]
+}
+
+impl<S: Simd> Blocks<S> {
+    /// The subsets of blocks of one mode: 1 for a member, 0 for the rest; none where all texels belong to one.
+    #[inline(always)]
+    pub(super) fn masks(&self, simd: S) -> Option<[Grid<S>; 3]> {
+        match self.modes[0].subsets {
+            1 => None,
+            2 => {
+                let [zero, one] = halves(simd, self.pattern);
+                Some([zero, one, one])
+            }
+            _ => Some(thirds(simd, self.pattern)),
+        }
+    }
+}
+
 impl<S: Simd, const N: usize> Split<S, N, 2> {
     /// Split by one of the two-subset patterns.
     #[inline(always)]
     pub fn in_two(simd: S, texels: &[Grid<S>; N], pattern: Wide<S>) -> Self {
-        let members = |p: usize| PATTERNS[p % PATTERNS.len()];
-        Self::new(simd, texels, pattern, [mask(simd, pattern, |p| !members(p)), mask(simd, pattern, members)])
+        Self::new(simd, texels, pattern, halves(simd, pattern))
     }
 }
 
@@ -212,12 +254,7 @@ impl<S: Simd, const N: usize> Split<S, N, 3> {
     /// Split by one of the three-subset patterns.
     #[inline(always)]
     pub fn in_three(simd: S, texels: &[Grid<S>; N], pattern: Wide<S>) -> Self {
-        let masks = [
-            mask(simd, pattern, |p| THIRDS[p % THIRDS.len()][0]),
-            mask(simd, pattern, |p| THIRDS[p % THIRDS.len()][1]),
-            mask(simd, pattern, |p| THIRDS[p % THIRDS.len()][2]),
-        ];
-        Self::new(simd, texels, pattern, masks)
+        Self::new(simd, texels, pattern, thirds(simd, pattern))
     }
 
     /// The `M` three-subset patterns with the least squared error to expect of lines of 2-bit weights.

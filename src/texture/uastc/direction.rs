@@ -11,11 +11,11 @@
 use fearless_simd::{Select, Simd, SimdBase, prelude::*};
 
 use super::blocks::Blocks;
-use super::candidate::{mask, texel};
+use super::candidate::texel;
 use super::lanes::{Grid, look_up, sum, take};
 use super::line::{decode, quantise, ramp, round};
 use super::moments::{count, counted};
-use super::tables::{PATTERNS, Range, THIRDS};
+use super::tables::Range;
 use crate::simd::{LANES, Real, Wide};
 
 /// Unit normals of eight blocks, in units of [`UNIT`].
@@ -96,6 +96,15 @@ struct Subset<'a, S: Simd, const P: usize, const BITS: u32> {
     mask: Option<Grid<S>>,
 }
 
+/// The weight indices that an entry of two planes is made of: of the channel alone, and of the others.
+#[inline(always)]
+fn indices<S: Simd, const BITS: u32>(entry: Wide<S>) -> [Wide<S>; 2] {
+    let count = (1 << BITS) as f32;
+    // Entries are whole: a fraction less than a half keeps rounding down.
+    let upper = round(entry * (1.0 / count) - (0.5 - 0.5 / count));
+    [upper, entry - upper * count]
+}
+
 /// Endpoints with the best weights for them.
 #[derive(Clone, Copy)]
 struct Fit<S: Simd> {
@@ -131,10 +140,8 @@ impl<S: Simd, const P: usize, const BITS: u32> Subset<'_, S, P, BITS> {
         if self.alone.is_none() {
             return [ramp::<BITS, _>(entry); 2];
         }
-        let count = (1 << BITS) as f32;
-        // Entries are whole: a fraction less than a half keeps rounding down.
-        let upper = round(entry * (1.0 / count) - (0.5 - 0.5 / count));
-        [ramp::<BITS, _>(upper), ramp::<BITS, _>(entry - upper * count)]
+        let [single, others] = indices::<_, BITS>(entry);
+        [ramp::<BITS, _>(single), ramp::<BITS, _>(others)]
     }
 
     /// Which of [`Self::weights`] is that of channel `c`.
@@ -307,11 +314,11 @@ impl<S: Simd> Blocks<S> {
                 let mode = self.modes[0];
                 let selector: [f32; LANES] = self.selector.into();
                 let alone = (mode.planes == 2).then_some(selector[0] as usize);
-                let (zero, count) = (Wide::splat(simd, 0.0), (1 << BITS) as f32);
+                let zero = Wide::splat(simd, 0.0);
                 let mut entries = self.weights[0];
                 if alone.is_some() {
                     for i in 0..16 {
-                        entries[i] += self.weights[1][i] * count;
+                        entries[i] += self.weights[1][i] * (1 << BITS) as f32;
                     }
                 }
                 let masks = self.masks(simd);
@@ -332,30 +339,10 @@ impl<S: Simd> Blocks<S> {
                 self.weights[0] = chosen;
                 if alone.is_some() {
                     for i in 0..16 {
-                        let upper = round(chosen[i] * (1.0 / count) - (0.5 - 0.5 / count));
-                        self.weights[1][i] = upper;
-                        self.weights[0][i] = chosen[i] - upper * count;
+                        [self.weights[1][i], self.weights[0][i]] = indices::<_, BITS>(chosen[i]);
                     }
                 }
             },
         );
-    }
-
-    /// The subsets of blocks of one mode: 1 for a member, 0 for the rest; none where all texels belong to one.
-    #[inline(always)]
-    pub(super) fn masks(&self, simd: S) -> Option<[Grid<S>; 3]> {
-        let two = |p: usize| PATTERNS[p % PATTERNS.len()];
-        match self.modes[0].subsets {
-            1 => None,
-            2 => {
-                let one = mask(simd, self.pattern, two);
-                Some([mask(simd, self.pattern, |p| !two(p)), one, one])
-            }
-            _ => Some([
-                mask(simd, self.pattern, |p| THIRDS[p % THIRDS.len()][0]),
-                mask(simd, self.pattern, |p| THIRDS[p % THIRDS.len()][1]),
-                mask(simd, self.pattern, |p| THIRDS[p % THIRDS.len()][2]),
-            ]),
-        }
     }
 }

@@ -59,7 +59,7 @@ pub(super) fn ramp<const BITS: u32, F: Real>(index: F) -> F {
 }
 
 /// A decoded level: `astc` interpolation of 8-bit endpoints at a weight of 0..=64, that is
-/// round((257 (64 low + (high - low) weight) + 32) / 2^14), in exact `f32` steps.
+/// floor((257 (64 low + (high - low) weight) + 32) / 2^14), in exact `f32` steps.
 #[inline(always)]
 pub(super) fn decode<F: Real>(low: F, step: F, weight: F) -> F {
     let like = |value| low.like(value);

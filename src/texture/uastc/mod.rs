@@ -68,6 +68,13 @@ pub enum Metric {
     Direction,
 }
 
+impl Metric {
+    /// What a difference of one level counts for in red, green and blue. Powers of two: sums of their multiples are exact.
+    fn scale(self) -> [f32; 3] {
+        if self == Self::Surface { [0.25, 1.0, 0.25] } else { [1.0; 3] }
+    }
+}
+
 /// Encodes one mip level to UASTC LDR 4x4 blocks, row by row.
 ///
 /// `texels` holds `width * height` RGBA8 texels, row 0 first. Sizes that are not multiples of 4

@@ -8,8 +8,8 @@ use fearless_simd::{Simd, SimdBase, prelude::*};
 use super::blocks::Blocks;
 use super::candidate::{Split, one_line, split_lines, two_planes};
 use super::direction::{Normals, normals};
-use super::lanes::Grid;
-use super::moments::{moments, principal_axis, scatter_along};
+use super::lanes::{Grid, every};
+use super::moments::{moments, principal_axis, scatter_along, trace};
 use super::partition::likely_patterns;
 use super::tables::{MODE_0, MODE_1, MODE_2, MODE_3, MODE_4, MODE_5, MODE_6, MODE_18};
 use crate::simd::{Real, Wide};
@@ -26,7 +26,7 @@ pub(super) fn fast<S: Simd>(simd: S, texels: &[Grid<S>; 3]) -> Blocks<S> {
     let all = moments(simd, &xy, None);
     let axis = principal_axis(simd, &all.scatter);
     let along = scatter_along(simd, &all.scatter, &axis);
-    let off = all.scatter[0][0] + all.scatter[1][1] - along;
+    let off = trace(&all.scatter) - along;
     let planes_estimate = (along + off) * 0.07 + 3.0;
     let line_estimate = off * 1.05 + along * 0.003 + 2.0;
     let mut winner = Blocks::none(simd);
@@ -74,7 +74,7 @@ pub(super) fn best<S: Simd>(simd: S, texels: &[Grid<S>; 3], mut winner: Blocks<S
     let all = moments(simd, &xy, None);
     let axis = principal_axis(simd, &all.scatter);
     let along = scatter_along(simd, &all.scatter, &axis);
-    let every = along.simd_ge(0.0) | along.simd_lt(0.0);
+    let every = every(simd);
     winner.offer_aimed(simd, &target, one_line::<_, 2, 4>(simd, &xy, &all, &axis, &[1.0; 2], &MODE_0, 2), every);
     let is_long = along.simd_gt(400.0);
     if is_long.any_true() {

@@ -93,6 +93,7 @@ impl Block {
 
     fn write_endpoints(&self, out: &mut Bits) {
         let Range { bits, base, code, .. } = self.mode.range;
+        let (group, lengths) = self.mode.range.groups();
         let mut codes = [0; 18];
         let mut count = 0;
         for subset in &self.endpoints[..self.mode.subsets] {
@@ -102,14 +103,6 @@ impl Block {
             }
         }
         let codes = &codes[..count];
-        // Trits by fives in 8 bits, quints by threes in 7, as plain numbers of base 3 or 5; a
-        // last, incomplete group takes the bits its largest value needs.
-        let (group, lengths): (usize, &[u32]) = match base {
-            3 => (5, &[0, 2, 4, 5, 7, 8]),
-            5 => (3, &[0, 3, 5, 7]),
-            // Neither: one group of nothing.
-            _ => (18, &[0; 19]),
-        };
         for group in codes.chunks(group) {
             let upper = group.iter().rev();
             let number = upper.fold(0, |sum, code| sum * u64::from(*base) + (code >> bits));

@@ -5,7 +5,7 @@
 use fearless_simd::{Simd, SimdBase, prelude::*};
 
 use super::blocks::Blocks;
-use super::candidate::{alone, rest, splat, texel};
+use super::candidate::{alone, parted, rest, splat};
 use super::lanes::{Grid, look_up};
 use super::line::{Line, Points};
 use crate::simd::Wide;
@@ -35,13 +35,7 @@ impl<S: Simd> Blocks<S> {
                 let range = mode.range;
                 *self = Self { modes: self.modes, pattern: self.pattern, selector, ..Self::empty(simd, mode) };
                 if mode.planes == 2 {
-                    let mut single = [texels[0]];
-                    let mut others = [texels[0]; 2];
-                    for i in 0..16 {
-                        let texel = texel(texels, i);
-                        single[0][i] = alone(selector, &texel);
-                        [others[0][i], others[1][i]] = rest(selector, &texel);
-                    }
+                    let (single, others) = parted::<_, 3, 2>(texels, selector);
                     let [low, high] = ends_of(&ends[0]);
                     let points = Points { texels: &single, subset: None, scale: [alone(selector, &scale)], range };
                     let single = points.chosen::<BITS>(simd, [alone(selector, &low)], [alone(selector, &high)]).0;

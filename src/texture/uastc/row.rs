@@ -28,8 +28,7 @@ impl Row {
     /// Finds the blocks at `which`, whose texels are opaque.
     #[inline(always)]
     pub fn search_opaque<S: Simd>(&mut self, simd: S, which: &[usize], metric: Metric, effort: Effort) {
-        // Powers of two keep sums exact.
-        let scale: [f32; 3] = if metric == Metric::Surface { [0.25, 1.0, 0.25] } else { [1.0; 3] };
+        let scale = metric.scale();
         match (metric, effort) {
             (Metric::Direction, effort) => {
                 self.by_eights(
@@ -104,6 +103,7 @@ impl Row {
     /// Changes the blocks at `which`, eight of one mode and selector at a time.
     #[inline(always)]
     fn by_kind<S: Simd>(&mut self, simd: S, which: &[usize], change: impl Fn(&mut Blocks<S>, &[Texels; LANES])) {
+        // Selectors are 0 to 3.
         let mut kinds = vec![Vec::new(); 4 * MODES];
         for &k in which {
             let block = &self.blocks[k];

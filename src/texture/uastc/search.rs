@@ -8,7 +8,7 @@ use fearless_simd::{Select, Simd, SimdBase, prelude::*};
 
 use super::blocks::Blocks;
 use super::candidate::{Split, one_line, split_lines, two_planes};
-use super::lanes::{Grid, sum};
+use super::lanes::{Grid, every, sum};
 use super::line::Points;
 use super::moments::{Moments, moments, principal_axis, scatter_along, trace};
 use super::partition::likely_patterns;
@@ -43,9 +43,7 @@ impl<S: Simd> Blocks<S> {
             self.offer(&grey::<_, 5>(simd, &[g], weight, &MODE_18, passes), is_grey);
         }
     }
-}
 
-impl<S: Simd> Blocks<S> {
     /// [`Blocks::offer`] of a line in the mode that suits its length.
     #[inline(always)]
     #[expect(clippy::too_many_arguments, reason = "those of `one_line`")]
@@ -124,7 +122,7 @@ pub(super) fn best_rgb<S: Simd>(simd: S, texels: &[Grid<S>; 3], scale: &[f32; 3]
     let all = moments(simd, texels, None);
     let axis = principal_axis(simd, &all.scatter);
     let mut winner = one_line::<_, 3, 4>(simd, texels, &all, &axis, scale, &MODE_0, ROUNDS);
-    let every = winner.error.simd_ge(0.0);
+    let every = every(simd);
     // Many weights serve long lines, exact endpoints short ones.
     let along = scatter_along(simd, &all.scatter, &axis);
     let is_long = along.simd_gt(400.0);
@@ -171,7 +169,7 @@ pub(super) fn fast_rgb<S: Simd>(simd: S, texels: &[Grid<S>; 3], scale: &[f32; 3]
     let all = moments(simd, texels, None);
     let axis = principal_axis(simd, &all.scatter);
     let along = scatter_along(simd, &all.scatter, &axis);
-    let off = all.scatter[0][0] + all.scatter[1][1] + all.scatter[2][2] - along;
+    let off = trace(&all.scatter) - along;
     let (selector, planes_estimate) = likely_planes(simd, &all);
     let line_estimate = off * 1.05 + along * 0.003 + 3.0;
     let mut winner = Blocks::none(simd);
@@ -221,7 +219,7 @@ pub(super) fn rgba<S: Simd>(simd: S, texels: &[Grid<S>; 4], thorough: bool) -> B
     let all = moments(simd, texels, None);
     let axis = principal_axis(simd, &all.scatter);
     let mut winner = one_line::<_, 4, 4>(simd, texels, &all, &axis, &[1.0; 4], &MODE_10, rounds);
-    let every = winner.error.simd_ge(0.0);
+    let every = every(simd);
     winner.offer(&one_line::<_, 4, 3>(simd, texels, &all, &axis, &[1.0; 4], &MODE_12, rounds), every);
     let selectors: &[f32] = if thorough { &[3.0, 0.0, 1.0, 2.0] } else { &[3.0] };
     for &selector in selectors {

@@ -133,6 +133,17 @@ impl Range {
         range
     }
 
+    /// Codes whose trits or quints share a number of base 3 or 5, and the bits of that number by how many of them there are:
+    /// trits by fives in 8 bits, quints by threes in 7; a last, incomplete group takes the bits that its largest value needs.
+    pub fn groups(&self) -> (usize, &'static [u32]) {
+        match self.base {
+            3 => (5, &[0, 2, 4, 5, 7, 8]),
+            5 => (3, &[0, 3, 5, 7]),
+            // Neither: one group of nothing.
+            _ => (18, &[0; 19]),
+        }
+    }
+
     /// The level that `code` stands for.
     pub fn level_of(&self, code: u32) -> u8 {
         unquantize(code, self.bits, self.base) as u8

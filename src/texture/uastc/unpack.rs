@@ -75,11 +75,7 @@ impl Block {
     fn read_endpoints(&mut self, reader: &mut Reader) {
         let range: &Range = self.mode.range;
         let count = 2 * self.mode.channels * self.mode.subsets;
-        let (group, lengths): (usize, &[u32]) = match range.base {
-            3 => (5, &[0, 2, 4, 5, 7, 8]),
-            5 => (3, &[0, 3, 5, 7]),
-            _ => (18, &[0; 19]),
-        };
+        let (group, lengths) = range.groups();
         let mut codes = [0; 18];
         for group in codes[..count].chunks_mut(group) {
             let mut number = reader.take(lengths[group.len()]);

@@ -6,9 +6,10 @@
 #![expect(clippy::needless_range_loop, reason = "lane loops read several arrays at one index")]
 
 use super::super::Metric;
+use super::super::lanes::sum;
 use super::super::pack::Block;
 use super::super::unpack::{Unpacked, unpack};
-use super::lane::{Lane, sum};
+use super::lane::Lane;
 use super::look::look;
 
 /// Donors side by side.

@@ -4,7 +4,8 @@
 
 use super::super::Metric;
 use super::super::direction::{UNIT, normal, seen};
-use super::lane::{Lane, sum};
+use super::super::lanes::sum;
+use super::lane::Lane;
 
 /// What sixteen decoded texels are to the metric.
 #[derive(Clone, Copy)]
@@ -13,11 +14,6 @@ pub(super) struct Look {
     pub points: [Lane; 3],
     /// Part of the error that does not depend on the target.
     pub loss: Lane,
-}
-
-/// Weight of a difference of levels per channel.
-fn scale(metric: Metric) -> [f32; 3] {
-    if metric == Metric::Surface { [0.25, 1.0, 0.25] } else { [1.0; 3] }
 }
 
 /// What source texels of these levels ask for.
@@ -41,7 +37,7 @@ pub(super) fn target(metric: Metric, levels: &[Lane; 3]) -> [Lane; 3] {
 pub(super) fn look(metric: Metric, levels: &[Lane; 3]) -> Look {
     let mut look = Look { points: *levels, loss: [0.0; 16] };
     if metric != Metric::Direction {
-        let scale = scale(metric);
+        let scale = metric.scale();
         for c in 0..3 {
             for i in 0..16 {
                 look.points[c][i] *= scale[c];

@@ -31,6 +31,7 @@ const BAND_ROWS: usize = 32;
 
 /// A level with its source.
 struct Source<'a> {
+    instructions: Level,
     texels: &'a [[u8; 4]],
     width: usize,
     height: usize,
@@ -46,13 +47,24 @@ type Errors = [f64; 2];
 /// level. Blocks with alpha or of greys (mode 15) stay as they are; so do all where the lengths do not fit, or `loss` is not above 0. The bytes
 /// depend on neither machine nor number of threads.
 pub fn lower_rate(blocks: &mut [u8], texels: &[u8], width: u32, height: u32, metric: Metric, loss: f64) {
+    lower_rate_with(Level::new(), blocks, texels, (width, height), metric, loss);
+}
+
+pub(super) fn lower_rate_with(
+    instructions: Level,
+    blocks: &mut [u8],
+    texels: &[u8],
+    (width, height): (u32, u32),
+    metric: Metric,
+    loss: f64,
+) {
     let (width, height) = (width as usize, height as usize);
     let (texels, rest) = texels.as_chunks::<4>();
     let fits = rest.is_empty()
         && width.checked_mul(height) == Some(texels.len())
         && blocks.len() == width.div_ceil(4) * height.div_ceil(4) * BLOCK_BYTES;
     if fits && !blocks.is_empty() && loss > 0.0 {
-        Source { texels, width, height, metric }.lower(blocks, loss);
+        Source { instructions, texels, width, height, metric }.lower(blocks, loss);
     }
 }
 
@@ -100,7 +112,7 @@ impl Source<'_> {
 
     /// Rewrites every `step`th band.
     fn rewrite(&self, blocks: &mut [Block], bits: &Bits, lambda: f32, step: usize) {
-        let instructions = Level::new();
+        let instructions = self.instructions;
         let band = BAND_ROWS * self.width.div_ceil(4);
         blocks.par_chunks_mut(band).enumerate().step_by(step).for_each(|(k, blocks)| {
             let texels = |at: usize| self.block(k * band + at);

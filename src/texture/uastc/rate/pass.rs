@@ -4,13 +4,15 @@ use fearless_simd::Simd;
 
 use super::super::Metric;
 use super::super::hints::Hints;
+use super::super::lanes::Texels;
+use super::super::pack::Block;
 use super::super::tables::{MODE_0, MODE_6};
 use super::super::unpack::{Unpacked, unpack};
 use super::bits::{Bits, LEAST, State};
 use super::donors::{Donor, Donors, Estimates, Spread};
-use super::look::{Look, look, target};
+use super::look::{look, target};
 use super::refit::{refit_endpoints, refit_weights};
-use super::{Texels, lanes};
+use super::{Lane, lanes};
 
 /// Donors that are fitted for each half.
 const FITTED: usize = 6;
@@ -21,6 +23,14 @@ struct Choice {
     /// Error and `lambda` times bits.
     cost: f32,
     after: State,
+}
+
+/// What a block is made from.
+struct Source<'a> {
+    texels: &'a Texels,
+    metric: Metric,
+    /// What the metric asks for.
+    goal: &'a [Lane; 3],
 }
 
 /// What candidates of one block are judged by.
@@ -45,6 +55,18 @@ impl Judge<'_> {
         let cost = error + self.lambda * bits;
         if cost < best.cost {
             *best = Choice { bytes, cost, after };
+        }
+    }
+
+    /// [`Self::offer`] of a donor's block that `fit` has changed to suit `source`.
+    #[inline(always)]
+    fn offer_fitted(&self, donor: &Donor, source: &Source<'_>, fit: impl Fn(&mut Block), best: &mut Choice) {
+        let Some(mut fitted) = donor.block.clone() else { return };
+        fit(&mut fitted);
+        let error = look(source.metric, &fitted.levels()).error(source.goal);
+        if error < best.cost {
+            let hints = Hints::of(source.texels, fitted.mode);
+            self.offer(fitted.pack(&hints), error, donor, best);
         }
     }
 
@@ -102,10 +124,10 @@ pub(super) fn pass<S: Simd>(
                 let judge = Judge { bits, lambda, at, state };
                 let texels = texels(at);
                 let goal = target(metric, &lanes(&texels));
-                let error = |look: Look| look.error(&goal);
-                let own_error = error(look(metric, &unpacked.levels()));
+                let own_error = look(metric, &unpacked.levels()).error(&goal);
                 let cost = own_error + lambda * bits.alone(&own);
                 let mut best = Choice { bytes: own, cost, after: state.closed() };
+                let source = Source { texels: &texels, metric, goal: &goal };
 
                 let spread = Spread::of(&goal);
                 donors.estimate(&goal, &spread, &mut estimates);
@@ -116,14 +138,13 @@ pub(super) fn pass<S: Simd>(
                     judge.offer(donor.bytes, whole, donor, &mut best);
                 }
                 for k in judge.nearest(donors.all(), &estimates.weights, |_| 0.0).into_iter().flatten() {
-                    let donor = &donors.all()[k];
-                    let Some(mut fitted) = donor.block.clone() else { continue };
-                    refit_endpoints(&mut fitted, metric, &goal);
-                    let error = error(look(metric, &fitted.levels()));
-                    if error < best.cost {
-                        let hints = Hints::of(&texels, fitted.mode);
-                        judge.offer(fitted.pack(&hints), error, donor, &mut best);
-                    }
+                    judge.offer_fitted(
+                        &donors.all()[k],
+                        &source,
+                        #[inline(always)]
+                        |block| refit_endpoints(block, metric, &goal),
+                        &mut best,
+                    );
                 }
                 if let Unpacked::Block(own) = &unpacked
                     && own.mode.subsets > 1
@@ -143,14 +164,13 @@ pub(super) fn pass<S: Simd>(
                 let header = bits.alone(&own[..3]);
                 let more = |donor: &Donor| if hints.contains(&donor.hints) { 0.0 } else { header };
                 for k in judge.nearest(donors.all(), &estimates.ends, more).into_iter().flatten() {
-                    let donor = &donors.all()[k];
-                    let Some(mut fitted) = donor.block.clone() else { continue };
-                    refit_weights(&mut fitted, metric, &goal);
-                    let error = error(look(metric, &fitted.levels()));
-                    if error < best.cost {
-                        let hints = Hints::of(&texels, fitted.mode);
-                        judge.offer(fitted.pack(&hints), error, donor, &mut best);
-                    }
+                    judge.offer_fitted(
+                        &donors.all()[k],
+                        &source,
+                        #[inline(always)]
+                        |block| refit_weights(block, metric, &goal),
+                        &mut best,
+                    );
                 }
                 *block = best.bytes;
                 state = best.after;

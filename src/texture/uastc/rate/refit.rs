@@ -4,17 +4,17 @@
 
 use super::super::Metric;
 use super::super::direction::UNIT;
-use super::super::lanes::ROUND;
+use super::super::lanes::{ROUND, sum};
 use super::super::line::{decode, ramp};
 use super::super::pack::Block;
-use super::lane::{Lane, quantise, sum};
+use super::lane::{Lane, quantise};
 use super::look::{Look, look};
 
 /// The endpoints that suit `texels` under the weights of `block`.
 #[inline(always)]
 pub(super) fn refit_endpoints(block: &mut Block, metric: Metric, target: &[Lane; 3]) {
     let offset = if metric == Metric::Direction { UNIT } else { 0.0 };
-    let scale = if metric == Metric::Surface { [4.0, 1.0, 4.0] } else { [1.0; 3] };
+    let scale = metric.scale();
     for subset in 0..block.mode.subsets {
         let members = block.members(subset);
         let mut mask = [0.0; 16];
@@ -36,7 +36,7 @@ pub(super) fn refit_endpoints(block: &mut Block, metric: Metric, target: &[Lane;
                 let slope = if determinant > 0.0 { (count * wx - w * x) / determinant } else { 0.0 };
                 let low = (x - slope * w) / count;
                 let high = low + 64.0 * slope;
-                block.endpoints[subset][c] = [low, high].map(|end| quantise(block.mode.range, end * scale[c] + offset));
+                block.endpoints[subset][c] = [low, high].map(|end| quantise(block.mode.range, end / scale[c] + offset));
             }
         }
     }

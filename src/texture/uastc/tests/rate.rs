@@ -2,9 +2,11 @@
 
 use super::super::hints::Hints;
 use super::super::lower_rate;
+use super::super::rate::lower_rate_with;
 use super::super::unpack::{Unpacked, unpack};
 use super::decode::{every_mode, expected};
 use super::*;
+use crate::simd::instruction_sets;
 use proptest::prelude::*;
 
 /// A level of smooth normals with noise of the given slope.
@@ -153,6 +155,34 @@ fn rates_do_not_depend_on_threads() {
         pool.install(|| METRICS.map(|metric| lowered(&texels, (67, 301), metric, Effort::Fast, 1.0)))
     };
     assert_eq!(with(1), with(4));
+}
+
+#[test]
+fn rates_do_not_depend_on_instructions() {
+    let (texels, size) = (level(67, 301, 0.2), (67, 301));
+    for metric in METRICS {
+        let [before, after] = lowered(&texels, size, metric, Effort::Fast, 1.0);
+        for set in instruction_sets() {
+            let mut found = before.clone();
+            lower_rate_with(set, &mut found, &texels, (67, 301), metric, 1.0);
+            assert_eq!(found, after, "{metric:?}");
+        }
+    }
+}
+
+/// Flat bands where the search looks first tell it nothing.
+#[test]
+fn flat_bands_do_not_keep_others_from_becoming_smaller() {
+    let size = (5, 15 * 128 + 5);
+    let mut texels = level(size.0, size.1, 0.1);
+    for (y, row) in texels.chunks_exact_mut(size.0 * 4).enumerate() {
+        if (y / 128).is_multiple_of(4) {
+            row.as_chunks_mut::<4>().0.fill([128, 128, 255, 255]);
+        }
+    }
+    let blocks = lowered(&texels, size, Metric::Direction, Effort::Fast, 1.0);
+    let lost = losses(&blocks, &texels, size, Metric::Direction);
+    assert!((0.8..1.0 + ROUNDING).contains(&lost[0].max(lost[1])), "{lost:?} dB of 1");
 }
 
 /// Sixteen bands of 128 rows are where every fourth is searched first, here with bands that are unlike the others.
