@@ -62,10 +62,10 @@ def lobes(errors):
 
 
 def head(results):
-    quick = any(part.get("quick") for part in results.values())
+    quick = [name for name, part in results.items() if part.get("quick")]
     lines = ["# Performance", ""]
     if quick:
-        lines += ["**Some of this is of `--quick`: small maps, one run each. It shows that everything runs; its figures are none.**", ""]
+        lines += [f"**Of `--quick`, small maps and one run each: {', '.join(quick)}. That shows that it runs; its figures are none.**", ""]
     lines += [
         "Roughcast beside others that do parts of its work, on one machine, in alternating runs. `python3 benches/peers/run.py` writes this",
         "page (Linux, 25 minutes; needs Rust, a C++ compiler, Python 3.10 with venv): it installs OpenImageIO from PyPI into a",
