@@ -66,7 +66,7 @@ export function readExtension(definition: unknown): PyramidExtension;
 export function applyPyramid<M extends MeshStandardMaterial | MeshPhysicalMaterial>(material: M, pyramid: Pyramid): M;
 
 /**
- * Makes an anisotropic material, a portable bake for one, reflect the environment along its ellipse with 8 look-ups in the
+ * Makes an anisotropic material, a portable bake for one, reflect the environment along its ellipse with 16 look-ups in the
  * place of three.js' one, and lights about axes that stand on its normal; returns it. Clones are patched, too.
  *
  * @throws TypeError for materials of other kinds.

@@ -1,4 +1,4 @@
-import { Vector2, Vector3 } from 'three';
+import { ShaderChunk, Vector2, Vector3 } from 'three';
 import * as shader from './shader.js';
 
 /** Where the patch goes into the chunks of meshphysical.glsl.js. */
@@ -8,6 +8,7 @@ const PLACES = {
   lobe: '#include <lights_physical_fragment>',
   functions: '#include <lights_physical_pars_fragment>',
   reflection: '#include <lights_fragment_maps>',
+  lights: '#include <lights_fragment_begin>',
 };
 
 /**
@@ -38,8 +39,10 @@ export function applyPyramid(material, pyramid) {
     Object.assign(program.uniforms, uniforms);
     program.vertexShader =
       shader.vertexDeclarations(variant) + after(program.vertexShader, PLACES.vertex, shader.vertexBody(variant));
-    const fragment = replaced(program.fragmentShader, PLACES.normal, shader.normal);
-    program.fragmentShader = shader.declarations(variant) + reflecting(after(fragment, PLACES.lobe, shader.fold));
+    const lights = replaced(ShaderChunk.lights_fragment_begin, shader.LOST_LIGHT, shader.ownLostLight);
+    const tilted = replaced(program.fragmentShader, PLACES.normal, shader.normal);
+    const folded = after(replaced(tilted, PLACES.lights, lights), PLACES.lobe, shader.fold);
+    program.fragmentShader = shader.declarations(variant) + reflecting(folded);
   };
   return patch(material, `roughcast ${variant.model} ${variant.frame}`, edit, (copy) => {
     const scale = copy.normalScale.clone();

@@ -84,33 +84,32 @@ export const normal = /* glsl */ `
 /** After `#include <lights_physical_pars_fragment>`: the surroundings, reflected by an ellipse. */
 export const surroundings = /* glsl */ `
 #if defined( USE_ANISOTROPY ) && defined( USE_ENVMAP )
-  // Facets along the longer axis, each as rough as the shorter one, as often as GGX has them and as much of each as the eye
-  // sees (B. Walter et al., 2007, eq. 41). three.js' own one look-up along a bent normal is far too bright on spheres.
-  vec3 roughcastRadiance( vec3 view, vec3 n, vec3 t, vec3 b, float alphaT, float roughness ) {
-    const int TAPS = 8;
-    float alphaB = pow2( roughness ), spread = sqrt( max( pow2( alphaT ) - pow2( alphaB ), 0.0 ) );
-    float seen = saturate( dot( n, view ) );
+  // The mean of what facets reflect, each as rough as the material's own lobe. Facets count by their area in the map and do not
+  // hide each other, as where the map is not filtered. three.js' own one look-up along a bent normal is far too bright on
+  // spheres; weights of what the eye sees of real facets (B. Walter et al., 2007, eq. 41) are too bright on planes.
+  vec3 roughcastRadiance( vec3 view, vec3 n, vec3 t, vec3 b, float alphaT, float alphaB, float own ) {
+    const int TAPS = 16;
+    const float GOLDEN_ANGLE = 2.39996323;
+    // A' - A = 2 c K: what facets spread. Blur takes a part of it that is round, since taps are few.
+    vec2 spread = max( vec2( pow2( alphaT ), pow2( alphaB ) ) - pow4( own ), 0.0 );
+    float blur = 0.25 * spread.y;
+    spread = sqrt( spread - blur );
+    float roughness = sqrt( sqrt( pow4( own ) + blur ) );
     vec3 sum = vec3( 0.0 );
-    float weights = 0.0;
     for ( int i = 0; i < TAPS; i ++ ) {
-      // Quantile of the marginal of GGX slopes.
-      float x = ( 2.0 * float( i ) + 1.0 ) / float( TAPS ) - 1.0;
-      vec3 facet = normalize( n + spread * x * inversesqrt( 1.0 - x * x ) * t );
-      vec3 light = reflect( - view, facet );
-      float lit = dot( n, light ), facing = dot( facet, view );
-      if ( lit <= 0.0 || facing <= 0.0 ) continue;
-      float weight = V_GGX_SmithCorrelated_Anisotropic( alphaT, alphaB, dot( t, view ), dot( b, view ), dot( t, light ), dot( b, light ), seen, lit );
-      weight *= lit * facing / dot( n, facet );
-      sum += weight * getIBLRadiance( view, facet, roughness );
-      weights += weight;
+      // Quantiles of a normal distribution of slopes, on a spiral.
+      float radius = sqrt( - log( 1.0 - ( float( i ) + 0.5 ) / float( TAPS ) ) ), angle = GOLDEN_ANGLE * float( i );
+      vec2 slope = radius * spread * vec2( cos( angle ), sin( angle ) );
+      sum += getIBLRadiance( view, normalize( n + slope.x * t + slope.y * b ), roughness );
     }
-    return weights > 0.0 ? sum / weights : getIBLRadiance( view, n, roughness );
+    return sum / float( TAPS );
   }
 #endif
 `;
 
 /** After `#include <lights_physical_fragment>` of a material without a pyramid: axes of the lobe that stand on its normal. */
 export const axes = /* glsl */ `
+float roughcastOwn = material.roughness;
 #ifdef USE_ANISOTROPY
   // three.js leaves them in the surface, where lobes about tilted normals are not normalised: too bright.
   material.anisotropyT = normalize( material.anisotropyT - dot( material.anisotropyT, normal ) * normal );
@@ -121,14 +120,20 @@ export const axes = /* glsl */ `
 /** Around `#include <lights_fragment_maps>`: three.js' look-up becomes ours. */
 export const reflection = /* glsl */ `
 #if defined( USE_ANISOTROPY ) && defined( USE_ENVMAP )
-  #define getIBLAnisotropyRadiance( view, n, roughness, b, strength ) roughcastRadiance( view, n, material.anisotropyT, b, material.alphaT, roughness )
+  #define getIBLAnisotropyRadiance( view, n, roughness, b, strength ) roughcastRadiance( view, n, material.anisotropyT, b, material.alphaT, pow2( roughness ), roughcastOwn )
 #endif
 #include <lights_fragment_maps>
 #undef getIBLAnisotropyRadiance
 `;
 
+/** In `lights_fragment_begin`: how much of the light a lobe loses, and gets back from where it strikes other facets. */
+export const LOST_LIGHT = 'vec2( material.roughness, dotNVms )';
+/** Bumps of a map neither hide each other nor light each other: this is the own lobe's alone. */
+export const ownLostLight = 'vec2( roughcastOwn, dotNVms )';
+
 /** After `#include <lights_physical_fragment>`: A' = A + 2 c K. */
 export const fold = /* glsl */ `
+  float roughcastOwn = material.roughness;
   #if defined( ROUGHCAST_FACTOR ) || defined( ROUGHCAST_DEVIATION )
   {
     // The sampler has filtered D or lambda_1.
