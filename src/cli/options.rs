@@ -219,7 +219,7 @@ names! {
 names! {
     /// `--engine`.
     EngineName => Engine {
-        /// three.js
+        /// three.js: it reflects the surroundings wrongly in ellipses
         Three,
         /// Babylon.js
         Babylon,

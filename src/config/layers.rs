@@ -32,8 +32,10 @@ pub struct Resolved {
 /// [`ValueError`] for what is out of range or does not go together.
 pub fn resolve(layers: &[Layer]) -> Result<Resolved, ValueError> {
     let (mut values, mut origins) = (Values::defaults().said(), Map::new());
+    let profile = layers.iter().rev().find_map(|layer| layer.values.profile).unwrap_or_default();
     for Layer { origin, values: layer } in layers {
-        let preset = layer.engine.map(|engine| (engine.values(), format!("{origin}, engine = {}", name(&engine))));
+        let preset =
+            layer.engine.map(|engine| (engine.values(profile), format!("{origin}, engine = {}", name(&engine))));
         let parts = preset.iter().map(|(values, origin)| (values, origin)).chain([(layer, origin)]);
         for (part, origin) in parts {
             for (name, value) in part.said().into_iter().filter(|(name, _)| name != "engine") {

@@ -54,7 +54,7 @@ pub enum FrameName {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Engine {
-    /// three.js.
+    /// three.js, whose shader reflects the surroundings wrongly where lobes are ellipses (docs/engines.md).
     Three,
     /// Babylon.js.
     Babylon,
@@ -69,13 +69,14 @@ pub enum Engine {
 }
 
 impl Engine {
-    /// What it needs.
-    pub fn values(self) -> Values {
+    /// What it needs of a bake of `profile`. Its own shader decides on the model; pyramids are for a plugin's.
+    pub fn values(self, profile: Profile) -> Values {
         let (gltf, model) = match self {
-            Self::Three | Self::Babylon | Self::Playcanvas => (Form::Fallback, None),
+            Self::Babylon | Self::Playcanvas => (Form::Fallback, None),
             Self::Bevy => (Form::Dual, Some(Model::Isotropic)),
-            Self::Filament | Self::Godot => (Form::Fallback, Some(Model::Isotropic)),
+            Self::Three | Self::Filament | Self::Godot => (Form::Fallback, Some(Model::Isotropic)),
         };
+        let model = model.filter(|_| profile.is_portable());
         Values { target: Some(Target::Basis), gltf: Some(gltf), model, ..Values::default() }
     }
 }

@@ -58,6 +58,18 @@ window.errors = ({ kind, distance, size, samples }) => {
   return drawn.map((picture) => [relativeL1(picture, truth), ssim(picture, truth, size)]);
 };
 
+/** Mean relative L1 of each variant over lights of these directions in degrees. */
+window.underLights = ({ kind, distance, size, samples, lights }) => {
+  stage.show(kind);
+  const errors = lights.map((from) => {
+    stage.light({ ...LIGHT, ...from });
+    const { drawn, truth } = pictures(size, samples, { ...CAMERA, distance });
+    return drawn.map((picture) => relativeL1(picture, truth));
+  });
+  stage.light(LIGHT);
+  return DRAWN.map((_, i) => errors.reduce((sum, of) => sum + of[i], 0) / lights.length);
+};
+
 /** How far one variant is from another: relative L1. */
 window.apart = ({ kind, distance, size, names }) => {
   stage.show(kind);

@@ -5,14 +5,19 @@ import { launch, open } from '../browser.js';
 import { serve } from '../server.js';
 import { example, repository, roughcast } from '../test/roughcast.js';
 
-/** Names of what is drawn: `reflected` is portable with the reflections of examples/three/plugin. */
+/** What is drawn: `portable` by three.js itself, `reflected` is ellipses with the reflections of examples/three/plugin. */
 export const NAMES = ['plain', 'portable', 'reflected', 'pyramid'];
 export const KINDS = ['plane', 'sphere'];
 /** In units of a sphere of radius 1; the plane's side is 4. */
 export const DISTANCES = [3, 5, 8, 13, 21, 34];
 
-/** $MODEL, for the portable bake. */
-const PORTABLE = process.env.MODEL ? ['--model', process.env.MODEL] : [];
+/** How each variant is baked. $MODEL takes the place of what the preset has. */
+const BAKES = {
+  portable: ['--engine', 'three', ...(process.env.MODEL ? ['--model', process.env.MODEL] : [])],
+  reflected: [],
+  pyramid: ['--profile', 'pyramid'],
+  both: ['--profile', 'both'],
+};
 
 const DATA = path.join(repository, '../shared/data/maps');
 /** Bare maps, with a metal's roughness. */
@@ -54,9 +59,8 @@ function wrapped(folder, name, map, roughness) {
 export async function forEach(folder, chosen, use) {
   for (const [name, source] of chosen) {
     mkdirSync(path.join(folder, name));
-    for (const profile of ['portable', 'pyramid', 'both']) {
-      const model = profile === 'portable' ? PORTABLE : [];
-      roughcast('bake', source, '-o', path.join(folder, name, profile), '--profile', profile, ...model, '--gltf', 'strict', '--quiet');
+    for (const [variant, options] of Object.entries(BAKES)) {
+      roughcast('bake', source, '-o', path.join(folder, name, variant), ...options, '--gltf', 'strict', '--quiet');
     }
   }
   const folders = Object.fromEntries(['looks', 'page', 'plugin'].map((name) => [name, path.join(example, name)]));
@@ -67,9 +71,8 @@ export async function forEach(folder, chosen, use) {
     for (const [name] of chosen) {
       const page = await open(browser, `${server.url}/looks/looks.html`);
       await page.waitForFunction('window.ready');
-      const baked = (profile) => `/baked/${name}/${profile}/${name}.gltf`;
-      const [portable, pyramid, both] = ['portable', 'pyramid', 'both'].map(baked);
-      const urls = { original: `/source-${name}/${name}.gltf`, portable, reflected: portable, pyramid, both };
+      const baked = Object.keys(BAKES).map((variant) => [variant, `/baked/${name}/${variant}/${name}.gltf`]);
+      const urls = { original: `/source-${name}/${name}.gltf`, ...Object.fromEntries(baked) };
       await page.evaluate((u) => window.load(u), urls);
       await use(name, page);
       await page.context().close();

@@ -19,14 +19,18 @@ test('bakes are closer to the truth than plain mips', { skip: missing || browser
     };
     const [plane, sphere] = [await errors('plane'), await errors('sphere')];
     const total = (all, i) => all.reduce((sum, variants) => sum + variants[i], 0);
-    for (const [i, [plain, portable, reflected, pyramid]] of plane.entries()) {
-      assert.ok(i === 0 || Math.max(portable, reflected, pyramid) < plain, `plane at ${DISTANCES[i]}: ${plane[i]}`);
+    for (const [i, [plain, , reflected, pyramid]] of plane.entries()) {
+      // Not portable alone: a circle has the light wrong that stands across the grooves.
+      assert.ok(Math.max(reflected, pyramid) < plain, `plane at ${DISTANCES[i]}: ${plane[i]}`);
     }
-    for (const [i, [plain, , reflected, pyramid]] of sphere.entries()) {
-      // Not portable alone: three.js' own reflections of stretched lobes are too bright there.
-      assert.ok(Math.max(reflected, pyramid) < plain, `sphere at ${DISTANCES[i]}: ${sphere[i]}`);
+    for (const [i, [plain, portable, reflected, pyramid]] of sphere.entries()) {
+      assert.ok(Math.max(portable, reflected, pyramid) < plain, `sphere at ${DISTANCES[i]}: ${sphere[i]}`);
     }
-    for (const all of [plane, sphere]) assert.ok(total(all, 0) > 1.5 * Math.max(total(all, 2), total(all, 3)), `${all}`);
+    for (const all of [plane, sphere]) assert.ok(total(all, 0) > 1.8 * Math.max(total(all, 2), total(all, 3)), `${all}`);
+    assert.ok(total(sphere, 0) > 1.3 * total(sphere, 1), `${sphere}`);
+    const lights = [0, 60, 120, 180, 240, 300].map((azimuth) => ({ azimuth, elevation: 40 }));
+    const under = await page.evaluate((o) => window.underLights(o), { kind: 'plane', distance: 13, size: 64, samples: 64, lights });
+    assert.ok(under[0] > 1.3 * Math.max(...under.slice(1)), `under lights from all around: ${under}`);
     const [plain, , reflected, pyramid] = await page.evaluate((o) => window.flicker(o), { kind: 'plane', distance: 12, size: 48, samples: 64, frames: 6 });
     assert.ok(Math.max(reflected, pyramid) < plain, `flicker: ${reflected}, ${pyramid} of ${plain}`);
     const apart = (...names) => page.evaluate((o) => window.apart(o), { kind: 'sphere', distance: 5, size: 64, names });

@@ -67,12 +67,17 @@ fn the_last_override_that_matches_wins() {
 fn an_engine_stands_for_its_needs_in_its_own_layer() {
     let text = "target = 'float'\nmodel = 'none'\n[[override]]\nfiles = 'a.gltf'\nengine = 'bevy'\n\
                 [[override]]\nfiles = 'b.gltf'\nengine = 'godot'\nmodel = 'anisotropic'\n\
-                [[override]]\nfiles = 'd.gltf'\nengine = 'three'\n";
+                [[override]]\nfiles = 'd.gltf'\nengine = 'babylon'\n\
+                [[override]]\nfiles = 'e*.gltf'\nengine = 'three'\n\
+                [[override]]\nfiles = 'e_far.gltf'\nprofile = 'pyramid'\n";
     let held = |asset| ["target", "gltf", "model"].map(|name| value(text, asset, name));
     assert_eq!(held("a.gltf"), ["basis", "dual", "isotropic"]);
     assert_eq!(held("b.gltf"), ["basis", "fallback", "anisotropic"]);
     assert_eq!(held("c.gltf"), ["float", "fallback", "none"]);
     assert_eq!(held("d.gltf"), ["basis", "fallback", "none"]);
+    assert_eq!(held("e.gltf"), ["basis", "fallback", "isotropic"]);
+    // A plugin shades it, not the engine's own shader.
+    assert_eq!(held("e_far.gltf"), ["basis", "fallback", "none"]);
     assert_eq!(value(text, "a.gltf", "engine"), serde_json::Value::Null);
 }
 
