@@ -30,7 +30,7 @@ const profile = (file) => (document(file).extensionsUsed?.includes(EXTENSION) ? 
 function fixture() {
   if (missing) throw new Error(missing);
   const source = path.join(repository, 'fixtures/brushed');
-  for (const name of ['portable', 'pyramid']) roughcast('bake', source, '-o', path.join(folder, name), '--profile', name, '--quiet');
+  for (const name of ['portable', 'pyramid']) roughcast('bake', source, '-o', path.join(folder, name), '--profile', name, '--engine', 'three', '--quiet');
   const baked = (name) => path.join(folder, name, 'brushed.gltf');
   return { original: path.join(source, 'brushed.gltf'), portable: baked('portable'), pyramid: baked('pyramid') };
 }
