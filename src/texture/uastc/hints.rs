@@ -5,9 +5,13 @@
 //! hints". The hints are taken from the source texels, whose averages the decoded ones share up
 //! to rounding.
 
-use super::lanes::Texels;
+use fearless_simd::Simd;
+
+use super::lanes::{Texels, channels};
+use super::line::round;
 use super::pack::{Bits, SolidEtc1};
 use super::tables::Mode;
+use crate::simd::{LANES, Real};
 
 /// ETC1 intensity tables: the smaller and the larger offset, of either sign.
 pub(super) const ETC1_OFFSETS: [[i32; 2]; 8] =
@@ -58,81 +62,138 @@ impl Hints {
     }
 
     /// Hints for a block of `mode` made from `texels`.
-    #[inline(always)]
     pub fn of(texels: &Texels, mode: &Mode) -> Self {
-        let mut hints = Self { bc1_selectors: mode.subsets == 1 && mode.planes == 1, ..Self::default() };
-        if mode.has_alpha() {
-            hints.eac = eac(texels);
-        }
-        let quadrants = quadrant_sums(texels);
-        let side = [add(quadrants[0], quadrants[2]), add(quadrants[1], quadrants[3])];
-        let stacked = [add(quadrants[0], quadrants[1]), add(quadrants[2], quadrants[3])];
-        // The split whose halves differ more leaves less variance inside them.
-        hints.flip = distance(stacked) > distance(side);
-        let sums = if hints.flip { stacked } else { side };
+        let level = |c: usize| texels.map(|texel| f32::from(texel[c]));
+        Self::new(etc1(&[level(0), level(1), level(2)]), texels, mode)
+    }
 
-        let bases = sums.map(|sum| sum.map(|s| (s * 31 + 1020) / 2040));
-        hints.differential = (0..3).all(|c| (-4..=3).contains(&(bases[1][c] as i32 - bases[0][c] as i32)));
-        hints.bias = if hints.differential {
-            bias_for(bases, 31)
-        } else {
-            bias_for(sums.map(|sum| sum.map(|s| (s * 15 + 1020) / 2040)), 15)
-        };
-        hints.tables = intensity_tables(texels, hints.flip, sums);
-        hints
+    /// The same for eight blocks.
+    #[inline(always)]
+    pub fn of_eight<S: Simd>(simd: S, texels: &[Texels; LANES], modes: [&Mode; LANES]) -> [Self; LANES] {
+        let mut fields = [[0.0; LANES]; 5];
+        for (lanes, field) in fields.iter_mut().zip(etc1(&channels(simd, texels))) {
+            *lanes = field.into();
+        }
+        std::array::from_fn(|j| Self::new(fields.map(|field| field[j]), &texels[j], modes[j]))
+    }
+
+    #[inline(always)]
+    fn new([flip, differential, state, first, second]: [f32; 5], texels: &Texels, mode: &Mode) -> Self {
+        Self {
+            bc1_selectors: mode.subsets == 1 && mode.planes == 1,
+            flip: flip > 0.0,
+            differential: differential > 0.0,
+            tables: [first as u8, second as u8],
+            bias: LEAST_BIAS[state as usize],
+            eac: if mode.has_alpha() { eac(texels) } else { 0 },
+        }
     }
 }
 
-fn add(a: [u32; 3], b: [u32; 3]) -> [u32; 3] {
+/// The fields of [`Hints`] on ETC1, of one block or of eight: flip, differential, the index into [`LEAST_BIAS`] and both tables.
+/// All sums are whole numbers that floats hold.
+#[inline(always)]
+fn etc1<F: Real>(levels: &[[F; 16]; 3]) -> [F; 5] {
+    let (zero, one) = (levels[0][0].like(0.0), levels[0][0].like(1.0));
+    // Sums over the 2x2 quadrants, row 0 first.
+    let mut quadrants = [[zero; 3]; 4];
+    for (quadrant, first) in quadrants.iter_mut().zip([0, 2, 8, 10]) {
+        for (sum, level) in quadrant.iter_mut().zip(levels) {
+            *sum = (level[first] + level[first + 1]) + (level[first + 4] + level[first + 5]);
+        }
+    }
+    let side = [add(quadrants[0], quadrants[2]), add(quadrants[1], quadrants[3])];
+    let stacked = [add(quadrants[0], quadrants[1]), add(quadrants[2], quadrants[3])];
+    // The split whose halves differ more leaves less variance inside them.
+    let is_side = distance(stacked).at_most(distance(side));
+    let mut sums = side;
+    for (half, stacked) in sums.iter_mut().zip(stacked) {
+        for (sum, stacked) in half.iter_mut().zip(stacked) {
+            *sum = sum.or(stacked, is_side);
+        }
+    }
+    let (five, four) = (bases(&sums, 31.0), bases(&sums, 15.0));
+    let mut is_near = one.at_most(one);
+    for c in 0..3 {
+        let difference = five[c + 3] - five[c];
+        is_near = is_near & difference.at_most(zero.like(3.0)) & zero.like(-4.0).at_most(difference);
+    }
+    let mut state = zero;
+    for (five, four) in five.into_iter().zip(four).rev() {
+        // A digit to base 3: at 0, inside or at the limit.
+        let base = five.or(four, is_near);
+        let limit = zero.like(31.0).or(zero.like(15.0), is_near);
+        state = state * zero.like(3.0) + zero.or(one, base.is_zero()) + one.or(zero, limit.at_most(base));
+    }
+    let [first, second] = intensity_tables(levels, &sums, is_side);
+    [zero.or(one, is_side), one.or(zero, is_near), state, first, second]
+}
+
+#[inline(always)]
+fn add<F: Real>(a: [F; 3], b: [F; 3]) -> [F; 3] {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
-fn distance([a, b]: [[u32; 3]; 2]) -> u32 {
-    (0..3).map(|c| a[c].abs_diff(b[c]).pow(2)).sum()
-}
-
-/// Sums of red, green and blue over the four 2x2 quadrants, row 0 first.
 #[inline(always)]
-fn quadrant_sums(texels: &Texels) -> [[u32; 3]; 4] {
-    // Four channels of 16 bits in one word: four texels sum to 1020 at most.
-    let spread = |i: usize| {
-        let v = u64::from(u32::from_le_bytes(texels[i]));
-        let v = (v | v << 16) & 0x0000_ffff_0000_ffff;
-        (v | v << 8) & 0x00ff_00ff_00ff_00ff
-    };
-    [0, 2, 8, 10].map(|i| {
-        let sum = spread(i) + spread(i + 1) + spread(i + 4) + spread(i + 5);
-        [0, 16, 32].map(|shift| (sum >> shift) as u32 & 0xffff)
-    })
+fn distance<F: Real>([a, b]: [[F; 3]; 2]) -> F {
+    let [x, y, z] = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+    x * x + y * y + z * z
 }
 
-/// 1 for the texels of the second half of a block, split side by side or, flipped, one above the other.
-const SECOND_HALF: [[i32; 16]; 2] =
-    [[0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1], [0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1]];
+/// The nearest of 0..=`limit` to the means of both halves.
+#[inline(always)]
+fn bases<F: Real>(sums: &[[F; 3]; 2], limit: f32) -> [F; 6] {
+    let zero = sums[0][0].like(0.0);
+    let mut bases = [zero; 6];
+    for (base, sum) in bases.iter_mut().zip(sums.as_flattened()) {
+        // Its floor: fractions are multiples of 1/2040.
+        let exact = (*sum * zero.like(limit) + zero.like(1020.0)) / zero.like(2040.0);
+        *base = round(exact - zero.like(0.5 - 1.0 / 4096.0));
+    }
+    bases
+}
+
+/// Luma weights of the transcoder's choice of selectors, in 1/256.
+#[inline(always)]
+fn luma<F: Real>([r, g, b]: [F; 3]) -> F {
+    r * r.like(54.0) + g * r.like(183.0) + b * r.like(19.0)
+}
 
 /// The intensity table of each half, from its largest departure in luma.
 #[inline(always)]
-fn intensity_tables(texels: &Texels, flip: bool, sums: [[u32; 3]; 2]) -> [u8; 2] {
-    // Luma weights of the transcoder's choice of selectors, in 1/256.
-    let luma = |[r, g, b]: [i32; 3]| r * 54 + g * 183 + b * 19;
-    let [first, second] = sums.map(|sum| luma(sum.map(|s| s as i32)) / 8);
-    let mut reach = [[0; 16]; 2];
-    for (i, texel) in texels.iter().enumerate() {
-        let texel = u32::from_le_bytes(*texel);
-        let own = luma([0, 8, 16].map(|shift| (texel >> shift & 255) as i32));
-        let is_second = SECOND_HALF[usize::from(flip)][i];
-        reach[0][i] = (own - first).abs() * (1 - is_second);
-        reach[1][i] = (own - second).abs() * is_second;
+fn intensity_tables<F: Real>(levels: &[[F; 16]; 3], sums: &[[F; 3]; 2], is_side: F::Mask) -> [F; 2] {
+    let zero = levels[0][0].like(0.0);
+    // Their floors: fractions are eighths.
+    let means = [
+        round(luma(sums[0]) * zero.like(0.125) - zero.like(0.4375)),
+        round(luma(sums[1]) * zero.like(0.125) - zero.like(0.4375)),
+    ];
+    // The second quadrant is of the second half where halves stand side by side, the third where one is above the other.
+    let of_quadrants = [means[0], means[1].or(means[0], is_side), means[0].or(means[1], is_side), means[1]];
+    let mut reach = [zero; 4];
+    for ((reach, mean), first) in reach.iter_mut().zip(of_quadrants).zip([0, 2, 8, 10]) {
+        for i in [first, first + 1, first + 4, first + 5] {
+            let departure = luma([levels[0][i], levels[1][i], levels[2][i]]) - mean;
+            *reach = reach.max(departure.max(zero - departure));
+        }
     }
+    let first = reach[0].max(reach[2].or(reach[1], is_side));
+    let second = reach[3].max(reach[1].or(reach[2], is_side));
     // 9/16 of the reach: full reach loses 1.5 dB of ETC1 on normals and gains 0.1 on ORM maps.
-    reach.map(|reach| table_for(reach.into_iter().fold(0, i32::max) * 9 / 16 / 256))
+    [table_for(first * zero.like(9.0 / 4096.0)), table_for(second * zero.like(9.0 / 4096.0))]
 }
 
 /// The table whose larger offset suits departures up to `reach`.
-fn table_for(reach: i32) -> u8 {
+#[inline(always)]
+fn table_for<F: Real>(reach: F) -> F {
     // Half way between the larger offsets of neighbouring tables.
-    const LIMITS: [i32; 7] = [12, 23, 35, 51, 70, 93, 144];
-    LIMITS.iter().map(|&limit| u8::from(reach > limit)).sum()
+    const LIMITS: [f32; 7] = [13.0, 24.0, 36.0, 52.0, 71.0, 94.0, 145.0];
+    let (zero, one) = (reach.like(0.0), reach.like(1.0));
+    let mut table = zero;
+    for limit in LIMITS {
+        table = table + one.or(zero, zero.like(limit).at_most(reach));
+    }
+    table
 }
 
 /// Departure of each ETC1 base (first subblock's RGB, then the second's) under each bias.
@@ -202,16 +263,6 @@ const fn least_biases() -> [u8; 729] {
         state += 1;
     }
     table
-}
-
-/// The bias that keeps `bases` (0..=`limit`) nearest to themselves.
-fn bias_for(bases: [[u32; 3]; 2], limit: u32) -> u8 {
-    let state = bases
-        .iter()
-        .flatten()
-        .rev()
-        .fold(0, |state, &base| state * 3 + usize::from(base > 0) + usize::from(base == limit));
-    LEAST_BIAS[state]
 }
 
 /// EAC table and multiplier that span the range of alpha.

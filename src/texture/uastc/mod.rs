@@ -36,7 +36,7 @@ pub use rate::lower_rate;
 use rayon::prelude::*;
 use row::Row;
 
-use crate::simd::dispatch;
+use crate::simd::{LANES, dispatch};
 
 /// Bytes of one block.
 pub const BLOCK_BYTES: usize = 16;
@@ -145,8 +145,13 @@ fn encode_row<S: Simd>(
     let mut row = Row::new(texels);
     row.search_opaque(simd, &opaque, metric, effort);
     row.search_rgba(simd, &other, effort);
-    for k in opaque.into_iter().chain(other) {
-        let hints = Hints::of(&row.texels[k], row.blocks[k].mode);
-        out[k] = row.blocks[k].clone().pack(&hints);
+    opaque.append(&mut other);
+    for eight in opaque.chunks(LANES) {
+        // The last block fills up.
+        let at: [usize; LANES] = std::array::from_fn(|j| eight[j.min(eight.len() - 1)]);
+        let hints = Hints::of_eight(simd, &at.map(|k| row.texels[k]), at.map(|k| row.blocks[k].mode));
+        for (&k, hints) in eight.iter().zip(&hints) {
+            out[k] = row.blocks[k].clone().pack(hints);
+        }
     }
 }
