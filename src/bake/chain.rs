@@ -1,7 +1,5 @@
 //! Encoded mip chains.
 
-use rayon::prelude::*;
-
 use super::png::fallback;
 use super::settings::{Form, Settings};
 use crate::texture::ktx2::{Key, Ktx2Writer, StoredLevel};
@@ -116,24 +114,38 @@ pub type LevelRow<'a> = dyn Fn(usize, u32, &mut [[f32; 4]]) + Sync + 'a;
 pub fn encode_chain(sizes: &[(u32, u32)], encoding: Encoding, row: &LevelRow<'_>) -> Result<Chain, EncodeError> {
     let first = encoding.first(sizes);
     let kept = &sizes[first..];
-    let encode_level = |(level, &(width, height)): (usize, &(u32, u32))| {
-        let row = |y: u32, out: &mut [[f32; 4]]| row(first + level, y, out);
-        let Encoding { format, metric, effort, .. } = encoding;
-        let texels = Texels { width, height, row: &row };
-        let mut level = encode(&texels, format, metric, effort)?;
-        if let (Format::UastcRgb, Some(loss)) = (format, encoding.rdo) {
-            lower_rate(&mut level, &texels, metric, loss);
-        }
-        Ok(StoredLevel::new(level, format, effort))
-    };
     let (width, height) = kept[0];
+    let row = |level: usize, y: u32, out: &mut [[f32; 4]]| row(first + level, y, out);
     let png = || {
-        let row = |y: u32, out: &mut [[f32; 4]]| row(first, y, out);
+        let row = |y: u32, out: &mut [[f32; 4]]| row(0, y, out);
         encoding.fallback.then(|| fallback(&Texels { width, height, row: &row }, encoding.effort)).transpose()
     };
-    let levels = || kept.par_iter().enumerate().map(encode_level).collect::<Result<_, EncodeError>>();
-    let (levels, fallback) = rayon::join(levels, png);
-    Ok(Chain { format: encoding.format, trimmed: first, width, height, levels: levels?, fallback: fallback? })
+    let (levels, fallback) = rayon::join(|| encode_levels(kept, 0, encoding, &row), png);
+    let (mut levels, fallback) = (levels?, fallback?);
+    levels.reverse();
+    Ok(Chain { format: encoding.format, trimmed: first, width, height, levels, fallback })
+}
+
+/// The levels of `sizes` from `level` on, coarsest first. Compression has one thread for a level: the next one is encoded meanwhile.
+fn encode_levels(
+    sizes: &[(u32, u32)],
+    level: usize,
+    encoding: Encoding,
+    row: &LevelRow<'_>,
+) -> Result<Vec<StoredLevel>, EncodeError> {
+    let Some(&(width, height)) = sizes.get(level) else { return Ok(Vec::new()) };
+    let Encoding { format, metric, effort, .. } = encoding;
+    let of_level = |y: u32, out: &mut [[f32; 4]]| row(level, y, out);
+    let texels = Texels { width, height, row: &of_level };
+    let mut blocks = encode(&texels, format, metric, effort)?;
+    if let (Format::UastcRgb, Some(loss)) = (format, encoding.rdo) {
+        lower_rate(&mut blocks, &texels, metric, loss);
+    }
+    let (stored, coarser) =
+        rayon::join(|| StoredLevel::new(blocks, format, effort), || encode_levels(sizes, level + 1, encoding, row));
+    let mut levels = coarser?;
+    levels.push(stored);
+    Ok(levels)
 }
 
 impl Chain {

@@ -7,7 +7,9 @@ use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use super::asset::{Baked, NewFile};
+use rayon::prelude::*;
+
+use super::asset::Baked;
 
 /// Why a file cannot be written.
 #[derive(Debug, thiserror::Error)]
@@ -167,9 +169,10 @@ pub fn publish(baked: &Baked, document: &Path, source: &Path, places: &mut Place
         let bytes = read_file(&path).map_err(|error| PublishError::Copy { path, error })?;
         write_file(&folder.join(copy), &bytes)?;
     }
-    for NewFile { path, bytes } in &baked.files {
-        write_file(&folder.join(path), bytes)?;
-    }
+    // Each waits for its own disk blocks. Of all failures the first file's is told.
+    let written: Vec<_> =
+        baked.files.par_iter().map(|file| write_file(&folder.join(&file.path), &file.bytes)).collect();
+    written.into_iter().collect::<Result<(), _>>()?;
     write_file(document, &baked.document)
 }
 

@@ -77,11 +77,7 @@ fn reduce<R: Rows>(finer: &R, sizes: &[(u32, u32)]) -> Vec<Level<R::Texel>> {
     let fused = (even.min(shared) as usize).clamp(1, sizes.len());
     let mut levels: Vec<Level<R::Texel>> = sizes[..fused]
         .iter()
-        .map(|&(width, height)| Level {
-            width,
-            height,
-            texels: vec![R::Texel::default(); width as usize * height as usize],
-        })
+        .map(|&(width, height)| Level { width, height, texels: blank(width as usize * height as usize) })
         .collect();
     let bands = levels[fused - 1].height as usize;
     let mut parts: Vec<Vec<&mut [R::Texel]>> = (0..bands).map(|_| Vec::with_capacity(fused)).collect();
@@ -118,6 +114,11 @@ fn reduce<R: Rows>(finer: &R, sizes: &[(u32, u32)]) -> Vec<Level<R::Texel>> {
         },
     );
     levels
+}
+
+/// Default texels, of all threads: the first who writes to memory waits for the system to clear it.
+fn blank<T: Merge>(count: usize) -> Vec<T> {
+    (0..count).into_par_iter().with_min_len(1 << 14).map(|_| T::default()).collect()
 }
 
 /// Levels that a band makes at most: 32 rows of level 0, whose level 1 and 2 fit into 1 MB for 4096 columns of lobes.

@@ -20,11 +20,12 @@ use crate::pyramid::{Pyramid, Rows};
 
 impl Job<'_> {
     /// Folds the bumps into each distinct lobe, choosing its model on the way. Normals point where the lobes do that are
-    /// folded first on their grid.
+    /// folded first on their grid. `images` are those of the first layer.
     pub(super) fn portable<'r>(
         &self,
         relief: &'r Relief,
         bumps: &Bumps<'r>,
+        mut images: Option<OwnImages>,
         output: &mut JobOutput,
     ) -> Result<(), JobError> {
         let layers = &self.plan.layers;
@@ -41,12 +42,7 @@ impl Job<'_> {
             let users: Vec<usize> =
                 (first..layers.len()).filter(|i| *i == first || layer.folds_like(&layers[*i])).collect();
             let has_later = first + users.len() < layers.len();
-            let none = OwnTextures { roughness: None, anisotropy: None };
-            let own = layer.own.as_ref().unwrap_or(&none);
-            let images = OwnImages {
-                roughness: own.roughness.as_ref().map(|t| self.image(t, &layer.name)).transpose()?,
-                anisotropy: own.anisotropy.as_ref().map(|t| self.image(t, &layer.name)).transpose()?,
-            };
+            let images = images.take().map_or_else(|| self.own_images(layer), Ok)?;
             let base = self.base(relief, layer, &images)?;
             let base = Pyramid::new(base);
             let size = base.sizes()[0];
@@ -63,9 +59,6 @@ impl Job<'_> {
             };
             let lobes = fold.as_ref().filter(leads).map(Fold::lobes);
             let led = lobes.map(|lobes| Normals::of_lobes(bumps, lobes));
-            if let Some(led) = &led {
-                normal_texture = Some(led.bake(normal_encoding)?);
-            }
             let widest = match layer.layer.kind {
                 LayerKind::Base => Model::Anisotropic,
                 // glTF's clearcoat has no anisotropy.
@@ -84,7 +77,13 @@ impl Job<'_> {
                 finest: self.finest_level(used_by(), size),
                 first,
             });
-            let choice = trial.map(|trial| trial.run()).transpose()?;
+            // The trial waits for its slowest texels more than once: normals are encoded meanwhile.
+            let (encoded, choice) = rayon::join(
+                || led.as_ref().map(|led| led.bake(normal_encoding)).transpose(),
+                || trial.map(|trial| trial.run()).transpose(),
+            );
+            normal_texture = encoded?.or(normal_texture);
+            let choice = choice?;
             if let Some(lobes) = lobes.filter(|_| has_later) {
                 normals = Some(Normals::kept(bumps, lobes));
             }
@@ -135,7 +134,11 @@ impl Job<'_> {
                 }
             }
             let Some(folded) = folded else { continue };
-            let own_location = own.roughness.as_ref().map(|t| t.location.clone());
+            let (roughness, anisotropy) = match &layer.own {
+                Ok(own) => (own.roughness.as_ref(), own.anisotropy.as_ref()),
+                Err(_) => (None, None),
+            };
+            let own_location = roughness.map(|t| t.location.clone());
             let named_after = own_location.ok_or_else(|| layer.name.clone());
             let mut sources = vec![self.plan.source.location.clone()];
             sources.extend(layer.own_locations().into_iter().cloned());
@@ -150,18 +153,18 @@ impl Job<'_> {
                 model,
                 lobe_errors: choice.as_ref().and_then(Choice::taken).map(|c| c.errors.clone()).unwrap_or_default(),
             };
-            let sampler = |own: &Option<TextureSource>| own.as_ref().unwrap_or(&self.plan.source).sampler;
+            let sampler = |own: Option<&TextureSource>| own.unwrap_or(&self.plan.source).sampler;
             output.textures.push(texture(
                 Content::Roughness,
                 folded.roughness,
-                sampler(&own.roughness),
+                sampler(roughness),
                 users.iter().flat_map(|u| layers[*u].roughness_slots()).collect(),
             ));
             if let Some(chain) = folded.anisotropy {
                 output.textures.push(texture(
                     Content::Anisotropy,
                     chain,
-                    sampler(&own.anisotropy),
+                    sampler(anisotropy),
                     users.iter().map(|u| layers[*u].anisotropy_slot()).collect(),
                 ));
             }
@@ -184,6 +187,14 @@ impl Job<'_> {
         Ok(())
     }
 
+    /// The images of the layer's own lobe.
+    pub(super) fn own_images(&self, layer: &LayerPlan) -> Result<OwnImages, JobError> {
+        let image = |texture: &Option<TextureSource>| texture.as_ref().map(|t| self.image(t, &layer.name)).transpose();
+        let none = OwnTextures { roughness: None, anisotropy: None };
+        let own = layer.own.as_ref().unwrap_or(&none);
+        Ok(OwnImages { roughness: image(&own.roughness)?, anisotropy: image(&own.anisotropy)? })
+    }
+
     /// The layer's own lobe on a grid that holds it and the bumps.
     fn base<'r>(&self, relief: &Relief, layer: &LayerPlan, own: &'r OwnImages) -> Result<BaseRows<'r>, JobError> {
         let sizes = [&own.roughness, &own.anisotropy].into_iter().flatten().map(|i| (i.width, i.height));
@@ -201,7 +212,8 @@ impl Job<'_> {
     }
 }
 
-struct OwnImages {
+/// Images of a layer's own lobe.
+pub(super) struct OwnImages {
     roughness: Option<Image>,
     anisotropy: Option<Image>,
 }

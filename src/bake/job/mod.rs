@@ -106,7 +106,10 @@ pub fn run(
     settings: &Settings,
 ) -> Result<JobOutput, JobError> {
     let job = Job { plan, source, settings, geometry };
-    let (relief, mut relief_notes) = job.relief()?;
+    // Decoders have one thread each.
+    let (relief, first) = rayon::join(|| job.relief(), || plan.layers.first().map(|layer| job.own_images(layer)));
+    let (relief, mut relief_notes) = relief?;
+    let first = first.transpose()?;
     let size = grid(settings, [(relief.width(), relief.height())])?;
     let mut output = JobOutput::default();
     relief_notes.extend(notes::of_relief(&relief, size));
@@ -146,7 +149,7 @@ pub fn run(
         });
     }
     let bumps = Bumps::new(&relief, size);
-    job.portable(&relief, &bumps, &mut output)?;
+    job.portable(&relief, &bumps, first, &mut output)?;
     if settings.profile.has_pyramid() {
         job.pyramids(&relief, &bumps, &mut output)?;
     }
