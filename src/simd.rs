@@ -42,6 +42,57 @@ pub fn instruction_sets() -> Vec<fearless_simd::Level> {
     sets.into_iter().flatten().collect()
 }
 
+/// Texels of a row that are worked on at a time: their numbers stay in the nearest cache.
+const STRIP: usize = 64;
+
+/// Stores in each of `out` what `of` makes of the numbers of its texel in `texels`, with the vectors of the processor. `of`
+/// should not branch.
+///
+/// Equal numbers of texels that stand side by side are put side by side first: compilers make vectors of loops over plain
+/// arrays, but not of loops over texels of three or five numbers.
+pub fn map_row<'a, T: 'a, const N: usize, const M: usize>(
+    texels: impl Iterator<Item = [f32; N]>,
+    out: &'a mut [T],
+    of: impl Fn([f32; N]) -> [f32; M],
+    store: impl FnMut(&mut T, [f32; M]),
+) {
+    dispatch!(fearless_simd::Level::new(), _simd => map_strips(texels, out, of, store));
+}
+
+#[inline(always)]
+fn map_strips<'a, T: 'a, const N: usize, const M: usize>(
+    mut texels: impl Iterator<Item = [f32; N]>,
+    out: &'a mut [T],
+    of: impl Fn([f32; N]) -> [f32; M],
+    mut store: impl FnMut(&mut T, [f32; M]),
+) {
+    let (mut from, mut to) = ([[0.0; STRIP]; N], [[0.0; STRIP]; M]);
+    for out in out.chunks_mut(STRIP) {
+        for (i, texel) in texels.by_ref().take(out.len()).enumerate() {
+            for n in 0..N {
+                from[n][i] = texel[n];
+            }
+        }
+        for i in 0..STRIP {
+            let mut texel = [0.0; N];
+            for n in 0..N {
+                texel[n] = from[n][i];
+            }
+            let made = of(texel);
+            for m in 0..M {
+                to[m][i] = made[m];
+            }
+        }
+        for (i, out) in out.iter_mut().enumerate() {
+            let mut made = [0.0; M];
+            for m in 0..M {
+                made[m] = to[m][i];
+            }
+            store(out, made);
+        }
+    }
+}
+
 /// A number, or one for each lane of a vector.
 pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> {
     /// A truth for each lane.

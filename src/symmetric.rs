@@ -51,6 +51,7 @@ impl Symmetric2 {
     }
 
     /// `S M S` for the diagonal matrix S = diag(scale): the covariance of scaled offsets.
+    #[inline(always)]
     pub fn scaled(self, scale: [f32; 2]) -> Self {
         Self::new(self.uu * scale[0] * scale[0], self.uv * scale[0] * scale[1], self.vv * scale[1] * scale[1])
     }
@@ -61,6 +62,7 @@ impl Symmetric2 {
     }
 
     /// Determinant, not below 0: what rounding leaves of a rank-1 matrix counts as rank 1.
+    #[inline(always)]
     pub fn determinant(self) -> f32 {
         (self.uu * self.vv - self.uv * self.uv).max(0.0)
     }

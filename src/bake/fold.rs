@@ -7,8 +7,9 @@ use super::bumps::Bumps;
 use super::chain::{Chain, Encoding, encode_chain};
 use super::lobes::{Lobes, own_lobe};
 use super::settings::{Model, Settings};
-use crate::lobe::{Alpha, Anisotropy, Roughness, SquaredAlpha, isotropic_distance};
+use crate::lobe::{Anisotropy, Roughness, SquaredAlpha, isotropic_distance};
 use crate::pyramid::Pyramid;
+use crate::simd::map_row;
 use crate::symmetric::Symmetric2;
 use crate::texture::EncodeError;
 
@@ -160,17 +161,16 @@ impl<'a> Fold<'a> {
                 });
                 return;
             }
-            let mut determinants = vec![0.0; out.len()];
-            self.row(level, y, out.len(), |x, _, full, [red, blue]| {
-                determinants[x] = full.0.determinant();
-                out[x] = [red, 0.0, blue, 1.0];
-            });
-            // Roots side by side: one by one they take as long as all the rest.
-            for determinant in &mut determinants {
-                let alpha = Alpha(determinant.sqrt().sqrt());
-                *determinant = Roughness::from(alpha).0.min(1.0);
-            }
-            out.iter_mut().zip(determinants).for_each(|(texel, roughness)| texel[1] = roughness);
+            let (base, full) = self.rows(level, y, out.len());
+            map_row(
+                base.iter().zip(&full).map(|(base, SquaredAlpha(a))| [base[3], base[4], a.uu, a.uv, a.vv]),
+                out,
+                |[red, blue, uu, uv, vv]| {
+                    let full = SquaredAlpha(Symmetric2::new(uu, uv, vv));
+                    [red, Roughness::from(full.closest_isotropic()).0.min(1.0), blue]
+                },
+                |texel, [red, green, blue]| *texel = [red, green, blue, 1.0],
+            );
         }
     }
 
@@ -209,12 +209,18 @@ impl<'a> Fold<'a> {
         width: usize,
         mut visit: impl FnMut(usize, SquaredAlpha, SquaredAlpha, [f32; 2]),
     ) {
+        let (base, alphas) = self.rows(level, y, width);
+        for (x, (texel, alpha)) in base.iter().zip(&alphas).enumerate() {
+            visit(x, own_lobe(texel), *alpha, [texel[3], texel[4]]);
+        }
+    }
+
+    /// The material's own texels of a row, and the folded lobes.
+    fn rows(&self, level: usize, y: u32, width: usize) -> (Vec<BaseTexel>, Vec<SquaredAlpha>) {
         let mut base = vec![BaseTexel::default(); width];
         let mut alphas = vec![SquaredAlpha::default(); width];
         self.base.row(level, y, &mut base);
         self.lobes.squared_alphas(&base, level, y, &mut alphas);
-        for (x, (texel, alpha)) in base.iter().zip(&alphas).enumerate() {
-            visit(x, own_lobe(texel), *alpha, [texel[3], texel[4]]);
-        }
+        (base, alphas)
     }
 }

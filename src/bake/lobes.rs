@@ -6,11 +6,12 @@ use super::base::{BaseRows, BaseTexel};
 use super::bumps::Bumps;
 use super::relief::Relief;
 use super::settings::Settings;
-use crate::bump::Offset;
+use crate::bump::{Offset, normal_from_offset};
 use crate::judge::{Footprint, Lobe, Part, Reference, overlaps, refine};
 use crate::lobe::{Family, OrientedLobe, SquaredAlpha};
 use crate::pyramid::{Area, Coarser, Level, Moments, Pyramid, Rows, Shaped, ShapedMoments, level_sizes};
 use crate::roughness::Distribution;
+use crate::simd::map_row;
 use crate::symmetric::Symmetric2;
 use crate::texture::uastc::Effort;
 
@@ -72,10 +73,12 @@ impl<'a> Lobes<'a> {
         let scale = 1.0 / self.slope_scale();
         let mut lobes = vec![OrientedLobe::default(); out.len()];
         self.row(level, y, &mut lobes);
-        for (offset, lobe) in out.iter_mut().zip(lobes) {
-            let Offset { u, v } = lobe.offset();
-            *offset = [u * scale, v * scale];
-        }
+        map_row(
+            lobes.iter().map(|lobe| lobe.normal),
+            out,
+            |[x, y, z]| [-x / z * scale, -y / z * scale],
+            |offset, made| *offset = made,
+        );
     }
 
     /// The single texel of the coarsest level.
@@ -212,10 +215,18 @@ impl Rows for Finest<'_> {
         let (mut own, mut bumps) = (vec![BaseTexel::default(); out.len()], vec![Moments::default(); out.len()]);
         self.base.row(y, &mut own);
         self.bumps.row(y, &mut bumps);
+        let scale = self.slope_scale;
+        map_row(
+            bumps.iter().map(|m| [m.mean.u * scale, m.mean.v * scale]),
+            out,
+            |[u, v]| normal_from_offset(Offset { u, v }),
+            |lobe, normal| lobe.normal = normal,
+        );
+        // Bumps that are not resampled do not vary within a texel.
+        let varies = !self.bumps.is_source();
         for ((lobe, texel), m) in out.iter_mut().zip(&own).zip(&bumps) {
-            let mean = Offset { u: m.mean.u * self.slope_scale, v: m.mean.v * self.slope_scale };
-            let covariance = m.covariance.scaled([self.slope_scale; 2]);
-            *lobe = OrientedLobe::new(mean, own_lobe(texel).fold(covariance));
+            let own = own_lobe(texel);
+            lobe.squared_alpha = if varies { own.fold(m.covariance.scaled([scale; 2])) } else { own };
         }
     }
 }

@@ -8,6 +8,7 @@ use super::lobes::Lobes;
 use super::relief::Relief;
 use crate::bump::{Offset, normal_from_offset};
 use crate::pyramid::{Area, Coarser, Level, Moments, Rows, level_sizes};
+use crate::simd::map_row;
 use crate::texture::EncodeError;
 
 /// Where the texels of a normal texture point, level by level.
@@ -83,10 +84,15 @@ impl<'a> Normals<'a> {
             Offsets::Lobes(_) => Means(self.finest).row(y, &mut offsets),
             Offsets::Coarser(means) => means.row(&Means(self.finest), level, y, &mut offsets),
         }
-        for (value, [u, v]) in out.iter_mut().zip(offsets) {
-            let [x, y, z] = normal_from_offset(Offset { u, v });
-            *value = [0.5 * x + 0.5, 0.5 * y + 0.5, 0.5 * z + 0.5, 1.0];
-        }
+        map_row(
+            offsets.into_iter(),
+            out,
+            |[u, v]| {
+                let [x, y, z] = normal_from_offset(Offset { u, v });
+                [0.5 * x + 0.5, 0.5 * y + 0.5, 0.5 * z + 0.5]
+            },
+            |value, [x, y, z]| *value = [x, y, z, 1.0],
+        );
     }
 
     /// The texture, encoded.

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use super::{MAX_SLOPE, Offset, Outliers};
 use crate::map::NormalMap;
 use crate::pyramid::{Moments, Rows};
+use crate::simd::map_row;
 use crate::symmetric::Symmetric2;
 
 /// f_u = -x/z, f_v = -y/z: the length of the normal cancels, so maps need not be normalised. Slopes beyond
@@ -22,13 +23,15 @@ pub fn offset_from_normal([x, y, z]: [f32; 3]) -> Offset {
 }
 
 /// The unit normal of an offset: (-f_u, -f_v, 1) normalised.
+#[inline(always)]
 pub fn normal_from_offset(offset: Offset) -> [f32; 3] {
     let scale = 1.0 / (offset.u * offset.u + offset.v * offset.v + 1.0).sqrt();
     [-offset.u * scale, -offset.v * scale, scale]
 }
 
+#[inline(always)]
 fn is_steep([x, y, z]: [f32; 3]) -> bool {
-    z <= 0.0 || x * x + y * y > MAX_SLOPE * MAX_SLOPE * z * z
+    (z <= 0.0) | (x * x + y * y > MAX_SLOPE * MAX_SLOPE * z * z)
 }
 
 /// The offsets of a normal map, row by row.
@@ -80,8 +83,19 @@ impl Rows for NormalOffsets<'_> {
     fn row(&self, y: u32, out: &mut [Moments]) {
         let mut normals = vec![[0.0; 3]; out.len()];
         self.map.row(y, &mut normals);
-        for (texel, normal) in out.iter_mut().zip(normals) {
-            *texel = Moments::flat(offset_from_normal(normal));
+        let mut any_steep = 0.0;
+        map_row(
+            normals.iter().copied(),
+            out,
+            |[x, y, z]| [-x / z, -y / z, f32::from(u8::from(is_steep([x, y, z])))],
+            |texel, [u, v, steep]| {
+                *texel = Moments::flat(Offset { u, v });
+                any_steep += steep;
+            },
+        );
+        if any_steep > 0.0 {
+            let steep = out.iter_mut().zip(normals).filter(|(_, normal)| is_steep(*normal));
+            steep.for_each(|(texel, normal)| texel.mean = offset_from_normal(normal));
         }
     }
 }

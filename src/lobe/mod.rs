@@ -51,6 +51,7 @@ impl SquaredAlpha {
 
     /// A' = A + 2 K: the lobe of a surface whose bumps have covariance `k` (times its correction) and whose own lobe is
     /// `self`. Exact for Beckmann lobes and normal distributions, where P22 is a normal density of covariance A/2.
+    #[inline(always)]
     pub fn fold(self, k: Symmetric2) -> Self {
         Self(self.0 + 2.0 * k)
     }
@@ -58,6 +59,7 @@ impl SquaredAlpha {
     /// The alpha of the closest isotropic lobe: alpha^4 = |A|. Of all circles, the one with the lobe's own peak: the
     /// distance to the elliptical lobe is symmetric about it, as stretching slopes by any matrix changes no distance
     /// between densities (test `the_closest_circle_has_the_determinant`).
+    #[inline(always)]
     pub fn closest_isotropic(self) -> Alpha {
         Alpha(self.0.determinant().sqrt().sqrt())
     }

@@ -2,7 +2,9 @@
 
 use rayon::prelude::*;
 
+use super::texels::each;
 use super::{Image, MapError, Samples};
+use crate::simd::dispatch;
 
 /// Which channels of an image hold the normal.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -90,12 +92,18 @@ impl NormalMap {
     }
 
     fn decode<T: Copy>(&self, samples: &[T], out: &mut [[f32; 3]], component: impl Fn(T) -> f32) {
-        let texels = samples.chunks_exact(self.image.channels as usize);
-        let up = if self.green_down { -1.0 } else { 1.0 };
-        for (normal, texel) in out.iter_mut().zip(texels) {
-            let (x, y) = (component(texel[0]), up * component(texel[1]));
-            let z = if self.has_z { component(texel[2]) } else { (1.0 - x * x - y * y).max(0.0).sqrt() };
-            *normal = [x, y, z];
+        match self.image.channels {
+            2 => each(samples, out, |&[x, y]| [component(x), component(y), 0.0]),
+            3 => dispatch!(fearless_simd::Level::new(), _simd => {
+                out.as_flattened_mut().iter_mut().zip(samples).for_each(|(out, &sample)| *out = component(sample));
+            }),
+            _ => each(samples, out, |&[x, y, z, _]| [component(x), component(y), component(z)]),
+        }
+        if self.green_down {
+            out.iter_mut().for_each(|normal| normal[1] = -normal[1]);
+        }
+        if !self.has_z {
+            out.iter_mut().for_each(|[x, y, z]| *z = (1.0 - *x * *x - *y * *y).max(0.0).sqrt());
         }
     }
 }

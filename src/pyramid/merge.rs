@@ -185,4 +185,17 @@ where
         }
         sum
     }
+
+    #[inline(always)]
+    fn merge_lanes<S: Simd>(simd: S, weights: &[[f32; LANES]], part: impl Fn(usize, usize) -> Self) -> [Self; LANES] {
+        let parts = load(simd, weights.len(), part);
+        let mut sum = [Wide::splat(simd, 0.0); N];
+        for (weights, part) in weights.iter().zip(parts) {
+            let weights = Wide::simd_from(simd, *weights);
+            for i in 0..N {
+                sum[i] += weights * part[i];
+            }
+        }
+        store(sum)
+    }
 }

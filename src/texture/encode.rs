@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use super::uastc::{self, Effort, Metric};
 use super::{Format, Target};
+use crate::simd::dispatch;
 
 /// Why a level cannot be encoded.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -51,21 +52,20 @@ pub struct Texels<'a> {
 impl Texels<'_> {
     /// Opaque RGBA8: values are clamped to [0, 1] and rounded to the nearest step.
     pub fn to_rgba8(&self) -> Vec<u8> {
-        self.convert(4, |texel, out: &mut [u8]| {
-            for (byte, value) in out.iter_mut().zip(&texel[..3]) {
-                *byte = unorm8(*value);
-            }
-            out[3] = 255;
+        self.convert(4, |texels, out: &mut [u8]| {
+            dispatch!(fearless_simd::Level::new(), _simd => unorm8_row(texels, out));
         })
     }
 
     fn to_half(&self, channels: usize) -> Vec<u8> {
-        let halves = self.convert(channels, |texel, out: &mut [f16]| {
-            for (half, value) in out.iter_mut().zip(texel) {
-                *half = f16::from_f32(*value);
-            }
-            if let Some(alpha) = out.get_mut(3) {
-                *alpha = f16::ONE;
+        let halves = self.convert(channels, |texels, out: &mut [f16]| {
+            for (texel, out) in texels.iter().zip(out.chunks_exact_mut(channels)) {
+                for (half, value) in out.iter_mut().zip(texel) {
+                    *half = f16::from_f32(*value);
+                }
+                if let Some(alpha) = out.get_mut(3) {
+                    *alpha = f16::ONE;
+                }
             }
         });
         halves.iter().flat_map(|h| h.to_le_bytes()).collect()
@@ -74,7 +74,7 @@ impl Texels<'_> {
     fn convert<T: Clone + Default + Send>(
         &self,
         channels: usize,
-        quantise: impl Fn(&[f32; 4], &mut [T]) + Sync,
+        quantise: impl Fn(&[[f32; 4]], &mut [T]) + Sync,
     ) -> Vec<T> {
         let width = self.width as usize;
         let mut out = vec![T::default(); width * self.height as usize * channels];
@@ -82,18 +82,31 @@ impl Texels<'_> {
             || vec![[0.0; 4]; width],
             |texels, (y, out)| {
                 (self.row)(y as u32, texels);
-                for (texel, out) in texels.iter().zip(out.chunks_exact_mut(channels)) {
-                    quantise(texel, out);
-                }
+                quantise(texels, out);
             },
         );
         out
     }
 }
 
-/// The nearest of 256 steps from 0 to 1; NaN counts as 0.
+/// The nearest of 256 steps from 0 to 1, the even one of two; NaN counts as 0.
+#[inline(always)]
+#[expect(clippy::manual_clamp, reason = "`clamp` keeps NaN")]
 fn unorm8(value: f32) -> u8 {
-    (value.clamp(0.0, 1.0) * 255.0 + 0.5) as u8
+    // Floats from here on are whole, and their last bits count. A cast keeps compilers from vectors.
+    const WHOLE: f32 = (1 << 23) as f32;
+    (value.max(0.0).min(1.0) * 255.0 + WHOLE).to_bits() as u8
+}
+
+/// Texels as opaque RGBA8.
+#[inline(always)]
+fn unorm8_row(texels: &[[f32; 4]], out: &mut [u8]) {
+    for (byte, value) in out.iter_mut().zip(texels.as_flattened()) {
+        *byte = unorm8(*value);
+    }
+    for texel in out.as_chunks_mut::<4>().0 {
+        texel[3] = 255;
+    }
 }
 
 /// The bytes of one level, not supercompressed. UASTC is fitted by `metric`, which other encoders do not know.
