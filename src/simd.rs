@@ -210,3 +210,19 @@ impl<S: Simd> Real for Wide<S> {
         mask.all_true()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_of_any_length_hold_what_single_texels_would() {
+        let of = |[x, y]: [f32; 2]| [x / y, (x * x + y * y).sqrt(), x.max(y)];
+        for length in [0, 1, 63, 64, 65, 200] {
+            let texels: Vec<[f32; 2]> = (0..length).map(|i| [i as f32 - 70.5, 0.1 + i as f32]).collect();
+            let mut out = vec![[0.0; 3]; length];
+            map_row(texels.iter().copied(), &mut out, of, |texel, made| *texel = made);
+            assert_eq!(out, texels.into_iter().map(of).collect::<Vec<_>>(), "{length}");
+        }
+    }
+}

@@ -124,6 +124,16 @@ mod tests {
     }
 
     #[test]
+    fn rows_hold_what_single_normals_would() {
+        let normals = [[0.0, -0.1, 1.0], [1.0, 0.0, 0.05], [0.6, 0.0, -0.8], [0.0, 0.0, 0.0], [0.3, 0.4, 0.5]];
+        let image = Image { width: 5, height: 1, channels: 3, samples: Samples::F32(normals.concat()) };
+        let map = NormalMap::new(image, NormalLayout::Xyz, false).unwrap();
+        let mut row = [Moments::default(); 5];
+        NormalOffsets::new(&map).row(0, &mut row);
+        assert_eq!(row, normals.map(|normal| Moments::flat(offset_from_normal(normal))));
+    }
+
+    #[test]
     fn outliers_are_counted() {
         let normals = [[0.0, -0.1, 1.0], [1.0, 0.0, 0.05], [0.6, 0.0, -0.8], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0625]];
         let image = Image { width: 5, height: 1, channels: 3, samples: Samples::F32(normals.concat()) };

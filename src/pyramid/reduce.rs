@@ -116,7 +116,7 @@ fn reduce<R: Rows>(finer: &R, sizes: &[(u32, u32)]) -> Vec<Level<R::Texel>> {
     levels
 }
 
-/// Default texels, of all threads: the first who writes to memory waits for the system to clear it.
+/// Default texels, written by all threads: whoever writes to memory first waits while the system clears it.
 fn blank<T: Merge>(count: usize) -> Vec<T> {
     (0..count).into_par_iter().with_min_len(1 << 14).map(|_| T::default()).collect()
 }

@@ -93,7 +93,7 @@ impl Texels<'_> {
 #[inline(always)]
 #[expect(clippy::manual_clamp, reason = "`clamp` keeps NaN")]
 fn unorm8(value: f32) -> u8 {
-    // Floats from here on are whole, and their last bits count. A cast keeps compilers from vectors.
+    // From here on floats are whole numbers, which their last bits count. (Casts keep compilers from vectors.)
     const WHOLE: f32 = (1 << 23) as f32;
     (value.max(0.0).min(1.0) * 255.0 + WHOLE).to_bits() as u8
 }
