@@ -1,7 +1,7 @@
-// What a fragment runs, counted in SPIR-V: functions are expanded where they are called, loops count once, and all
-// branches are taken.
+// What a fragment runs, counted in SPIR-V: functions are expanded where they are called, loops as often as they run (those
+// whose bound is no constant, once), and all branches are taken.
 
-const OP = { function: 54, functionEnd: 56, call: 57, entryPoint: 15 };
+const OP = { entryPoint: 15, constant: 43, function: 54, functionEnd: 56, call: 57, less: 177, loopMerge: 246, label: 248 };
 /** OpImageSampleImplicitLod to OpImageFetch. */
 const isFetch = (op) => op >= 87 && op <= 95;
 /** Arithmetic, bits, comparisons, dot products and OpExtInst (sqrt, pow, ...); not moves, loads or control flow. */
@@ -9,14 +9,31 @@ const isOperation = (op) => op === 12 || (op >= 109 && op <= 115) || (op >= 126 
 
 /** @param {Uint32Array} words */
 export function count(words) {
-  const functions = new Map();
-  let [entry, current] = [null, null];
+  const [functions, constants] = [new Map(), new Map()];
+  let entry = null;
+  // The function and the loops in it that are open.
+  let open = [];
   for (let at = 5; at < words.length; at += words[at] >>> 16) {
     const op = words[at] & 0xffff;
     if (op === OP.entryPoint) entry = words[at + 2];
-    if (op === OP.function) functions.set(words[at + 2], (current = { operations: 0, fetches: 0, calls: [] }));
-    if (op === OP.functionEnd) current = null;
-    if (current === null) continue;
+    if (op === OP.constant) constants.set(words[at + 2], words[at + 3]);
+    if (op === OP.function) {
+      open = [{ operations: 0, fetches: 0, calls: [] }];
+      functions.set(words[at + 2], open[0]);
+    }
+    if (op === OP.functionEnd) open = [];
+    const current = open.at(-1);
+    if (current === undefined) continue;
+    if (op === OP.label && words[at + 1] === current.end) {
+      const { operations, fetches, calls, runs = 1 } = open.pop();
+      const around = open.at(-1);
+      around.operations += runs * operations;
+      around.fetches += runs * fetches;
+      for (let i = 0; i < runs; i++) around.calls.push(...calls);
+    }
+    if (op === OP.loopMerge) open.push({ operations: 0, fetches: 0, calls: [], end: words[at + 1] });
+    // for ( int i = 0; i < constant; i ++ ): the first comparison of a loop.
+    if (op === OP.less && current.end !== undefined) current.runs ??= constants.get(words[at + 4]);
     if (op === OP.call) current.calls.push(words[at + 3]);
     if (isFetch(op)) current.fetches++;
     if (isOperation(op)) current.operations++;
