@@ -90,9 +90,17 @@ def growth(part):
     return rows
 
 
+def memory(part):
+    size = part["size"]
+    return [
+        at_most(f"a normal map of {size} x {size} by itself, {form}: peak memory, MiB", 2048, run.get("peak"), "{:.0f}")
+        for form, run in part["runs"].items()
+    ]
+
+
 def share(run):
     """Of two cores, in percent; `None` where the run failed."""
     return 100 * run["cpu"] / (2 * run["wall"]) if "cpu" in run else None
 
 
-PARTS = {"encoders": encoders, "kernels": kernels, "whole": whole, "growth": growth}
+PARTS = {"encoders": encoders, "kernels": kernels, "whole": whole, "growth": growth, "memory": memory}

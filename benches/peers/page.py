@@ -70,7 +70,7 @@ def head(results):
         "Roughcast beside others that do parts of its work, on one machine, in alternating runs. `python3 benches/peers/run.py` writes this",
         "page (Linux, 25 minutes; needs Rust, a C++ compiler, Python 3.10 with venv): it installs OpenImageIO from PyPI into a",
         "scratch environment under `target/peers`, builds, makes the inputs, measures, and prints the same tables.",
-        "`--only PART` measures one of encoders, kernels, decoders, whole, growth again.",
+        "`--only PART` measures one of encoders, kernels, decoders, whole, growth, memory again.",
         "",
         "Times are medians of the runs, which the tables count. CPU seconds are those of all threads; peak memory is the process's resident",
         "set. The inputs are PNGs of 8 bits: normals from tiles of `../shared/data/maps` (wool, sand, bricks), each turned and",
@@ -80,6 +80,7 @@ def head(results):
         "",
     ]
     lines += [f"- {fact}: {value}" for fact, value in results.get("machine", {}).items() if fact != "quick"]
+    lines += ["- commits: " + ", ".join(f"{name} {part['commit']}" for name, part in results.items() if "commit" in part)]
     lines += ["", "## What was promised", ""]
     verdicts = [[*row[:3], row[3] if row[3] == "met" else f"**{row[3]}**"] for row in bars(results)]
     lines += [table(["", "bound", "measured", ""], verdicts)]
@@ -206,4 +207,14 @@ def growth(part):
     ])
 
 
-SECTIONS = {"encoders": encoders, "kernels": kernels, "decoders": decoders, "whole": whole, "growth": growth}
+def memory(part):
+    told = [f"{form} {run['peak']:.0f} MiB, {seconds(run['wall'])} s" for form, run in part["runs"].items() if "wall" in run]
+    return "\n".join([
+        f"## Memory: a normal map of {square(part['size'])} by itself",
+        "",
+        "`--only memory`. `roughcast map --roughness-factor 0.4`, with `--model isotropic` or `anisotropic`: " + "; ".join(told) + ". Above, assets",
+        "have a roughness map of three channels as large as the normal map beside it, and by default PNGs of level 0 for engines without KTX2.",
+    ])
+
+
+SECTIONS = {"encoders": encoders, "kernels": kernels, "decoders": decoders, "whole": whole, "growth": growth, "memory": memory}

@@ -45,6 +45,11 @@ class Bench:
         argv = [self.tools.roughcast, "bake", *assets, "-o", self.out, "--threads", "2", "--quiet", *form]
         return Contender(argv, out=self.out)
 
+    def map(self, size, form):
+        """Roughcast on a normal map by itself."""
+        argv = [self.tools.roughcast, "map", self.normal(size), "-o", f"{self.out}/normal.ktx2", "--roughness-factor", "0.4", "--quiet", *form]
+        return Contender(argv, out=self.out)
+
     def maketx(self, size=None):
         argv = [self.tools.maketx, "--bumpslopes", "--bumpformat", "normal", "-d", "half", "--threads", "2"]
         return Contender([*argv, self.normal(size), "-o", f"{self.out}/slopes.exr"], out=self.out)
@@ -170,4 +175,11 @@ def growth(bench):
     return result
 
 
-PARTS = {"encoders": encoders, "kernels": kernels, "decoders": decoders, "whole": whole, "growth": growth}
+def memory(bench):
+    """What the largest normal map takes by itself."""
+    size = max(bench.sizes())
+    forms = {"two textures": bench.map(size, ["--model", "isotropic"]), "three textures": bench.map(size, ["--model", "anisotropic"])}
+    return {"size": size, "runs": alternate(forms, 1, lambda _: None)}
+
+
+PARTS = {"encoders": encoders, "kernels": kernels, "decoders": decoders, "whole": whole, "growth": growth, "memory": memory}

@@ -96,6 +96,12 @@ def machine(tools, cores, load):
     return facts
 
 
+def commit():
+    """What is measured."""
+    argv = ["git", "-C", str(ROOT), "describe", "--always", "--dirty"]
+    return subprocess.run(argv, capture_output=True, text=True).stdout.strip() or "unknown"
+
+
 def processor():
     """Its name."""
     try:

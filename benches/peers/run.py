@@ -13,7 +13,7 @@ from pathlib import Path
 import page
 import plot
 from parts import PARTS, Bench
-from prepare import ROOT, Tools, build, install, machine, pin_to_two_cores
+from prepare import ROOT, Tools, build, commit, install, machine, pin_to_two_cores
 
 
 def main():
@@ -41,11 +41,11 @@ def main():
     results["machine"] = machine(tools, cores, load)
     bench = Bench(tools, options.data if options.data.is_dir() else None, options.quick)
     step("inputs")
-    for size in bench.sizes() if "growth" in (options.only or PARTS) else [bench.size]:
+    for size in bench.sizes() if {"growth", "memory"} & set(options.only or PARTS) else [bench.size]:
         bench.folder(size)
     for name in options.only or PARTS:
         step(name)
-        results[name] = PARTS[name](bench) | {"quick": options.quick}
+        results[name] = PARTS[name](bench) | {"quick": options.quick, "commit": commit()}
         stored.write_text(json.dumps(results, indent=1))
         print(page.SECTIONS[name](results[name]), flush=True)
     (ROOT / "docs" / "performance.md").write_text(page.page(results))
