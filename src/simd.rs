@@ -45,8 +45,8 @@ pub fn instruction_sets() -> Vec<fearless_simd::Level> {
 /// Texels of a row that are worked on at a time: their numbers stay in the nearest cache.
 const STRIP: usize = 64;
 
-/// Stores in each of `out` what `of` makes of the numbers of its texel in `texels`, with the vectors of the processor. `of`
-/// should not branch.
+/// Stores in each of `out` what `of` makes of the numbers of its texel in `texels`, which are as many, with the vectors of the
+/// processor. `of` should not branch.
 ///
 /// Equal numbers of texels that stand side by side are put side by side first: compilers make vectors of loops over plain
 /// arrays, but not of loops over texels of three or five numbers.
@@ -56,7 +56,17 @@ pub fn map_row<'a, T: 'a, const N: usize, const M: usize>(
     of: impl Fn([f32; N]) -> [f32; M],
     store: impl FnMut(&mut T, [f32; M]),
 ) {
-    dispatch!(fearless_simd::Level::new(), _simd => map_strips(texels, out, of, store));
+    map_row_with(fearless_simd::Level::new(), texels, out, of, store);
+}
+
+fn map_row_with<'a, T: 'a, const N: usize, const M: usize>(
+    level: fearless_simd::Level,
+    texels: impl Iterator<Item = [f32; N]>,
+    out: &'a mut [T],
+    of: impl Fn([f32; N]) -> [f32; M],
+    store: impl FnMut(&mut T, [f32; M]),
+) {
+    dispatch!(level, _simd => map_strips(texels, out, of, store));
 }
 
 #[inline(always)]
@@ -220,9 +230,12 @@ mod tests {
         let of = |[x, y]: [f32; 2]| [x / y, (x * x + y * y).sqrt(), x.max(y)];
         for length in [0, 1, 63, 64, 65, 200] {
             let texels: Vec<[f32; 2]> = (0..length).map(|i| [i as f32 - 70.5, 0.1 + i as f32]).collect();
-            let mut out = vec![[0.0; 3]; length];
-            map_row(texels.iter().copied(), &mut out, of, |texel, made| *texel = made);
-            assert_eq!(out, texels.into_iter().map(of).collect::<Vec<_>>(), "{length}");
+            let expected: Vec<[f32; 3]> = texels.iter().copied().map(of).collect();
+            for set in instruction_sets() {
+                let mut out = vec![[0.0; 3]; length];
+                map_row_with(set, texels.iter().copied(), &mut out, of, |texel, made| *texel = made);
+                assert_eq!(out, expected, "{length} texels, {set:?}");
+            }
         }
     }
 }

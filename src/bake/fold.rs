@@ -162,6 +162,7 @@ impl<'a> Fold<'a> {
                 return;
             }
             let (base, full) = self.rows(level, y, out.len());
+            // Roots side by side: one by one they take as long as all the rest.
             map_row(
                 base.iter().zip(&full).map(|(base, SquaredAlpha(a))| [base[3], base[4], a.uu, a.uv, a.vv]),
                 out,

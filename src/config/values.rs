@@ -69,7 +69,8 @@ pub enum Engine {
 }
 
 impl Engine {
-    /// What it needs of a bake of `profile`. Its own shader decides on the model; pyramids are for a plugin's.
+    /// What it needs of a bake of `profile`. Its own shader decides on the model wherever the core material is baked, which both
+    /// profiles have in common; pyramids alone are for a plugin's.
     pub fn values(self, profile: Profile) -> Values {
         let (gltf, model) = match self {
             Self::Babylon | Self::Playcanvas => (Form::Fallback, None),

@@ -57,7 +57,7 @@ impl Drop for Seat<'_> {
 }
 
 /// About what a bake of `job` takes: its maps are baked one after another, and the largest takes most. With three textures
-/// 0.4 GB at 4096^2 and 1.4 GB at 16384^2, where the largest levels are not kept. With `rdo` a level is held as RGBA8 beside three
+/// 0.4 GB at 4096^2 and 1.8 GB at 16384^2, where the largest levels are not kept, for a normal map by itself. With `rdo` a level is held as RGBA8 beside three
 /// copies of its blocks.
 fn memory(job: &Job) -> u64 {
     let texels = |input: &JobInput| match imagesize::size(&input.path) {

@@ -148,7 +148,10 @@ impl<'j> Inputs<'j> {
         // What was there and is gone has changed, too; what was not there is missed by who needs it.
         let is_as_planned = found.as_deref() == planned;
         if !is_as_planned && let Ok(mut changed) = self.changed.lock() {
-            changed.get_or_insert_with(|| path.to_owned());
+            // Images are read side by side: of all that changed, the first by name is told.
+            if changed.as_deref().is_none_or(|told| path < told) {
+                *changed = Some(path.to_owned());
+            }
         }
         read
     }

@@ -186,7 +186,7 @@ fn intensity_tables<F: Real>(levels: &[[F; 16]; 3], sums: &[[F; 3]; 2], is_side:
 /// The table whose larger offset suits departures up to `reach`.
 #[inline(always)]
 fn table_for<F: Real>(reach: F) -> F {
-    // Half way between the larger offsets of neighbouring tables.
+    // The least whole numbers beyond half way between the larger offsets of neighbouring tables.
     const LIMITS: [f32; 7] = [13.0, 24.0, 36.0, 52.0, 71.0, 94.0, 145.0];
     let (zero, one) = (reach.like(0.0), reach.like(1.0));
     let mut table = zero;
@@ -231,7 +231,7 @@ const fn biases() -> [[i8; 6]; 32] {
 
 /// For every combination of bases at 0 (digit 0 to base 3), inside (1) and at the limit (2), the
 /// bias that moves them least: departures are shifted inwards at both ends.
-static LEAST_BIAS: [u8; 729] = least_biases();
+pub(super) static LEAST_BIAS: [u8; 729] = least_biases();
 
 const fn least_biases() -> [u8; 729] {
     let mut table = [0; 729];

@@ -1,6 +1,9 @@
 //! Blocks transcode, by their hints, to textures that stay near the source.
 
+use super::super::hints::{Hints, LEAST_BIAS};
+use super::super::tables::{MODE_0, MODE_6};
 use super::*;
+use crate::simd::{LANES, dispatch, instruction_sets};
 use basisu::etc::{uastc_to_etc1, uastc_to_etc2};
 use basisu::uastc::{astc_pack, bc1, bc3_bc5, bc7};
 
@@ -119,6 +122,56 @@ fn every_block_transcodes() {
                     assert!(off <= Some(bound), "{}: {a:?} became {b:?}", TARGETS[at]);
                 }
             }
+        }
+    }
+}
+
+/// [`Hints`] on ETC1 in whole numbers.
+fn by_integers(texels: &Texels) -> (bool, bool, u8, [u8; 2]) {
+    let is_second = |i: usize, flip: bool| if flip { i >= 8 } else { i % 4 >= 2 };
+    let sums = |flip: bool| -> [[i32; 3]; 2] {
+        std::array::from_fn(|half| {
+            let own = (0..16).filter(|i| is_second(*i, flip) == (half == 1));
+            own.fold([0; 3], |sum, i| std::array::from_fn(|c| sum[c] + i32::from(texels[i][c])))
+        })
+    };
+    let distance = |[a, b]: [[i32; 3]; 2]| (0..3).map(|c| (a[c] - b[c]).pow(2)).sum::<i32>();
+    let flip = distance(sums(true)) > distance(sums(false));
+    let sums = sums(flip);
+    let bases = |limit: i32| sums.map(|half| half.map(|s| (s * limit + 1020) / 2040));
+    let five = bases(31);
+    let differential = (0..3).all(|c| (-4..=3).contains(&(five[1][c] - five[0][c])));
+    let (bases, limit) = if differential { (five, 31) } else { (bases(15), 15) };
+    let digits = bases.as_flattened().iter().map(|&base| usize::from(base > 0) + usize::from(base == limit));
+    let state = digits.rev().fold(0, |state, digit| 3 * state + digit);
+    let luma = |[r, g, b]: [i32; 3]| r * 54 + g * 183 + b * 19;
+    let tables = [0, 1].map(|half| {
+        let mean = luma(sums[half]) / 8;
+        let own = (0..16).filter(|i| is_second(*i, flip) == (half == 1));
+        let reach = own.map(|i| (luma(std::array::from_fn(|c| i32::from(texels[i][c]))) - mean).abs()).max();
+        let reach = reach.unwrap_or(0) * 9 / 16 / 256;
+        [12, 23, 35, 51, 70, 93, 144].iter().filter(|&&limit| reach > limit).count() as u8
+    });
+    (flip, differential, LEAST_BIAS[state], tables)
+}
+
+#[test]
+fn hints_are_those_of_whole_numbers_in_every_lane() {
+    let mut random = Random(3);
+    let mut blocks = all_kinds();
+    blocks.extend((0..400).map(|i| {
+        let (base, range) = (random.byte(), [1, 8, 60, 255][i % 4]);
+        std::array::from_fn(|_| std::array::from_fn(|_| base.saturating_add(random.byte() % range)))
+    }));
+    for eight in blocks.chunks(LANES).filter(|eight| eight.len() == LANES) {
+        let modes: [_; LANES] = std::array::from_fn(|j| if j % 2 == 0 { &MODE_0 } else { &MODE_6 });
+        let eight: &[Texels; LANES] = eight.try_into().unwrap();
+        let alone: Vec<Hints> = eight.iter().zip(modes).map(|(texels, mode)| Hints::of(texels, mode)).collect();
+        for (hints, texels) in alone.iter().zip(eight) {
+            assert_eq!((hints.flip, hints.differential, hints.bias, hints.tables), by_integers(texels), "{texels:?}");
+        }
+        for set in instruction_sets() {
+            assert_eq!(dispatch!(set, simd => Hints::of_eight(simd, eight, modes)).to_vec(), alone, "{set:?}");
         }
     }
 }
