@@ -24,7 +24,7 @@ def growth(results):
     """The SVG of the part `growth`."""
     charts = [
         ("Time against the side of one material's maps", "texels", results["sizes"]),
-        ("Time against the number of 512 x 512 materials", "materials", results["counts"]),
+        ("Time against materials of 512 x 512", "materials", results["counts"]),
     ]
     width = 2 * WIDTH + GAP
     parts = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {HEIGHT}" width="{width}" height="{HEIGHT}">']
