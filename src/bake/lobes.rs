@@ -6,7 +6,7 @@ use super::base::{BaseRows, BaseTexel};
 use super::bumps::Bumps;
 use super::relief::Relief;
 use super::settings::Settings;
-use crate::bump::{Offset, normal_from_offset};
+use crate::bump::{Offset, normal_from_offset, slopes};
 use crate::judge::{Footprint, Lobe, Part, Reference, overlaps, refine};
 use crate::lobe::{Family, OrientedLobe, SquaredAlpha};
 use crate::pyramid::{Area, Coarser, Level, Moments, Pyramid, Rows, Shaped, ShapedMoments, level_sizes};
@@ -76,7 +76,10 @@ impl<'a> Lobes<'a> {
         map_row(
             lobes.iter().map(|lobe| lobe.normal),
             out,
-            |[x, y, z]| [-x / z * scale, -y / z * scale],
+            |normal| {
+                let Offset { u, v } = slopes(normal);
+                [u * scale, v * scale]
+            },
             |offset, made| *offset = made,
         );
     }

@@ -225,10 +225,13 @@ impl LayerPlan {
         self.own.is_ok() && textures(&self.own) == textures(&other.own) && factors(self) == factors(other)
     }
 
-    /// Where the layer's own textures are.
+    /// The layer's own textures, of roughness and of anisotropy.
+    pub fn own_textures(&self) -> [Option<&TextureSource>; 2] {
+        self.own.as_ref().map_or([None; 2], |own| [own.roughness.as_ref(), own.anisotropy.as_ref()])
+    }
+
+    /// Where they are.
     pub fn own_locations(&self) -> Vec<&ImageLocation> {
-        let own = self.own.as_ref().ok();
-        let both = own.map(|own| [own.roughness.as_ref(), own.anisotropy.as_ref()]);
-        both.into_iter().flatten().flatten().map(|t| &t.location).collect()
+        self.own_textures().into_iter().flatten().map(|t| &t.location).collect()
     }
 }

@@ -9,6 +9,7 @@ mod normal;
 
 pub use frame::{Frame, FrameTransform};
 pub use height::{HeightOffsets, Wrap};
+pub(crate) use normal::slopes;
 pub use normal::{NormalOffsets, normal_from_offset, offset_from_normal};
 
 /// Steepest slope kept: 86.4 degrees. Beyond it one texel of noise would outweigh the whole footprint in K, and the

@@ -19,6 +19,12 @@ pub fn offset_from_normal([x, y, z]: [f32; 3]) -> Offset {
         let scale = if longest > 0.0 { -2.0 * f64::from(MAX_SLOPE) / longest } else { 0.0 };
         return Offset::clamped(x * scale, y * scale);
     }
+    slopes([x, y, z])
+}
+
+/// [`offset_from_normal`] of a normal that is not steep.
+#[inline(always)]
+pub(crate) fn slopes([x, y, z]: [f32; 3]) -> Offset {
     Offset { u: -x / z, v: -y / z }
 }
 
@@ -83,17 +89,20 @@ impl Rows for NormalOffsets<'_> {
     fn row(&self, y: u32, out: &mut [Moments]) {
         let mut normals = vec![[0.0; 3]; out.len()];
         self.map.row(y, &mut normals);
-        let mut any_steep = 0.0;
+        let mut steep = 0.0;
         map_row(
             normals.iter().copied(),
             out,
-            |[x, y, z]| [-x / z, -y / z, f32::from(u8::from(is_steep([x, y, z])))],
-            |texel, [u, v, steep]| {
+            |normal| {
+                let Offset { u, v } = slopes(normal);
+                [u, v, f32::from(u8::from(is_steep(normal)))]
+            },
+            |texel, [u, v, is_steep]| {
                 *texel = Moments::flat(Offset { u, v });
-                any_steep += steep;
+                steep += is_steep;
             },
         );
-        if any_steep > 0.0 {
+        if steep > 0.0 {
             let steep = out.iter_mut().zip(normals).filter(|(_, normal)| is_steep(*normal));
             steep.for_each(|(texel, normal)| texel.mean = offset_from_normal(normal));
         }

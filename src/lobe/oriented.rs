@@ -1,7 +1,7 @@
 //! A lobe about a normal of its own.
 
 use super::SquaredAlpha;
-use crate::bump::{Offset, normal_from_offset};
+use crate::bump::{Offset, normal_from_offset, slopes};
 use crate::simd::Real;
 
 /// A lobe about a unit normal: what one texel of a level reflects.
@@ -21,8 +21,7 @@ impl OrientedLobe {
 
     /// (f_u, f_v) of the normal.
     pub fn offset(&self) -> Offset {
-        let [x, y, z] = self.normal;
-        Offset { u: -x / z, v: -y / z }
+        slopes(self.normal)
     }
 }
 

@@ -160,3 +160,19 @@ impl<'j> Inputs<'j> {
         self.changed.lock().ok().and_then(|changed| changed.clone())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_all_that_changed_the_first_by_name_is_told() {
+        let paths = ["a.png", "b.png"];
+        let digests = paths.iter().map(|path| (Path::new(path), Some("of a file that is gone"))).collect();
+        let inputs = Inputs { digests, changed: Mutex::new(None) };
+        for path in paths.into_iter().rev() {
+            assert!(inputs.read(Path::new(path)).is_err());
+        }
+        assert_eq!(inputs.changed(), Some("a.png".into()));
+    }
+}

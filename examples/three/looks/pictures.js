@@ -34,8 +34,8 @@ function draw(names, size, view) {
 }
 
 /** Every variant and the truth from one place. Black where edges of the subject alias: bumps are what is judged. */
-function pictures(size, samples, view) {
-  const drawn = draw(DRAWN, size, view);
+function pictures(size, samples, view, names = DRAWN) {
+  const drawn = draw(names, size, view);
   stage.accumulator.reset(size, size);
   stage.accumulate(samples);
   const truth = read(stage.accumulator.target).map((value) => value / samples);
@@ -51,10 +51,10 @@ window.load = async (urls) => {
   stage.light(LIGHT);
 };
 
-/** Errors of each variant at a distance: [[relative L1, SSIM], ...]. */
-window.errors = ({ kind, distance, size, samples }) => {
+/** Errors of each variant, or of those with `names`, at a distance: [[relative L1, SSIM], ...]. */
+window.errors = ({ kind, distance, size, samples, names }) => {
   stage.show(kind);
-  const { drawn, truth } = pictures(size, samples, { ...CAMERA, distance });
+  const { drawn, truth } = pictures(size, samples, { ...CAMERA, distance }, names);
   return drawn.map((picture) => [relativeL1(picture, truth), ssim(picture, truth, size)]);
 };
 

@@ -11,10 +11,10 @@ export const KINDS = ['plane', 'sphere'];
 /** In units of a sphere of radius 1; the plane's side is 4. */
 export const DISTANCES = [3, 5, 8, 13, 21, 34];
 
-/** How each variant is baked. $MODEL takes the place of what the preset has. */
+/** How variants are baked; `reflected` is `ellipses`. $MODEL takes the place of what the preset has. */
 const BAKES = {
   portable: ['--engine', 'three', ...(process.env.MODEL ? ['--model', process.env.MODEL] : [])],
-  reflected: [],
+  ellipses: [],
   pyramid: ['--profile', 'pyramid'],
   both: ['--profile', 'both'],
 };
@@ -73,6 +73,7 @@ export async function forEach(folder, chosen, use) {
       await page.waitForFunction('window.ready');
       const baked = Object.keys(BAKES).map((variant) => [variant, `/baked/${name}/${variant}/${name}.gltf`]);
       const urls = { original: `/source-${name}/${name}.gltf`, ...Object.fromEntries(baked) };
+      urls.reflected = urls.ellipses;
       await page.evaluate((u) => window.load(u), urls);
       await use(name, page);
       await page.context().close();

@@ -10,10 +10,10 @@ test('bakes are closer to the truth than plain mips', { skip: missing || browser
   const folder = temporary(t);
   const [fixture] = materials(folder);
   await forEach(folder, [fixture], async (_, page) => {
-    const errors = async (kind) => {
+    const errors = async (kind, names) => {
       const all = [];
       for (const distance of DISTANCES) {
-        all.push(await page.evaluate((o) => window.errors(o), { kind, distance, size: 64, samples: 64 }));
+        all.push(await page.evaluate((o) => window.errors(o), { kind, distance, size: 64, samples: 64, names }));
       }
       return all.map((variants) => variants.map(([l1]) => l1));
     };
@@ -22,6 +22,9 @@ test('bakes are closer to the truth than plain mips', { skip: missing || browser
     for (const [i, [plain, , reflected, pyramid]] of plane.entries()) {
       // Not portable alone: a circle has the light wrong that stands across the grooves.
       assert.ok(Math.max(reflected, pyramid) < plain, `plane at ${DISTANCES[i]}: ${plane[i]}`);
+    }
+    for (const [i, [plain, ellipses]] of (await errors('plane', ['original', 'ellipses'])).entries()) {
+      assert.ok(i === 0 || ellipses < plain, `ellipses without the plugin, plane at ${DISTANCES[i]}: ${ellipses} of ${plain}`);
     }
     for (const [i, [plain, portable, reflected, pyramid]] of sphere.entries()) {
       assert.ok(Math.max(portable, reflected, pyramid) < plain, `sphere at ${DISTANCES[i]}: ${sphere[i]}`);

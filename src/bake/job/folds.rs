@@ -8,7 +8,7 @@ use crate::bake::fold::Fold;
 use crate::bake::lobes::own_lobe;
 use crate::bake::normals::Normals;
 use crate::bake::notes;
-use crate::bake::plan::{LayerPlan, OwnTextures};
+use crate::bake::plan::LayerPlan;
 use crate::bake::relief::Relief;
 use crate::bake::report::{Choice, Content};
 use crate::bake::settings::Model;
@@ -134,10 +134,7 @@ impl Job<'_> {
                 }
             }
             let Some(folded) = folded else { continue };
-            let (roughness, anisotropy) = match &layer.own {
-                Ok(own) => (own.roughness.as_ref(), own.anisotropy.as_ref()),
-                Err(_) => (None, None),
-            };
+            let [roughness, anisotropy] = layer.own_textures();
             let own_location = roughness.map(|t| t.location.clone());
             let named_after = own_location.ok_or_else(|| layer.name.clone());
             let mut sources = vec![self.plan.source.location.clone()];
@@ -189,10 +186,9 @@ impl Job<'_> {
 
     /// The images of the layer's own lobe.
     pub(super) fn own_images(&self, layer: &LayerPlan) -> Result<OwnImages, JobError> {
-        let image = |texture: &Option<TextureSource>| texture.as_ref().map(|t| self.image(t, &layer.name)).transpose();
-        let none = OwnTextures { roughness: None, anisotropy: None };
-        let own = layer.own.as_ref().unwrap_or(&none);
-        Ok(OwnImages { roughness: image(&own.roughness)?, anisotropy: image(&own.anisotropy)? })
+        let image = |texture: Option<&TextureSource>| texture.map(|t| self.image(t, &layer.name)).transpose();
+        let [roughness, anisotropy] = layer.own_textures();
+        Ok(OwnImages { roughness: image(roughness)?, anisotropy: image(anisotropy)? })
     }
 
     /// The layer's own lobe on a grid that holds it and the bumps.

@@ -34,9 +34,9 @@ use lanes::Texels;
 use pack::pack_solid;
 pub use rate::lower_rate;
 use rayon::prelude::*;
-use row::Row;
+use row::{Row, eights};
 
-use crate::simd::{LANES, dispatch};
+use crate::simd::dispatch;
 
 /// Bytes of one block.
 pub const BLOCK_BYTES: usize = 16;
@@ -146,9 +146,7 @@ fn encode_row<S: Simd>(
     row.search_opaque(simd, &opaque, metric, effort);
     row.search_rgba(simd, &other, effort);
     opaque.append(&mut other);
-    for eight in opaque.chunks(LANES) {
-        // The last block fills up.
-        let at: [usize; LANES] = std::array::from_fn(|j| eight[j.min(eight.len() - 1)]);
+    for (eight, at) in eights(&opaque) {
         let hints = Hints::of_eight(simd, &at.map(|k| row.texels[k]), at.map(|k| row.blocks[k].mode));
         for (&k, hints) in eight.iter().zip(&hints) {
             out[k] = row.blocks[k].clone().pack(hints);

@@ -90,9 +90,7 @@ impl Row {
     /// Replaces the blocks at `which` by what `make` makes of eight of them and of their texels.
     #[inline(always)]
     fn by_eights<S: Simd>(&mut self, which: &[usize], make: impl Fn(&[Texels; LANES], [&Block; LANES]) -> Blocks<S>) {
-        for eight in which.chunks(LANES) {
-            // The last block fills up.
-            let at: [usize; LANES] = std::array::from_fn(|j| eight[j.min(eight.len() - 1)]);
+        for (eight, at) in eights(which) {
             let made = make(&at.map(|k| self.texels[k]), at.map(|k| &self.blocks[k])).store();
             for (&k, block) in eight.iter().zip(made) {
                 self.blocks[k] = block;
@@ -121,6 +119,11 @@ impl Row {
             );
         }
     }
+}
+
+/// `which` by eights, as they are and filled up with the last one.
+pub(super) fn eights(which: &[usize]) -> impl Iterator<Item = (&[usize], [usize; LANES])> {
+    which.chunks(LANES).map(|eight| (eight, std::array::from_fn(|j| eight[j.min(eight.len() - 1)])))
 }
 
 /// Levels, times `scale`.

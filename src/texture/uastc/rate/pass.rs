@@ -58,15 +58,25 @@ impl Judge<'_> {
         }
     }
 
-    /// [`Self::offer`] of a donor's block that `fit` has changed to suit `source`.
+    /// [`Self::offer`] of the blocks of the [`Self::nearest`] donors, which `fit` has changed to suit `source`.
     #[inline(always)]
-    fn offer_fitted(&self, donor: &Donor, source: &Source<'_>, fit: impl Fn(&mut Block), best: &mut Choice) {
-        let Some(mut fitted) = donor.block.clone() else { return };
-        fit(&mut fitted);
-        let error = look(source.metric, &fitted.levels()).error(source.goal);
-        if error < best.cost {
-            let hints = Hints::of(source.texels, fitted.mode);
-            self.offer(fitted.pack(&hints), error, donor, best);
+    fn offer_nearest(
+        &self,
+        donors: &[Donor],
+        estimates: &[f32],
+        more: impl Fn(&Donor) -> f32,
+        source: &Source<'_>,
+        fit: impl Fn(&mut Block),
+        best: &mut Choice,
+    ) {
+        for donor in self.nearest(donors, estimates, more).into_iter().flatten().map(|k| &donors[k]) {
+            let Some(mut fitted) = donor.block.clone() else { continue };
+            fit(&mut fitted);
+            let error = look(source.metric, &fitted.levels()).error(source.goal);
+            if error < best.cost {
+                let hints = Hints::of(source.texels, fitted.mode);
+                self.offer(fitted.pack(&hints), error, donor, best);
+            }
         }
     }
 
@@ -137,15 +147,15 @@ pub(super) fn pass<S: Simd>(
                     }
                     judge.offer(donor.bytes, whole, donor, &mut best);
                 }
-                for k in judge.nearest(donors.all(), &estimates.weights, |_| 0.0).into_iter().flatten() {
-                    judge.offer_fitted(
-                        &donors.all()[k],
-                        &source,
-                        #[inline(always)]
-                        |block| refit_endpoints(block, metric, &goal),
-                        &mut best,
-                    );
-                }
+                judge.offer_nearest(
+                    donors.all(),
+                    &estimates.weights,
+                    |_| 0.0,
+                    &source,
+                    #[inline(always)]
+                    |block| refit_endpoints(block, metric, &goal),
+                    &mut best,
+                );
                 if let Unpacked::Block(own) = &unpacked
                     && own.mode.subsets > 1
                 {
@@ -163,15 +173,15 @@ pub(super) fn pass<S: Simd>(
                 let hints = [&MODE_0, &MODE_6].map(|mode| Hints::of(&texels, mode).bits(mode));
                 let header = bits.alone(&own[..3]);
                 let more = |donor: &Donor| if hints.contains(&donor.hints) { 0.0 } else { header };
-                for k in judge.nearest(donors.all(), &estimates.ends, more).into_iter().flatten() {
-                    judge.offer_fitted(
-                        &donors.all()[k],
-                        &source,
-                        #[inline(always)]
-                        |block| refit_weights(block, metric, &goal),
-                        &mut best,
-                    );
-                }
+                judge.offer_nearest(
+                    donors.all(),
+                    &estimates.ends,
+                    more,
+                    &source,
+                    #[inline(always)]
+                    |block| refit_weights(block, metric, &goal),
+                    &mut best,
+                );
                 *block = best.bytes;
                 state = best.after;
                 donors.add(best.bytes, at, metric);
