@@ -67,20 +67,24 @@ impl Merge for OrientedLobe {
         }
         let mut values = [Parts::default(); MAX_PARTS];
         values.iter_mut().zip(parts).for_each(|(value, part)| *value = Parts::of(part.values()));
-        Self::from_values(merged(weights, &values[..parts.len()]).values())
+        Self::from_values(merged::<_, MAX_PARTS>(weights, &values[..parts.len()]).values())
     }
 
     #[inline(always)]
-    fn merge_lanes<S: Simd>(simd: S, weights: &[[f32; LANES]], part: impl Fn(usize, usize) -> Self) -> [Self; LANES] {
+    fn merge_lanes<S: Simd, const MOST: usize>(
+        simd: S,
+        weights: &[[f32; LANES]],
+        part: impl Fn(usize, usize) -> Self,
+    ) -> [Self; LANES] {
         let zero = Wide::splat(simd, 0.0);
-        let mut wide = [zero; MAX_PARTS];
-        let mut parts = [Parts::of([zero; 6]); MAX_PARTS];
-        let values = load(simd, weights.len(), |tap, lane| part(tap, lane).values());
+        let mut wide = [zero; MOST];
+        let mut parts = [Parts::of([zero; 6]); MOST];
+        let values = load::<S, MOST, 6>(simd, weights.len(), |tap, lane| part(tap, lane).values());
         for (tap, weights) in weights.iter().enumerate() {
             wide[tap] = Wide::simd_from(simd, *weights);
             parts[tap] = Parts::of(values[tap]);
         }
-        let merged = store(merged(&wide[..weights.len()], &parts[..weights.len()]).values());
+        let merged = store(merged::<_, MOST>(&wide[..weights.len()], &parts[..weights.len()]).values());
         let mut lobes = [Self::default(); LANES];
         for lane in 0..LANES {
             lobes[lane] = Self::from_values(merged[lane]);
@@ -164,9 +168,9 @@ impl<F: Real> Parts<F> {
     }
 }
 
-/// The merged lobe in each lane; at least one and at most [`MAX_PARTS`] parts.
+/// The merged lobe in each lane; at least one and at most `MOST` parts.
 #[inline(always)]
-fn merged<F: Real>(weights: &[F], parts: &[Parts<F>]) -> Parts<F> {
+fn merged<F: Real, const MOST: usize>(weights: &[F], parts: &[Parts<F>]) -> Parts<F> {
     let zero = weights[0].like(0.0);
     let mut sum = [zero; 3];
     for (w, part) in weights.iter().zip(parts) {
@@ -174,16 +178,12 @@ fn merged<F: Real>(weights: &[F], parts: &[Parts<F>]) -> Parts<F> {
     }
     let length = dot(sum, sum).sqrt();
     let about = frame([sum[0] / length, sum[1] / length, sum[2] / length]);
-    let start = Start::of(weights, parts, about);
+    let start = Start::<F, MOST>::of(weights, parts, about);
     let mut slopes = start.slopes;
     if !F::all(start.is_smooth) {
-        let rough = start.roughly(weights, parts);
-        // Four parts are the rule; room for more would be cleared for nothing.
-        let likeliest = if parts.len() <= 4 {
-            Points::<F, { 4 * POINTS }>::new(zero).likeliest(weights, parts, about, rough)
-        } else {
-            Points::<F, { MAX_PARTS * POINTS }>::new(zero).likeliest(weights, parts, about, rough)
-        };
+        let mut room = [[[zero; 3]; POINTS]; MOST];
+        let points = half_vectors(&mut room, weights, parts, about);
+        let likeliest = (0..STEPS).fold(start.roughly(weights, parts), |slopes, _| slopes.step(sums(points, slopes)));
         slopes = slopes.or(likeliest, start.is_smooth);
     }
     // Normals that cancel have no frame.
@@ -238,19 +238,19 @@ impl<F: Real> Slopes<F> {
 }
 
 /// What moments tell: where EM starts, and where it need not start.
-struct Start<F: Real> {
+struct Start<F: Real, const MOST: usize> {
     /// Where the normals of the parts point.
-    parts: [[F; 2]; MAX_PARTS],
+    parts: [[F; 2]; MOST],
     slopes: Slopes<F>,
     is_smooth: F::Mask,
 }
 
-impl<F: Real> Start<F> {
+impl<F: Real, const MOST: usize> Start<F, MOST> {
     #[inline(always)]
     fn of(weights: &[F], parts: &[Parts<F>], [t, b, n]: [[F; 3]; 3]) -> Self {
         let zero = weights[0].like(0.0);
         let half = zero.like(0.5);
-        let mut slopes = [[zero; 2]; MAX_PARTS];
+        let mut slopes = [[zero; 2]; MOST];
         let mut mean = [zero; 2];
         let (mut least, mut largest) = (zero.like(f32::INFINITY), zero);
         for ((w, part), slope) in weights.iter().zip(parts).zip(&mut slopes) {
@@ -305,85 +305,70 @@ impl<F: Real> Start<F> {
     }
 }
 
-/// Slopes of half-vectors about the mean normal, each with twice its share.
-struct Points<F, const CAPACITY: usize> {
-    all: [[F; 3]; CAPACITY],
-    count: usize,
+/// Slopes of the half-vectors of `parts` about the mean normal, each with twice its share, in `room`.
+#[inline(always)]
+fn half_vectors<'r, F: Real>(
+    room: &'r mut [[[F; 3]; POINTS]],
+    weights: &[F],
+    parts: &[Parts<F>],
+    about: [[F; 3]; 3],
+) -> &'r [[F; 3]] {
+    let zero = weights[0].like(0.0);
+    let (one, least, least_cosine) = (zero.like(1.0), zero.like(MIN_SQUARED_ALPHA), zero.like(LEAST_COSINE));
+    let patterns: &[[[f32; 2]; POINTS]; MAX_PARTS] = &PATTERNS;
+    for (((w, part), pattern), points) in weights.iter().zip(parts).zip(patterns).zip(room.iter_mut()) {
+        // The part's axes, scaled by its lobe (A = L L^T, L lower triangular), in the common frame.
+        let [t, b, n] = frame(part.normal);
+        let Matrix { uu, uv, vv } = part.a;
+        let l11 = uu.max(least).sqrt();
+        let l21 = uv / l11;
+        let l22 = (vv - l21 * l21).max(least).sqrt();
+        let (mut along, mut across, mut up) = ([zero; 3], [zero; 3], [zero; 3]);
+        for i in 0..3 {
+            let across_i = dot(b, about[i]);
+            along[i] = l11 * dot(t, about[i]) + l21 * across_i;
+            across[i] = l22 * across_i;
+            up[i] = dot(n, about[i]);
+        }
+        let share = *w / zero.like(POINTS as f32) * zero.like(2.0);
+        for (&[cos, sin], point) in pattern.iter().zip(points) {
+            let (cos, sin) = (zero.like(cos), zero.like(sin));
+            let mut h = up;
+            for i in 0..3 {
+                h[i] = cos * along[i] + sin * across[i] + up[i];
+            }
+            let scale = one / h[2].max(least_cosine);
+            *point = [h[0] * scale, h[1] * scale, share];
+        }
+    }
+    room[..parts.len()].as_flattened()
 }
 
-impl<F: Real, const CAPACITY: usize> Points<F, CAPACITY> {
-    #[inline(always)]
-    fn new(zero: F) -> Self {
-        Self { all: [[zero; 3]; CAPACITY], count: 0 }
-    }
-
-    #[inline(always)]
-    fn fill(&mut self, weights: &[F], parts: &[Parts<F>], about: [[F; 3]; 3]) {
-        let zero = weights[0].like(0.0);
-        let (one, least, least_cosine) = (zero.like(1.0), zero.like(MIN_SQUARED_ALPHA), zero.like(LEAST_COSINE));
-        let patterns: &[[[f32; 2]; POINTS]; MAX_PARTS] = &PATTERNS;
-        let targets = self.all.as_chunks_mut::<POINTS>().0;
-        for (((w, part), pattern), points) in weights.iter().zip(parts).zip(patterns).zip(targets) {
-            // The part's axes, scaled by its lobe (A = L L^T, L lower triangular), in the common frame.
-            let [t, b, n] = frame(part.normal);
-            let Matrix { uu, uv, vv } = part.a;
-            let l11 = uu.max(least).sqrt();
-            let l21 = uv / l11;
-            let l22 = (vv - l21 * l21).max(least).sqrt();
-            let (mut along, mut across, mut up) = ([zero; 3], [zero; 3], [zero; 3]);
-            for i in 0..3 {
-                let across_i = dot(b, about[i]);
-                along[i] = l11 * dot(t, about[i]) + l21 * across_i;
-                across[i] = l22 * across_i;
-                up[i] = dot(n, about[i]);
-            }
-            let share = *w / zero.like(POINTS as f32) * zero.like(2.0);
-            for (&[cos, sin], point) in pattern.iter().zip(points) {
-                let (cos, sin) = (zero.like(cos), zero.like(sin));
-                let mut h = up;
-                for i in 0..3 {
-                    h[i] = cos * along[i] + sin * across[i] + up[i];
-                }
-                let scale = one / h[2].max(least_cosine);
-                *point = [h[0] * scale, h[1] * scale, share];
-            }
-        }
-        self.count = parts.len() * POINTS;
-    }
-
-    /// The likeliest lobe, by EM from `start`.
-    #[inline(always)]
-    fn likeliest(mut self, weights: &[F], parts: &[Parts<F>], about: [[F; 3]; 3], start: Slopes<F>) -> Slopes<F> {
-        self.fill(weights, parts, about);
-        (0..STEPS).fold(start, |slopes, _| slopes.step(self.sums(slopes)))
-    }
-
-    /// Sums over the points of w, w x, w y, w x^2, w x y and w y^2 about `mean`, with w the EM weights.
-    #[inline(always)]
-    fn sums(&self, Slopes { mean, a }: Slopes<F>) -> [F; 6] {
-        let zero = mean[0].like(0.0);
-        let one = zero.like(1.0);
-        let inverse = a.inverse();
-        let twice_uv = inverse.uv + inverse.uv;
-        let mut sums = [zero; 6];
-        for first in 0..SUMS {
-            let mut every = [zero; 6];
-            for &[x, y, share] in self.all[first..self.count].iter().step_by(SUMS) {
-                let (x, y) = (x - mean[0], y - mean[1]);
-                let q = x * (inverse.uu * x + twice_uv * y) + inverse.vv * y * y;
-                let w = share / (one + q);
-                let (wx, wy) = (w * x, w * y);
-                let terms = [w, wx, wy, wx * x, wx * y, wy * y];
-                for i in 0..6 {
-                    every[i] = every[i] + terms[i];
-                }
-            }
+/// Sums over `points` of w, w x, w y, w x^2, w x y and w y^2 about the mean, with w the EM weights.
+#[inline(always)]
+fn sums<F: Real>(points: &[[F; 3]], Slopes { mean, a }: Slopes<F>) -> [F; 6] {
+    let zero = mean[0].like(0.0);
+    let one = zero.like(1.0);
+    let inverse = a.inverse();
+    let twice_uv = inverse.uv + inverse.uv;
+    let mut sums = [zero; 6];
+    for first in 0..SUMS {
+        let mut every = [zero; 6];
+        for &[x, y, share] in points[first..].iter().step_by(SUMS) {
+            let (x, y) = (x - mean[0], y - mean[1]);
+            let q = x * (inverse.uu * x + twice_uv * y) + inverse.vv * y * y;
+            let w = share / (one + q);
+            let (wx, wy) = (w * x, w * y);
+            let terms = [w, wx, wy, wx * x, wx * y, wy * y];
             for i in 0..6 {
-                sums[i] = sums[i] + every[i];
+                every[i] = every[i] + terms[i];
             }
         }
-        sums
+        for i in 0..6 {
+            sums[i] = sums[i] + every[i];
+        }
     }
+    sums
 }
 
 /// Lobes are taken to be at least 0.001 wide: without width there is no density.
@@ -446,8 +431,9 @@ mod tests {
         let part = lobe([0.5, 0.2], [0.09, 0.02, 0.04]);
         let about = frame(part.normal);
         let wide = Slopes { mean: [0.0; 2], a: Matrix { uu: 0.2, uv: 0.0, vv: 0.2 } };
-        let points = Points::<f32, { 4 * POINTS }>::new(0.0);
-        let slopes = points.likeliest(&[0.25; 4], &[Parts::of(part.values()); 4], about, wide);
+        let mut room = [[[0.0; 3]; POINTS]; 4];
+        let points = half_vectors(&mut room, &[0.25; 4], &[Parts::of(part.values()); 4], about);
+        let slopes = (0..STEPS).fold(wide, |slopes, _| slopes.step(sums(points, slopes)));
         assert_alike(OrientedLobe::from_values(tilted(about, slopes).values()), part, 0.01);
     }
 
@@ -461,10 +447,10 @@ mod tests {
             let merged = merge(&parts);
             let parts = parts.map(|part| Parts::of(part.values()));
             let about = frame(merged.normal);
-            let mut slopes = Start::of(&shares, &parts, about).roughly(&shares, &parts);
-            for _ in 0..6 {
-                slopes = Points::<f32, { 4 * POINTS }>::new(0.0).likeliest(&shares, &parts, about, slopes);
-            }
+            let rough = Start::<_, 4>::of(&shares, &parts, about).roughly(&shares, &parts);
+            let mut room = [[[0.0; 3]; POINTS]; 4];
+            let points = half_vectors(&mut room, &shares, &parts, about);
+            let slopes = (0..6 * STEPS).fold(rough, |slopes, _| slopes.step(sums(points, slopes)));
             assert_alike(merged, OrientedLobe::from_values(tilted(about, slopes).values()), 0.02);
         }
     }

@@ -8,7 +8,7 @@ use crate::bump::Offset;
 use crate::simd::{LANES, Real, Wide};
 use crate::symmetric::Symmetric2;
 
-/// Texels that one coarser texel is merged from by [`Merge::merge_lanes`]: at most 3 x 3.
+/// Texels that one coarser texel is merged from at most: 3 x 3.
 pub(crate) const MAX_PARTS: usize = 9;
 
 /// A value that can be merged over an area.
@@ -16,12 +16,16 @@ pub trait Merge: Copy + Default + Send + Sync {
     /// The merged value of `parts`. `weights` has the same length, is not negative and sums to 1.
     fn merge(weights: &[f32], parts: &[Self]) -> Self;
 
-    /// The same for texels side by side: that of lane i has weights `weights[..][i]`, at most 9, and parts
+    /// The same for texels side by side: that of lane i has weights `weights[..][i]`, at most `MOST`, and parts
     /// `part(.., i)`.
     #[inline(always)]
-    fn merge_lanes<S: Simd>(_simd: S, weights: &[[f32; LANES]], part: impl Fn(usize, usize) -> Self) -> [Self; LANES] {
+    fn merge_lanes<S: Simd, const MOST: usize>(
+        _simd: S,
+        weights: &[[f32; LANES]],
+        part: impl Fn(usize, usize) -> Self,
+    ) -> [Self; LANES] {
         std::array::from_fn(|lane| {
-            let (mut own, mut parts) = ([0.0; MAX_PARTS], [Self::default(); MAX_PARTS]);
+            let (mut own, mut parts) = ([0.0; MOST], [Self::default(); MOST]);
             for (tap, weights) in weights.iter().enumerate() {
                 own[tap] = weights[lane];
                 parts[tap] = part(tap, lane);
@@ -35,12 +39,12 @@ pub trait Merge: Copy + Default + Send + Sync {
 
 /// The `N` numbers of each of the first `taps` parts, `LANES` texels wide.
 #[inline(always)]
-pub(crate) fn load<S: Simd, const N: usize>(
+pub(crate) fn load<S: Simd, const MOST: usize, const N: usize>(
     simd: S,
     taps: usize,
     values: impl Fn(usize, usize) -> [f32; N],
-) -> [[Wide<S>; N]; MAX_PARTS] {
-    let mut lanes = [[[0.0; LANES]; N]; MAX_PARTS];
+) -> [[Wide<S>; N]; MOST] {
+    let mut lanes = [[[0.0; LANES]; N]; MOST];
     for tap in 0..taps {
         for lane in 0..LANES {
             let values = values(tap, lane);
@@ -50,7 +54,7 @@ pub(crate) fn load<S: Simd, const N: usize>(
         }
     }
     // Not in the same loop: a vector that is read back right after its numbers are written waits for all of them.
-    let mut wide = [[Wide::splat(simd, 0.0); N]; MAX_PARTS];
+    let mut wide = [[Wide::splat(simd, 0.0); N]; MOST];
     for tap in 0..taps {
         for i in 0..N {
             wide[tap][i] = Wide::simd_from(simd, lanes[tap][i]);
@@ -92,16 +96,16 @@ pub(super) fn merge_numbers<T: Numbers<N>, const N: usize>(weights: &[f32], part
 
 /// [`Merge::merge_lanes`] of numbers.
 #[inline(always)]
-pub(super) fn merge_number_lanes<S: Simd, T: Numbers<N>, const N: usize>(
+pub(super) fn merge_number_lanes<S: Simd, T: Numbers<N>, const MOST: usize, const N: usize>(
     simd: S,
     weights: &[[f32; LANES]],
     part: impl Fn(usize, usize) -> T,
 ) -> [T; LANES] {
-    let mut wide = [Wide::splat(simd, 0.0); MAX_PARTS];
+    let mut wide = [Wide::splat(simd, 0.0); MOST];
     for (tap, weights) in weights.iter().enumerate() {
         wide[tap] = Wide::simd_from(simd, *weights);
     }
-    let parts = load(simd, weights.len(), |tap, lane| part(tap, lane).values());
+    let parts = load::<S, MOST, N>(simd, weights.len(), |tap, lane| part(tap, lane).values());
     let merged = store(T::merged(&wide[..weights.len()], &parts[..weights.len()]));
     let mut texels = [T::default(); LANES];
     for lane in 0..LANES {
@@ -132,8 +136,12 @@ impl Merge for Moments {
     }
 
     #[inline(always)]
-    fn merge_lanes<S: Simd>(simd: S, weights: &[[f32; LANES]], part: impl Fn(usize, usize) -> Self) -> [Self; LANES] {
-        merge_number_lanes(simd, weights, part)
+    fn merge_lanes<S: Simd, const MOST: usize>(
+        simd: S,
+        weights: &[[f32; LANES]],
+        part: impl Fn(usize, usize) -> Self,
+    ) -> [Self; LANES] {
+        merge_number_lanes::<S, Self, MOST, _>(simd, weights, part)
     }
 }
 
@@ -187,8 +195,12 @@ where
     }
 
     #[inline(always)]
-    fn merge_lanes<S: Simd>(simd: S, weights: &[[f32; LANES]], part: impl Fn(usize, usize) -> Self) -> [Self; LANES] {
-        let parts = load(simd, weights.len(), part);
+    fn merge_lanes<S: Simd, const MOST: usize>(
+        simd: S,
+        weights: &[[f32; LANES]],
+        part: impl Fn(usize, usize) -> Self,
+    ) -> [Self; LANES] {
+        let parts = load::<S, MOST, N>(simd, weights.len(), part);
         let mut sum = [Wide::splat(simd, 0.0); N];
         for (weights, part) in weights.iter().zip(parts) {
             let weights = Wide::simd_from(simd, *weights);

@@ -129,11 +129,23 @@ const BANDS: u32 = 64;
 
 /// `rows` holds the finer rows under this row, one after another; `out` the coarser texels.
 pub(super) fn reduce_row<T: Merge>(simd: InstructionSet, rows: &[T], fine_width: usize, down: &Taps, out: &mut [T]) {
-    dispatch!(simd, simd => reduce_lanes(simd, rows, fine_width, down, out));
+    let parts = down.count * Taps::new(fine_width as u32, 0).count;
+    // Four parts are the rule; room for more would be cleared for nothing.
+    if parts == 4 {
+        dispatch!(simd, simd => reduce_lanes::<_, T, 4>(simd, rows, fine_width, down, out));
+    } else {
+        dispatch!(simd, simd => reduce_lanes::<_, T, MAX_PARTS>(simd, rows, fine_width, down, out));
+    }
 }
 
 #[inline(always)]
-fn reduce_lanes<S: Simd, T: Merge>(simd: S, rows: &[T], fine_width: usize, down: &Taps, out: &mut [T]) {
+fn reduce_lanes<S: Simd, T: Merge, const MOST: usize>(
+    simd: S,
+    rows: &[T],
+    fine_width: usize,
+    down: &Taps,
+    out: &mut [T],
+) {
     let rows: [&[T]; MAX_TAPS] = std::array::from_fn(|tap| match tap < down.count {
         true => &rows[tap * fine_width..][..fine_width],
         false => &[],
@@ -143,12 +155,12 @@ fn reduce_lanes<S: Simd, T: Merge>(simd: S, rows: &[T], fine_width: usize, down:
         let across: [Taps; LANES] =
             std::array::from_fn(|lane| Taps::new(fine_width as u32, (group * LANES + lane.min(out.len() - 1)) as u32));
         let taps = across[0].count;
-        let mut weights = [[0.0; LANES]; MAX_PARTS];
+        let mut weights = [[0.0; LANES]; MOST];
         for (index, weights) in weights.iter_mut().enumerate().take(down.count * taps) {
             *weights = std::array::from_fn(|lane| down.weights[index / taps] * across[lane].weights[index % taps]);
         }
         let part = |tap: usize, lane: usize| rows[tap / taps][across[lane].first as usize + tap % taps];
-        let merged = T::merge_lanes(simd, &weights[..down.count * taps], part);
+        let merged = T::merge_lanes::<_, MOST>(simd, &weights[..down.count * taps], part);
         out.copy_from_slice(&merged[..out.len()]);
     }
 }

@@ -33,8 +33,12 @@ impl Merge for ShapedMoments {
     }
 
     #[inline(always)]
-    fn merge_lanes<S: Simd>(simd: S, weights: &[[f32; LANES]], part: impl Fn(usize, usize) -> Self) -> [Self; LANES] {
-        merge_number_lanes(simd, weights, part)
+    fn merge_lanes<S: Simd, const MOST: usize>(
+        simd: S,
+        weights: &[[f32; LANES]],
+        part: impl Fn(usize, usize) -> Self,
+    ) -> [Self; LANES] {
+        merge_number_lanes::<S, Self, MOST, _>(simd, weights, part)
     }
 }
 
