@@ -46,6 +46,7 @@ impl Symmetric2 {
     }
 
     /// The square of the vector: `v v^T`, a matrix of rank at most 1.
+    #[inline(always)]
     pub fn outer(v: [f32; 2]) -> Self {
         Self::new(v[0] * v[0], v[0] * v[1], v[1] * v[1])
     }
@@ -57,6 +58,7 @@ impl Symmetric2 {
     }
 
     /// Sum of the diagonal.
+    #[inline(always)]
     pub fn trace(self) -> f32 {
         self.uu + self.vv
     }
@@ -68,6 +70,7 @@ impl Symmetric2 {
     }
 
     /// Eigenvalues and major axis. Uses square roots only, which IEEE 754 rounds alike on every machine.
+    #[inline(always)]
     pub fn eigen(self) -> Eigen {
         let mean = 0.5 * (self.uu + self.vv);
         let half_difference = 0.5 * (self.uu - self.vv);
@@ -86,6 +89,7 @@ impl Symmetric2 {
 
 impl Add for Symmetric2 {
     type Output = Self;
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
         Self::new(self.uu + other.uu, self.uv + other.uv, self.vv + other.vv)
     }
@@ -93,6 +97,7 @@ impl Add for Symmetric2 {
 
 impl Mul<Symmetric2> for f32 {
     type Output = Symmetric2;
+    #[inline(always)]
     fn mul(self, m: Symmetric2) -> Symmetric2 {
         Symmetric2::new(self * m.uu, self * m.uv, self * m.vv)
     }

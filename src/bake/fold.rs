@@ -155,23 +155,21 @@ impl<'a> Fold<'a> {
     pub fn roughness_rows(&self, model: Model) -> impl Fn(usize, u32, &mut [[f32; 4]]) + Sync {
         let axis = self.reference();
         move |level, y, out| {
-            if model == Model::Anisotropic {
-                self.row(level, y, out.len(), |x, _, full, [red, blue]| {
-                    out[x] = [red, Anisotropy::of(full, axis).roughness.0, blue, 1.0];
-                });
-                return;
-            }
             let (base, full) = self.rows(level, y, out.len());
+            let texels = base.iter().zip(&full).map(|(base, SquaredAlpha(a))| [base[3], base[4], a.uu, a.uv, a.vv]);
+            let lobe = |uu, uv, vv| SquaredAlpha(Symmetric2::new(uu, uv, vv));
+            let store = |texel: &mut [f32; 4], [red, green, blue]: [f32; 3]| *texel = [red, green, blue, 1.0];
             // Roots side by side: one by one they take as long as all the rest.
-            map_row(
-                base.iter().zip(&full).map(|(base, SquaredAlpha(a))| [base[3], base[4], a.uu, a.uv, a.vv]),
-                out,
-                |[red, blue, uu, uv, vv]| {
-                    let full = SquaredAlpha(Symmetric2::new(uu, uv, vv));
-                    [red, Roughness::from(full.closest_isotropic()).0.min(1.0), blue]
-                },
-                |texel, [red, green, blue]| *texel = [red, green, blue, 1.0],
-            );
+            if model == Model::Anisotropic {
+                let of =
+                    |[red, blue, uu, uv, vv]: [f32; 5]| [red, Anisotropy::of(lobe(uu, uv, vv), axis).roughness.0, blue];
+                map_row(texels, out, of, store);
+            } else {
+                let of = |[red, blue, uu, uv, vv]: [f32; 5]| {
+                    [red, Roughness::from(lobe(uu, uv, vv).closest_isotropic()).0.min(1.0), blue]
+                };
+                map_row(texels, out, of, store);
+            }
         }
     }
 
@@ -179,10 +177,17 @@ impl<'a> Fold<'a> {
     pub fn anisotropy_rows(&self) -> impl Fn(usize, u32, &mut [[f32; 4]]) + Sync {
         let axis = self.reference();
         move |level, y, out| {
-            self.row(level, y, out.len(), |x, _, full, _| {
-                let Anisotropy { strength, direction: [u, v], .. } = Anisotropy::of(full, axis);
-                out[x] = [0.5 * u + 0.5, 0.5 * v + 0.5, strength, 1.0];
-            });
+            let (_, full) = self.rows(level, y, out.len());
+            map_row(
+                full.iter().map(|SquaredAlpha(a)| [a.uu, a.uv, a.vv]),
+                out,
+                |[uu, uv, vv]| {
+                    let full = SquaredAlpha(Symmetric2::new(uu, uv, vv));
+                    let Anisotropy { strength, direction: [u, v], .. } = Anisotropy::of(full, axis);
+                    [0.5 * u + 0.5, 0.5 * v + 0.5, strength]
+                },
+                |texel, [u, v, strength]| *texel = [u, v, strength, 1.0],
+            );
         }
     }
 

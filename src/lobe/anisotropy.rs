@@ -28,6 +28,7 @@ impl Anisotropy {
     /// `reference` (a unit vector) decides what the shape cannot: the sign of the direction, which is chosen to agree
     /// with it because samplers average vectors and not axes, and the direction of nearly isotropic lobes, which lean
     /// towards it so that noise does not disturb their neighbours in the filter.
+    #[inline(always)]
     pub fn of(a: SquaredAlpha, reference: [f32; 2]) -> Self {
         let e = a.0.eigen();
         let across = e.minor.sqrt().min(1.0);

@@ -1,7 +1,7 @@
 //! The job's textures of the portable profile that hold folded lobes.
 
 use super::{Job, JobError, JobOutput, JobTexture, LayerOutcome};
-use crate::bake::base::{BaseAnisotropy, BaseRows};
+use crate::bake::base::{BaseAnisotropy, BaseRows, BaseTexel};
 use crate::bake::bumps::Bumps;
 use crate::bake::chain::{Encoding, grid};
 use crate::bake::fold::Fold;
@@ -16,16 +16,16 @@ use crate::bake::trial::Trial;
 use crate::gltf::material::LayerKind;
 use crate::gltf::texture::TextureSource;
 use crate::map::{Image, Rgba};
-use crate::pyramid::{Pyramid, Rows};
+use crate::pyramid::{Coarser, Pyramid, Rows};
 
 impl Job<'_> {
     /// Folds the bumps into each distinct lobe, choosing its model on the way. Normals point where the lobes do that are
-    /// folded first on their grid. `images` are those of the first layer.
+    /// folded first on their grid. `own` is the first layer's.
     pub(super) fn portable<'r>(
         &self,
         relief: &'r Relief,
         bumps: &Bumps<'r>,
-        mut images: Option<OwnImages>,
+        mut own: Option<Own>,
         output: &mut JobOutput,
     ) -> Result<(), JobError> {
         let layers = &self.plan.layers;
@@ -42,10 +42,13 @@ impl Job<'_> {
             let users: Vec<usize> =
                 (first..layers.len()).filter(|i| *i == first || layer.folds_like(&layers[*i])).collect();
             let has_later = first + users.len() < layers.len();
-            let images = images.take().map_or_else(|| self.own_images(layer), Ok)?;
-            let base = self.base(relief, layer, &images)?;
-            let base = Pyramid::new(base);
-            let size = base.sizes()[0];
+            let mut own = own.take().map_or_else(|| self.own_images(layer).map(Own::from), Ok)?;
+            let size = self.grid(&own.images, Some(relief))?;
+            let base = self.base(layer, &own.images, size);
+            let base = match own.levels.take_if(|levels| levels.size == size) {
+                Some(levels) => Pyramid::with_levels(base, levels.coarser),
+                None => Pyramid::new(base),
+            };
             let is_base = layer.layer.kind == LayerKind::Base;
             let correction = (self.settings.profile.has_pyramid() && is_base)
                 .then(|| bumps.correction(layer.slope_scale, self.settings, own_lobe(&base.whole())));
@@ -184,17 +187,29 @@ impl Job<'_> {
         Ok(())
     }
 
-    /// The images of the layer's own lobe.
-    pub(super) fn own_images(&self, layer: &LayerPlan) -> Result<OwnImages, JobError> {
+    /// The images of the layer's own lobe, with its levels on the images' own grid, which the bumps most often share.
+    pub(super) fn own(&self, layer: &LayerPlan) -> Result<Own, JobError> {
+        let images = self.own_images(layer)?;
+        let has_images = images.roughness.is_some() || images.anisotropy.is_some();
+        let size = has_images.then(|| self.grid(&images, None)).transpose()?;
+        let levels = size.map(|size| Levels { size, coarser: Coarser::new(&self.base(layer, &images, size)) });
+        Ok(Own { images, levels })
+    }
+
+    fn own_images(&self, layer: &LayerPlan) -> Result<OwnImages, JobError> {
         let image = |texture: Option<&TextureSource>| texture.map(|t| self.image(t, &layer.name)).transpose();
         let [roughness, anisotropy] = layer.own_textures();
         Ok(OwnImages { roughness: image(roughness)?, anisotropy: image(anisotropy)? })
     }
 
-    /// The layer's own lobe on a grid that holds it and the bumps.
-    fn base<'r>(&self, relief: &Relief, layer: &LayerPlan, own: &'r OwnImages) -> Result<BaseRows<'r>, JobError> {
+    /// A grid that holds the layer's own lobe and the bumps.
+    fn grid(&self, own: &OwnImages, relief: Option<&Relief>) -> Result<(u32, u32), JobError> {
         let sizes = [&own.roughness, &own.anisotropy].into_iter().flatten().map(|i| (i.width, i.height));
-        let (width, height) = grid(self.settings, sizes.chain([(relief.width(), relief.height())]))?;
+        Ok(grid(self.settings, sizes.chain(relief.map(|r| (r.width(), r.height()))))?)
+    }
+
+    /// The layer's own lobe on a grid of `width` x `height` texels.
+    fn base<'r>(&self, layer: &LayerPlan, own: &'r OwnImages, (width, height): (u32, u32)) -> BaseRows<'r> {
         let anisotropy = layer.layer.anisotropy.as_ref().map(|a| {
             let rotation = f64::from(a.rotation);
             BaseAnisotropy {
@@ -204,12 +219,30 @@ impl Job<'_> {
             }
         });
         let roughness = own.roughness.as_ref().map(Rgba);
-        Ok(BaseRows::new(width, height, roughness, layer.layer.roughness_factor, anisotropy, self.plan.source.wrap))
+        BaseRows::new(width, height, roughness, layer.layer.roughness_factor, anisotropy, self.plan.source.wrap)
     }
 }
 
+/// A layer's own lobe.
+pub(super) struct Own {
+    images: OwnImages,
+    levels: Option<Levels>,
+}
+
+impl From<OwnImages> for Own {
+    fn from(images: OwnImages) -> Self {
+        Self { images, levels: None }
+    }
+}
+
+/// Levels 1 and coarser on a grid of `size`.
+struct Levels {
+    size: (u32, u32),
+    coarser: Coarser<BaseTexel>,
+}
+
 /// Images of a layer's own lobe.
-pub(super) struct OwnImages {
+struct OwnImages {
     roughness: Option<Image>,
     anisotropy: Option<Image>,
 }

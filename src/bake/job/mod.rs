@@ -106,8 +106,8 @@ pub fn run(
     settings: &Settings,
 ) -> Result<JobOutput, JobError> {
     let job = Job { plan, source, settings, geometry };
-    // Decoders have one thread each.
-    let (relief, first) = rayon::join(|| job.relief(), || plan.layers.first().map(|layer| job.own_images(layer)));
+    // Decoders have one thread each, and normals take the longest.
+    let (relief, first) = rayon::join(|| job.relief(), || plan.layers.first().map(|layer| job.own(layer)));
     let (relief, mut relief_notes) = relief?;
     let first = first.transpose()?;
     let size = grid(settings, [(relief.width(), relief.height())])?;
