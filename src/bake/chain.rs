@@ -2,7 +2,7 @@
 
 use super::png::fallback;
 use super::settings::{Form, Settings};
-use crate::texture::ktx2::{Key, Ktx2Writer, StoredLevel};
+use crate::texture::ktx2::{Key, Ktx2Writer, StoredLevel, Storing};
 use crate::texture::uastc::{Effort, Metric};
 use crate::texture::{EncodeError, Format, Target, Texels, encode, lower_rate};
 
@@ -110,7 +110,7 @@ fn is_whole(format: Format, width: u32, height: u32) -> bool {
 /// Writes row y of a level to a slice of values: `(level, y, out)`.
 pub type LevelRow<'a> = dyn Fn(usize, u32, &mut [[f32; 4]]) + Sync + 'a;
 
-/// Encodes the levels of `sizes` that `encoding` asks for. Each is compressed at once: a level of 16384^2 has 268 MB of blocks.
+/// Encodes the levels of `sizes` that `encoding` asks for.
 pub fn encode_chain(sizes: &[(u32, u32)], encoding: Encoding, row: &LevelRow<'_>) -> Result<Chain, EncodeError> {
     let first = encoding.first(sizes);
     let kept = &sizes[first..];
@@ -120,32 +120,66 @@ pub fn encode_chain(sizes: &[(u32, u32)], encoding: Encoding, row: &LevelRow<'_>
         let row = |y: u32, out: &mut [[f32; 4]]| row(0, y, out);
         encoding.fallback.then(|| fallback(&Texels { width, height, row: &row }, encoding.effort)).transpose()
     };
-    let (levels, fallback) = rayon::join(|| encode_levels(kept, 0, encoding, &row), png);
-    let (mut levels, fallback) = (levels?, fallback?);
-    levels.reverse();
+    let (levels, fallback) = rayon::join(|| encode_levels(kept, encoding, &row), png);
+    let (levels, fallback) = (levels?, fallback?);
     Ok(Chain { format: encoding.format, trimmed: first, width, height, levels, fallback })
 }
 
-/// The levels of `sizes` from `level` on, coarsest first. Compression has one thread for a level: the next one is encoded meanwhile.
+/// Encoded bytes of a band of a level: as many as wait at most for compression, which has one thread. Level 0 of 4096^2 is four bands.
+const BAND_BYTES: usize = 1 << 22;
+
+/// Encodes all levels band by band. The next band is encoded while one is compressed.
 fn encode_levels(
     sizes: &[(u32, u32)],
-    level: usize,
     encoding: Encoding,
     row: &LevelRow<'_>,
 ) -> Result<Vec<StoredLevel>, EncodeError> {
-    let Some(&(width, height)) = sizes.get(level) else { return Ok(Vec::new()) };
-    let Encoding { format, metric, effort, .. } = encoding;
-    let of_level = |y: u32, out: &mut [[f32; 4]]| row(level, y, out);
-    let texels = Texels { width, height, row: &of_level };
-    let mut blocks = encode(&texels, format, metric, effort)?;
-    if let (Format::UastcRgb, Some(loss)) = (format, encoding.rdo) {
-        lower_rate(&mut blocks, &texels, metric, loss);
+    let Encoding { format, effort, .. } = encoding;
+    let mut levels = Vec::with_capacity(sizes.len());
+    let mut encoded: Option<(Storing, Vec<u8>)> = None;
+    let compressed = |encoded: Option<(Storing, Vec<u8>)>| {
+        encoded.map(|(mut level, band)| {
+            level.push(&band);
+            level
+        })
+    };
+    for (level, &(width, height)) in sizes.iter().enumerate() {
+        let rows = band_rows(encoding, (width, height));
+        for first in (0..height).step_by(rows as usize) {
+            let of_band = |y: u32, out: &mut [[f32; 4]]| row(level, first + y, out);
+            let texels = Texels { width, height: rows.min(height - first), row: &of_band };
+            let (band, last) = rayon::join(|| encode_band(&texels, encoding), || compressed(encoded.take()));
+            let storing = match last {
+                Some(storing) if first > 0 => storing,
+                finished => {
+                    levels.extend(finished.map(Storing::finish));
+                    Storing::new(format.level_bytes(width, height), format, effort)
+                }
+            };
+            encoded = Some((storing, band?));
+        }
     }
-    let (stored, coarser) =
-        rayon::join(|| StoredLevel::new(blocks, format, effort), || encode_levels(sizes, level + 1, encoding, row));
-    let mut levels = coarser?;
-    levels.push(stored);
+    levels.extend(compressed(encoded).map(Storing::finish));
     Ok(levels)
+}
+
+/// Rows of a band of a level: whole blocks of them, and all where blocks look at each other.
+fn band_rows(encoding: Encoding, (width, height): (u32, u32)) -> u32 {
+    let block_row = encoding.format.level_bytes(width, BLOCK_ROWS).max(1);
+    let rows = BLOCK_ROWS * (BAND_BYTES / block_row).max(1) as u32;
+    if encoding.rdo.is_some() { height } else { rows }
+}
+
+/// Rows of a block.
+const BLOCK_ROWS: u32 = 4;
+
+fn encode_band(texels: &Texels<'_>, encoding: Encoding) -> Result<Vec<u8>, EncodeError> {
+    let Encoding { format, metric, effort, .. } = encoding;
+    let mut blocks = encode(texels, format, metric, effort)?;
+    if let (Format::UastcRgb, Some(loss)) = (format, encoding.rdo) {
+        lower_rate(&mut blocks, texels, metric, loss);
+    }
+    Ok(blocks)
 }
 
 impl Chain {

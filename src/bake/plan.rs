@@ -96,7 +96,7 @@ pub fn plan(
             let layout = geometry.layout(index, &bumps.mapping);
             let mut notes = Vec::new();
             let (kind, slope_scale) = read_as(&layer.bumps, &source, settings, layout.as_ref(), &mut notes);
-            let own = own_textures(root, &layer, &source).map_err(failed("roughness or anisotropy texture"))?;
+            let own = textures_of_lobe(root, &layer, &source).map_err(failed("roughness or anisotropy texture"))?;
             let plan = LayerPlan { material: index, name: name.clone(), layer, slope_scale, layout, own, notes };
             match reliefs.iter_mut().find(|r| r.source.is_same(&source) && r.kind == kind) {
                 Some(relief) => relief.layers.push(plan),
@@ -136,7 +136,7 @@ fn read_as(
 }
 
 /// The textures of the layer's own lobe. The inner error says why bumps cannot be folded into them texel by texel.
-fn own_textures(
+fn textures_of_lobe(
     root: &Value,
     layer: &Layer,
     bumps: &TextureSource,
@@ -230,7 +230,7 @@ impl LayerPlan {
         self.own.as_ref().map_or([None; 2], |own| [own.roughness.as_ref(), own.anisotropy.as_ref()])
     }
 
-    /// Where they are.
+    /// Where the layer's own textures are.
     pub fn own_locations(&self) -> Vec<&ImageLocation> {
         self.own_textures().into_iter().flatten().map(|t| &t.location).collect()
     }

@@ -22,7 +22,7 @@ pub fn offset_from_normal([x, y, z]: [f32; 3]) -> Offset {
     slopes([x, y, z])
 }
 
-/// [`offset_from_normal`] of a normal that is not steep.
+/// [`offset_from_normal`] without its bound on slopes, of a normal with z > 0.
 #[inline(always)]
 pub(crate) fn slopes([x, y, z]: [f32; 3]) -> Offset {
     Offset { u: -x / z, v: -y / z }

@@ -167,10 +167,10 @@ mod tests {
 
     #[test]
     fn of_all_that_changed_the_first_by_name_is_told() {
-        let paths = ["a.png", "b.png"];
+        let paths = ["b.png", "a.png", "c.png"];
         let digests = paths.iter().map(|path| (Path::new(path), Some("of a file that is gone"))).collect();
         let inputs = Inputs { digests, changed: Mutex::new(None) };
-        for path in paths.into_iter().rev() {
+        for path in paths {
             assert!(inputs.read(Path::new(path)).is_err());
         }
         assert_eq!(inputs.changed(), Some("a.png".into()));

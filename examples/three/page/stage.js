@@ -27,7 +27,7 @@ export class Stage {
     this.environment('room');
   }
 
-  /** Loads the variants that have a URL. `reflected` is portable with the plugin's reflections. */
+  /** Loads the variants that have a URL. `reflected` is a portable bake with ellipses, shaded with the plugin's reflections. */
   async load(urls) {
     const ktx2 = new KTX2Loader().setTranscoderPath('/three/examples/jsm/libs/basis/').detectSupport(this.renderer);
     const load = async ([name, url]) => {

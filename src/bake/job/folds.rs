@@ -45,9 +45,9 @@ impl Job<'_> {
             let mut own = own.take().map_or_else(|| self.own_images(layer).map(Own::from), Ok)?;
             let size = self.grid(&own.images, Some(relief))?;
             let base = self.base(layer, &own.images, size);
-            let base = match own.levels.take_if(|levels| levels.size == size) {
-                Some(levels) => Pyramid::with_levels(base, levels.coarser),
-                None => Pyramid::new(base),
+            let base = match own.levels.take() {
+                Some(Levels { size: own_size, coarser }) if own_size == size => Pyramid::with_levels(base, coarser),
+                _ => Pyramid::new(base),
             };
             let is_base = layer.layer.kind == LayerKind::Base;
             let correction = (self.settings.profile.has_pyramid() && is_base)
@@ -202,7 +202,7 @@ impl Job<'_> {
         Ok(OwnImages { roughness: image(roughness)?, anisotropy: image(anisotropy)? })
     }
 
-    /// A grid that holds the layer's own lobe and the bumps.
+    /// A grid that holds the layer's own lobe and, where they are given, the bumps.
     fn grid(&self, own: &OwnImages, relief: Option<&Relief>) -> Result<(u32, u32), JobError> {
         let sizes = [&own.roughness, &own.anisotropy].into_iter().flatten().map(|i| (i.width, i.height));
         Ok(grid(self.settings, sizes.chain(relief.map(|r| (r.width(), r.height()))))?)

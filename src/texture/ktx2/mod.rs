@@ -13,7 +13,7 @@ mod write;
 pub use error::ReadError;
 pub use provenance::{PROVENANCE_KEY, Provenance, SourceDigest, provenance};
 pub use read::{Ktx2, Level, decode_payload};
-pub use write::{Key, Ktx2Writer, StoredLevel};
+pub use write::{Key, Ktx2Writer, StoredLevel, Storing};
 
 #[cfg(test)]
 mod formats_tests;

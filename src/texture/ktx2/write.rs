@@ -1,5 +1,6 @@
 //! The container writer. KTX File Format Specification 2.0, sections named at the line.
 
+use std::io::Write;
 use std::num::NonZeroU8;
 
 use ::ktx2::dfd::{Basic, Block, ChannelTypeQualifiers, DataFormatFlags, SampleInformation};
@@ -28,12 +29,56 @@ pub struct StoredLevel {
 impl StoredLevel {
     /// Of a level as [`crate::texture::encode`] returns it; zstd searches as long as `effort` says.
     pub fn new(level: Vec<u8>, format: Format, effort: Effort) -> Self {
-        let uncompressed = level.len();
-        let bytes = match format {
-            Format::UastcRgb => zstd::bulk::compress(&level, zstd_level(effort)),
-            _ => Ok(level),
+        let mut storing = Storing::new(level.len(), format, effort);
+        storing.push(&level);
+        storing.finish()
+    }
+}
+
+/// A level that is stored band by band, so that it is never held as it was encoded.
+pub struct Storing {
+    stored: Stored,
+    uncompressed: usize,
+}
+
+enum Stored {
+    Plain(Vec<u8>),
+    Zstd(zstd::stream::write::Encoder<'static, Vec<u8>>),
+}
+
+/// Why errors of the zstd encoder are none of the caller's: it writes to memory as many bytes as it was told.
+const TO_MEMORY: &str = "compressing to memory has no way to fail";
+
+impl Storing {
+    /// Of a level that [`crate::texture::encode`] makes `uncompressed` bytes of; zstd searches as long as `effort` says.
+    pub fn new(uncompressed: usize, format: Format, effort: Effort) -> Self {
+        let zstd = || {
+            let mut encoder = zstd::stream::write::Encoder::new(Vec::new(), zstd_level(effort))?;
+            encoder.set_pledged_src_size(Some(uncompressed as u64))?;
+            Ok::<_, std::io::Error>(encoder)
         };
-        Self { bytes: bytes.expect("compressing to memory has no way to fail"), uncompressed }
+        let stored = match format {
+            Format::UastcRgb => Stored::Zstd(zstd().expect(TO_MEMORY)),
+            _ => Stored::Plain(Vec::with_capacity(uncompressed)),
+        };
+        Self { stored, uncompressed }
+    }
+
+    /// Adds the next rows of blocks.
+    pub fn push(&mut self, band: &[u8]) {
+        match &mut self.stored {
+            Stored::Plain(bytes) => bytes.extend_from_slice(band),
+            Stored::Zstd(encoder) => encoder.write_all(band).expect(TO_MEMORY),
+        }
+    }
+
+    /// The level, all of whose bytes have been added.
+    pub fn finish(self) -> StoredLevel {
+        let bytes = match self.stored {
+            Stored::Plain(bytes) => bytes,
+            Stored::Zstd(encoder) => encoder.finish().expect(TO_MEMORY),
+        };
+        StoredLevel { bytes, uncompressed: self.uncompressed }
     }
 }
 
