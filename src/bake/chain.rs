@@ -120,7 +120,7 @@ pub fn encode_chain(sizes: &[(u32, u32)], encoding: Encoding, row: &LevelRow<'_>
         let row = |y: u32, out: &mut [[f32; 4]]| row(0, y, out);
         encoding.fallback.then(|| fallback(&Texels { width, height, row: &row }, encoding.effort)).transpose()
     };
-    let (levels, fallback) = rayon::join(|| encode_levels(kept, encoding, &row), png);
+    let (levels, fallback) = rayon::join(|| encode_levels(kept, encoding, BAND_BYTES, &row), png);
     let (levels, fallback) = (levels?, fallback?);
     Ok(Chain { format: encoding.format, trimmed: first, width, height, levels, fallback })
 }
@@ -128,10 +128,11 @@ pub fn encode_chain(sizes: &[(u32, u32)], encoding: Encoding, row: &LevelRow<'_>
 /// Encoded bytes of a band of a level: as many as wait at most for compression, which has one thread. Level 0 of 4096^2 is four bands.
 const BAND_BYTES: usize = 1 << 22;
 
-/// Encodes all levels band by band. The next band is encoded while one is compressed.
+/// Encodes all levels in bands of `most` bytes. The next band is encoded while one is compressed.
 fn encode_levels(
     sizes: &[(u32, u32)],
     encoding: Encoding,
+    most: usize,
     row: &LevelRow<'_>,
 ) -> Result<Vec<StoredLevel>, EncodeError> {
     let Encoding { format, effort, .. } = encoding;
@@ -144,7 +145,9 @@ fn encode_levels(
         })
     };
     for (level, &(width, height)) in sizes.iter().enumerate() {
-        let rows = band_rows(encoding, (width, height));
+        // Whole blocks, and all of them where they look at each other.
+        let block_row = format.level_bytes(width, EDGE);
+        let rows = if encoding.rdo.is_some() { height } else { EDGE * (most / block_row).max(1) as u32 };
         for first in (0..height).step_by(rows as usize) {
             let of_band = |y: u32, out: &mut [[f32; 4]]| row(level, first + y, out);
             let texels = Texels { width, height: rows.min(height - first), row: &of_band };
@@ -163,15 +166,8 @@ fn encode_levels(
     Ok(levels)
 }
 
-/// Rows of a band of a level: whole blocks of them, and all where blocks look at each other.
-fn band_rows(encoding: Encoding, (width, height): (u32, u32)) -> u32 {
-    let block_row = encoding.format.level_bytes(width, BLOCK_ROWS).max(1);
-    let rows = BLOCK_ROWS * (BAND_BYTES / block_row).max(1) as u32;
-    if encoding.rdo.is_some() { height } else { rows }
-}
-
-/// Rows of a block.
-const BLOCK_ROWS: u32 = 4;
+/// Edge of a block; formats without blocks are encoded by as many texels, too.
+pub(super) const EDGE: u32 = 4;
 
 fn encode_band(texels: &Texels<'_>, encoding: Encoding) -> Result<Vec<u8>, EncodeError> {
     let Encoding { format, metric, effort, .. } = encoding;
@@ -187,5 +183,34 @@ impl Chain {
     pub fn to_ktx2(&self, keys: &[Key]) -> Vec<u8> {
         let &Self { format, width, height, ref levels, .. } = self;
         Ktx2Writer { format, width, height, levels, keys }.to_bytes()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bands_hold_what_the_whole_holds() {
+        let row = |level: usize, y: u32, out: &mut [[f32; 4]]| {
+            for (x, texel) in out.iter_mut().enumerate() {
+                let value = |k: usize| ((k * x + 7 * y as usize + level) % 61) as f32 / 61.0;
+                *texel = [value(3), value(5), value(11), 1.0];
+            }
+        };
+        let sizes = crate::pyramid::level_sizes(52, 36);
+        for target in [Target::Basis, Target::Float] {
+            let settings = Settings { target, ..Settings::default() };
+            for encoding in [Encoding::of(&settings, 3), Encoding::of_normals(&settings)] {
+                let file = |most| {
+                    let levels = encode_levels(&sizes, encoding, most, &row).unwrap();
+                    Ktx2Writer { format: encoding.format, width: 52, height: 36, levels: &levels, keys: &[] }.to_bytes()
+                };
+                let whole = file(1 << 20);
+                for most in [1, 500, 3000] {
+                    assert!(file(most) == whole, "{target:?}, bands of {most} bytes");
+                }
+            }
+        }
     }
 }

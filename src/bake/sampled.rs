@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use rayon::prelude::*;
 
-use super::chain::{Encoding, LevelRow};
+use super::chain::{EDGE, Encoding, LevelRow};
 use crate::bump::Wrap;
 use crate::pyramid::neighbours;
 use crate::texture::ktx2::decode_payload;
@@ -26,9 +26,6 @@ pub struct Sampled<'a> {
     /// The sampler's mode, across and down.
     pub wrap: [Wrap; 2],
 }
-
-/// Edge of a block, for formats without blocks too: one texel costs as much as 16.
-const EDGE: u32 = 4;
 
 impl Sampled<'_> {
     /// What a sampler returns at the centres of `places`, texels of a chain of `grid` sizes: the level that covers as much

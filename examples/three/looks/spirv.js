@@ -25,15 +25,15 @@ export function count(words) {
     const current = open.at(-1);
     if (current === undefined) continue;
     if (op === OP.label && words[at + 1] === current.end) {
-      const { operations, fetches, calls, runs } = open.pop();
+      const { operations, fetches, calls, runs = 1 } = open.pop();
       const around = open.at(-1);
       around.operations += runs * operations;
       around.fetches += runs * fetches;
       for (let i = 0; i < runs; i++) around.calls.push(...calls);
     }
-    if (op === OP.loopMerge) open.push({ operations: 0, fetches: 0, calls: [], end: words[at + 1], runs: null });
+    if (op === OP.loopMerge) open.push({ operations: 0, fetches: 0, calls: [], end: words[at + 1] });
     // for ( int i = 0; i < constant; i ++ ): the first comparison of a loop.
-    if (op === OP.less && current.runs === null) current.runs = constants.get(words[at + 4]) ?? 1;
+    if (op === OP.less && current.end !== undefined) current.runs ??= constants.get(words[at + 4]) ?? 1;
     if (op === OP.call) current.calls.push(words[at + 3]);
     if (isFetch(op)) current.fetches++;
     if (isOperation(op)) current.operations++;

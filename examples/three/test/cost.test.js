@@ -23,10 +23,11 @@ test('loops count as often as they run', () => {
   const [fetch, add] = [[87, 1, 30, 2, 3], [129, 1, 31, 2, 3]];
   const helper = [[54, 1, 20, 0, 2], add, [56]];
   const loop = (end, bound) => [[246, end, 99, 0], [177, 1, 32, 33, bound], [177, 1, 34, 33, 7], fetch, [57, 1, 40, 20], [248, end]];
-  const main = [[54, 1, 10, 0, 2], ...loop(50, 7), add, ...loop(51, 8), [56]];
-  // 7 is the constant 4; the other bound is none.
+  const endless = [[246, 52, 99, 0], fetch, add, [248, 52]];
+  const main = [[54, 1, 10, 0, 2], ...loop(50, 7), add, ...loop(51, 8), ...endless, [56]];
+  // 7 is the constant 4; the other bound is none, and the last loop compares nothing.
   const module = spirv([15, 4, 10, 0], [43, 1, 7, 4], ...helper, ...main);
-  assert.deepEqual(count(module), { operations: 4 * 3 + 1 + 3, fetches: 4 + 1 });
+  assert.deepEqual(count(module), { operations: 4 * 3 + 1 + 3 + 1, fetches: 4 + 1 + 1 });
 });
 
 test('uniforms and varyings find their places', () => {

@@ -42,13 +42,11 @@ impl Job<'_> {
             let users: Vec<usize> =
                 (first..layers.len()).filter(|i| *i == first || layer.folds_like(&layers[*i])).collect();
             let has_later = first + users.len() < layers.len();
-            let mut own = own.take().map_or_else(|| self.own_images(layer).map(Own::from), Ok)?;
-            let size = self.grid(&own.images, Some(relief))?;
-            let base = self.base(layer, &own.images, size);
-            let base = match own.levels.take() {
-                Some(Levels { size: own_size, coarser }) if own_size == size => Pyramid::with_levels(base, coarser),
-                _ => Pyramid::new(base),
-            };
+            let Own { images, size: own_size, levels } =
+                own.take().map_or_else(|| self.own(layer, Some(relief)), Ok)?;
+            let size = self.grid(&images, Some(relief))?;
+            let base = self.base(layer, &images, size);
+            let base = if own_size == size { Pyramid::with_levels(base, levels) } else { Pyramid::new(base) };
             let is_base = layer.layer.kind == LayerKind::Base;
             let correction = (self.settings.profile.has_pyramid() && is_base)
                 .then(|| bumps.correction(layer.slope_scale, self.settings, own_lobe(&base.whole())));
@@ -187,19 +185,15 @@ impl Job<'_> {
         Ok(())
     }
 
-    /// The images of the layer's own lobe, with its levels on the images' own grid, which the bumps most often share.
-    pub(super) fn own(&self, layer: &LayerPlan) -> Result<Own, JobError> {
-        let images = self.own_images(layer)?;
-        let has_images = images.roughness.is_some() || images.anisotropy.is_some();
-        let size = has_images.then(|| self.grid(&images, None)).transpose()?;
-        let levels = size.map(|size| Levels { size, coarser: Coarser::new(&self.base(layer, &images, size)) });
-        Ok(Own { images, levels })
-    }
-
-    fn own_images(&self, layer: &LayerPlan) -> Result<OwnImages, JobError> {
+    /// The layer's own lobe. Without `relief`, which may not be there yet, its levels are on the grid of its own images, which
+    /// the bumps most often share.
+    pub(super) fn own(&self, layer: &LayerPlan, relief: Option<&Relief>) -> Result<Own, JobError> {
         let image = |texture: Option<&TextureSource>| texture.map(|t| self.image(t, &layer.name)).transpose();
         let [roughness, anisotropy] = layer.own_textures();
-        Ok(OwnImages { roughness: image(roughness)?, anisotropy: image(anisotropy)? })
+        let images = OwnImages { roughness: image(roughness)?, anisotropy: image(anisotropy)? };
+        let size = self.grid(&images, relief)?;
+        let levels = Coarser::new(&self.base(layer, &images, size));
+        Ok(Own { images, size, levels })
     }
 
     /// A grid that holds the layer's own lobe and, where they are given, the bumps.
@@ -226,19 +220,9 @@ impl Job<'_> {
 /// A layer's own lobe.
 pub(super) struct Own {
     images: OwnImages,
-    levels: Option<Levels>,
-}
-
-impl From<OwnImages> for Own {
-    fn from(images: OwnImages) -> Self {
-        Self { images, levels: None }
-    }
-}
-
-/// Levels 1 and coarser on a grid of `size`.
-struct Levels {
     size: (u32, u32),
-    coarser: Coarser<BaseTexel>,
+    /// Levels 1 and coarser on a grid of `size`.
+    levels: Coarser<BaseTexel>,
 }
 
 /// Images of a layer's own lobe.

@@ -107,7 +107,7 @@ pub fn run(
 ) -> Result<JobOutput, JobError> {
     let job = Job { plan, source, settings, geometry };
     // Decoders have one thread each, and normals take the longest.
-    let (relief, first) = rayon::join(|| job.relief(), || plan.layers.first().map(|layer| job.own(layer)));
+    let (relief, first) = rayon::join(|| job.relief(), || plan.layers.first().map(|layer| job.own(layer, None)));
     let (relief, mut relief_notes) = relief?;
     let first = first.transpose()?;
     let size = grid(settings, [(relief.width(), relief.height())])?;
