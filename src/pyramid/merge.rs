@@ -11,105 +11,78 @@ use crate::symmetric::Symmetric2;
 /// Texels that one coarser texel is merged from at most: 3 x 3.
 pub(crate) const MAX_PARTS: usize = 9;
 
-/// A value that can be merged over an area.
+/// A texel that can be merged over an area: some numbers, and what they are of several texels together.
 pub trait Merge: Copy + Default + Send + Sync {
-    /// The merged value of `parts`. `weights` has the same length, is not negative and sums to 1.
-    fn merge(weights: &[f32], parts: &[Self]) -> Self;
+    /// `[F; N]`: each number of one texel, or of several side by side.
+    type Numbers<F: Copy>: Numbers<F>;
 
-    /// The same for texels side by side: that of lane i has weights `weights[..][i]`, at most `MOST`, and parts
-    /// `part(.., i)`.
+    /// The numbers of this texel.
+    fn numbers(&self) -> Self::Numbers<f32>;
+
+    /// The texel of `numbers`.
+    fn of(numbers: Self::Numbers<f32>) -> Self;
+
+    /// The merged numbers of at most `MOST` parts. `weights` are as many as `parts`, not negative, and sum to 1.
+    fn merged<F: Real, const MOST: usize>(weights: &[F], parts: &[Self::Numbers<F>]) -> Self::Numbers<F>;
+
+    /// The merged texel of any number of parts, with weights like those of [`Merge::merged`].
+    fn merge(weights: &[f32], parts: &[Self]) -> Self {
+        let parts: Vec<_> = parts.iter().map(Self::numbers).collect();
+        Self::of(Self::merged::<_, MAX_PARTS>(weights, &parts))
+    }
+}
+
+/// The numbers of a texel: `[F; N]`.
+pub trait Numbers<F: Copy>: Copy + AsRef<[F]> + AsMut<[F]> {
+    /// `value` for all of them.
+    fn all(value: F) -> Self;
+}
+
+impl<F: Copy, const N: usize> Numbers<F> for [F; N] {
     #[inline(always)]
-    fn merge_lanes<S: Simd, const MOST: usize>(
-        _simd: S,
-        weights: &[[f32; LANES]],
-        part: impl Fn(usize, usize) -> Self,
-    ) -> [Self; LANES] {
-        std::array::from_fn(|lane| {
-            let (mut own, mut parts) = ([0.0; MOST], [Self::default(); MOST]);
-            for (tap, weights) in weights.iter().enumerate() {
-                own[tap] = weights[lane];
-                parts[tap] = part(tap, lane);
-            }
-            Self::merge(&own[..weights.len()], &parts[..weights.len()])
-        })
+    fn all(value: F) -> Self {
+        [value; N]
     }
 }
 
+/// [`Merge::merge`] for texels side by side: that of lane i has the weights `weights[..][i]`, at most `MOST`, and the parts
+/// `part(.., i)`.
 // Loops and not closures over arrays: what is not inlined into the caller has none of its vectors.
-
-/// The `N` numbers of each of the first `taps` parts, `LANES` texels wide.
 #[inline(always)]
-pub(crate) fn load<S: Simd, const MOST: usize, const N: usize>(
-    simd: S,
-    taps: usize,
-    values: impl Fn(usize, usize) -> [f32; N],
-) -> [[Wide<S>; N]; MOST] {
-    let mut lanes = [[[0.0; LANES]; N]; MOST];
-    for tap in 0..taps {
-        for lane in 0..LANES {
-            let values = values(tap, lane);
-            for i in 0..N {
-                lanes[tap][i][lane] = values[i];
-            }
-        }
-    }
-    // Not in the same loop: a vector that is read back right after its numbers are written waits for all of them.
-    let mut wide = [[Wide::splat(simd, 0.0); N]; MOST];
-    for tap in 0..taps {
-        for i in 0..N {
-            wide[tap][i] = Wide::simd_from(simd, lanes[tap][i]);
-        }
-    }
-    wide
-}
-
-/// The numbers of each lane.
-#[inline(always)]
-pub(crate) fn store<S: Simd, const N: usize>(wide: [Wide<S>; N]) -> [[f32; N]; LANES] {
-    let mut values = [[0.0; N]; LANES];
-    for i in 0..N {
-        let lanes: [f32; LANES] = wide[i].into();
-        for lane in 0..LANES {
-            values[lane][i] = lanes[lane];
-        }
-    }
-    values
-}
-
-/// A texel as `N` numbers, for [`Merge`].
-pub(super) trait Numbers<const N: usize>: Copy + Default {
-    /// The numbers.
-    fn values(&self) -> [f32; N];
-
-    /// The texel of them.
-    fn from_values(values: [f32; N]) -> Self;
-
-    /// The numbers of what is merged of `parts`, for one texel or many side by side.
-    fn merged<F: Real>(weights: &[F], parts: &[[F; N]]) -> [F; N];
-}
-
-/// [`Merge::merge`] of numbers.
-pub(super) fn merge_numbers<T: Numbers<N>, const N: usize>(weights: &[f32], parts: &[T]) -> T {
-    let parts: Vec<_> = parts.iter().map(T::values).collect();
-    T::from_values(T::merged(weights, &parts))
-}
-
-/// [`Merge::merge_lanes`] of numbers.
-#[inline(always)]
-pub(super) fn merge_number_lanes<S: Simd, T: Numbers<N>, const MOST: usize, const N: usize>(
+pub(super) fn merge_lanes<S: Simd, T: Merge, const MOST: usize>(
     simd: S,
     weights: &[[f32; LANES]],
     part: impl Fn(usize, usize) -> T,
 ) -> [T; LANES] {
-    let mut wide = [Wide::splat(simd, 0.0); MOST];
-    for (tap, weights) in weights.iter().enumerate() {
-        wide[tap] = Wide::simd_from(simd, *weights);
+    let zero = Wide::splat(simd, 0.0);
+    let mut lanes = [T::Numbers::<[f32; LANES]>::all([0.0; LANES]); MOST];
+    for tap in 0..weights.len() {
+        for lane in 0..LANES {
+            let numbers = part(tap, lane).numbers();
+            for (lanes, number) in lanes[tap].as_mut().iter_mut().zip(numbers.as_ref()) {
+                lanes[lane] = *number;
+            }
+        }
     }
-    let parts = load::<S, MOST, N>(simd, weights.len(), |tap, lane| part(tap, lane).values());
-    let merged = store(T::merged(&wide[..weights.len()], &parts[..weights.len()]));
+    // Not in the same loop: a vector that is read back right after its numbers are written waits for all of them.
+    let (mut wide, mut parts) = ([zero; MOST], [T::Numbers::<Wide<S>>::all(zero); MOST]);
+    for tap in 0..weights.len() {
+        wide[tap] = Wide::simd_from(simd, weights[tap]);
+        for (part, lanes) in parts[tap].as_mut().iter_mut().zip(lanes[tap].as_ref()) {
+            *part = Wide::simd_from(simd, *lanes);
+        }
+    }
+    let merged = T::merged::<_, MOST>(&wide[..weights.len()], &parts[..weights.len()]);
+    let mut numbers = [T::Numbers::<f32>::all(0.0); LANES];
+    for (i, merged) in merged.as_ref().iter().enumerate() {
+        let lanes: [f32; LANES] = (*merged).into();
+        for lane in 0..LANES {
+            numbers[lane].as_mut()[i] = lanes[lane];
+        }
+    }
     let mut texels = [T::default(); LANES];
     for lane in 0..LANES {
-        texels[lane] = T::from_values(merged[lane]);
+        texels[lane] = T::of(numbers[lane]);
     }
     texels
 }
@@ -131,29 +104,16 @@ impl Moments {
 }
 
 impl Merge for Moments {
-    fn merge(weights: &[f32], parts: &[Self]) -> Self {
-        merge_numbers(weights, parts)
-    }
+    type Numbers<F: Copy> = [F; 5];
 
     #[inline(always)]
-    fn merge_lanes<S: Simd, const MOST: usize>(
-        simd: S,
-        weights: &[[f32; LANES]],
-        part: impl Fn(usize, usize) -> Self,
-    ) -> [Self; LANES] {
-        merge_number_lanes::<S, Self, MOST, _>(simd, weights, part)
-    }
-}
-
-impl Numbers<5> for Moments {
-    #[inline(always)]
-    fn values(&self) -> [f32; 5] {
+    fn numbers(&self) -> [f32; 5] {
         let Symmetric2 { uu, uv, vv } = self.covariance;
         [self.mean.u, self.mean.v, uu, uv, vv]
     }
 
     #[inline(always)]
-    fn from_values([u, v, uu, uv, vv]: [f32; 5]) -> Self {
+    fn of([u, v, uu, uv, vv]: [f32; 5]) -> Self {
         Self { mean: Offset { u, v }, covariance: Symmetric2::new(uu, uv, vv) }
     }
 
@@ -161,7 +121,7 @@ impl Numbers<5> for Moments {
     /// for any weights. Central moments throughout: `E[x^2] - E[x]^2` cancels (test
     /// `moment_subtraction_cancels_and_the_recursion_does_not`). Parts are u, v, uu, uv, vv.
     #[inline(always)]
-    fn merged<F: Real>(weights: &[F], parts: &[[F; 5]]) -> [F; 5] {
+    fn merged<F: Real, const MOST: usize>(weights: &[F], parts: &[[F; 5]]) -> [F; 5] {
         let zero = weights[0].like(0.0);
         let (mut u, mut v) = (zero, zero);
         for (w, part) in weights.iter().zip(parts) {
@@ -183,31 +143,26 @@ impl<const N: usize> Merge for [f32; N]
 where
     [f32; N]: Default,
 {
-    #[inline]
-    fn merge(weights: &[f32], parts: &[Self]) -> Self {
-        let mut sum = [0.0; N];
-        for (w, part) in weights.iter().zip(parts) {
-            for (s, p) in sum.iter_mut().zip(part) {
-                *s += w * p;
-            }
-        }
-        sum
+    type Numbers<F: Copy> = [F; N];
+
+    #[inline(always)]
+    fn numbers(&self) -> Self {
+        *self
     }
 
     #[inline(always)]
-    fn merge_lanes<S: Simd, const MOST: usize>(
-        simd: S,
-        weights: &[[f32; LANES]],
-        part: impl Fn(usize, usize) -> Self,
-    ) -> [Self; LANES] {
-        let parts = load::<S, MOST, N>(simd, weights.len(), part);
-        let mut sum = [Wide::splat(simd, 0.0); N];
-        for (weights, part) in weights.iter().zip(parts) {
-            let weights = Wide::simd_from(simd, *weights);
+    fn of(numbers: Self) -> Self {
+        numbers
+    }
+
+    #[inline(always)]
+    fn merged<F: Real, const MOST: usize>(weights: &[F], parts: &[[F; N]]) -> [F; N] {
+        let mut sum = [weights[0].like(0.0); N];
+        for (w, part) in weights.iter().zip(parts) {
             for i in 0..N {
-                sum[i] += weights * part[i];
+                sum[i] = sum[i] + *w * part[i];
             }
         }
-        store(sum)
+        sum
     }
 }

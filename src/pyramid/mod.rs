@@ -10,8 +10,8 @@ mod resample;
 mod shaped;
 
 pub use coarser::Coarser;
-pub(crate) use merge::{MAX_PARTS, load, store};
-pub use merge::{Merge, Moments};
+pub(crate) use merge::MAX_PARTS;
+pub use merge::{Merge, Moments, Numbers};
 pub use reduce::{Level, build, level_size, level_sizes};
 pub(crate) use resample::neighbours;
 pub use resample::{Area, Linear};

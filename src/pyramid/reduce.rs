@@ -4,7 +4,7 @@ use fearless_simd::{Level as InstructionSet, Simd};
 use rayon::prelude::*;
 
 use super::Rows;
-use super::merge::{MAX_PARTS, Merge};
+use super::merge::{MAX_PARTS, Merge, merge_lanes};
 use crate::simd::{LANES, dispatch};
 
 /// Texels under one coarser texel along one axis: at most 3.
@@ -160,7 +160,7 @@ fn reduce_lanes<S: Simd, T: Merge, const MOST: usize>(
             *weights = std::array::from_fn(|lane| down.weights[index / taps] * across[lane].weights[index % taps]);
         }
         let part = |tap: usize, lane: usize| rows[tap / taps][across[lane].first as usize + tap % taps];
-        let merged = T::merge_lanes::<_, MOST>(simd, &weights[..down.count * taps], part);
+        let merged = merge_lanes::<_, T, MOST>(simd, &weights[..down.count * taps], part);
         out.copy_from_slice(&merged[..out.len()]);
     }
 }

@@ -1,10 +1,7 @@
 //! Third and fourth moments: what tells a heavy-tailed or lopsided distribution of offsets from a normal one.
 
-use fearless_simd::Simd;
-
-use super::merge::{Numbers, merge_number_lanes, merge_numbers};
 use super::{Merge, Moments, Rows};
-use crate::simd::{LANES, Real};
+use crate::simd::Real;
 use crate::symmetric::Symmetric2;
 
 /// Mean, covariance and the third and fourth central moments of the offsets in the area of one texel.
@@ -27,46 +24,29 @@ impl ShapedMoments {
     }
 }
 
-impl Merge for ShapedMoments {
-    fn merge(weights: &[f32], parts: &[Self]) -> Self {
-        merge_numbers(weights, parts)
-    }
-
-    #[inline(always)]
-    fn merge_lanes<S: Simd, const MOST: usize>(
-        simd: S,
-        weights: &[[f32; LANES]],
-        part: impl Fn(usize, usize) -> Self,
-    ) -> [Self; LANES] {
-        merge_number_lanes::<S, Self, MOST, _>(simd, weights, part)
-    }
-}
-
 /// Numbers of a texel: mean, covariance, third and fourth moments.
 const VALUES: usize = 14;
 
-impl Numbers<VALUES> for ShapedMoments {
+impl Merge for ShapedMoments {
+    type Numbers<F: Copy> = [F; VALUES];
+
     #[inline(always)]
-    fn values(&self) -> [f32; VALUES] {
-        let [u, v, uu, uv, vv] = self.moments.values();
+    fn numbers(&self) -> [f32; VALUES] {
+        let [u, v, uu, uv, vv] = self.moments.numbers();
         let ([t0, t1, t2, t3], [f0, f1, f2, f3, f4]) = (self.third, self.fourth);
         [u, v, uu, uv, vv, t0, t1, t2, t3, f0, f1, f2, f3, f4]
     }
 
     #[inline(always)]
-    fn from_values([u, v, uu, uv, vv, t0, t1, t2, t3, f0, f1, f2, f3, f4]: [f32; VALUES]) -> Self {
-        Self {
-            moments: Moments::from_values([u, v, uu, uv, vv]),
-            third: [t0, t1, t2, t3],
-            fourth: [f0, f1, f2, f3, f4],
-        }
+    fn of([u, v, uu, uv, vv, t0, t1, t2, t3, f0, f1, f2, f3, f4]: [f32; VALUES]) -> Self {
+        Self { moments: Moments::of([u, v, uu, uv, vv]), third: [t0, t1, t2, t3], fourth: [f0, f1, f2, f3, f4] }
     }
 
     /// Exact for any weights: E[(d_i + e)^p] expanded, with d_i central in its part and e from the whole's mean to the
     /// part's (P. Pebay, "Formulas for robust, one-pass parallel computation of covariances and arbitrary-order
     /// statistical moments", SAND2008-6212, 2008, section 3; here for two variables and weights that sum to 1).
     #[inline(always)]
-    fn merged<F: Real>(weights: &[F], parts: &[[F; VALUES]]) -> [F; VALUES] {
+    fn merged<F: Real, const MOST: usize>(weights: &[F], parts: &[[F; VALUES]]) -> [F; VALUES] {
         let zero = weights[0].like(0.0);
         let (two, three, four, six) = (zero.like(2.0), zero.like(3.0), zero.like(4.0), zero.like(6.0));
         let mut sums = [zero; VALUES];

@@ -1,0 +1,83 @@
+//! A lobe as slopes about some normal, and how far an EM step takes it.
+
+use crate::simd::Real;
+
+/// Lobes are taken to be at least 0.001 wide: without width there is no density.
+pub const MIN_SQUARED_ALPHA: f32 = 1e-6;
+
+/// How far to go along an EM step. Where the points are a GGX lobe, one step leaves a third of what mean, width and
+/// shape alike lack, so that 3/2 of it leaves nothing to first order: q has the density 1 / (1 + q)^2 and with
+/// w = 1 / (1 + q), E[w] = 1/2, E[w^2 q] = 1/6 and E[w^2 q^2] = 1/3 what is left is E[w^2 q] / E[w] of the mean,
+/// 2 (E[w^2 q^2] - E[w^2 q]) of the width and E[w^2 q^2] of the shape.
+const STRIDE: f32 = 1.5;
+
+/// A symmetric matrix.
+#[derive(Clone, Copy, Default)]
+pub struct Matrix<F> {
+    pub uu: F,
+    pub uv: F,
+    pub vv: F,
+}
+
+impl<F: Real> Matrix<F> {
+    /// |A|.
+    #[inline(always)]
+    fn determinant(self) -> F {
+        self.uu * self.vv - self.uv * self.uv
+    }
+
+    /// A^-1, with A made as wide at least as lobes are taken to be, and wider where it is long, so that rounding leaves it a
+    /// determinant.
+    #[inline(always)]
+    pub fn inverse(self) -> Self {
+        let zero = self.uu.like(0.0);
+        let (one, least) = (zero.like(1.0), zero.like(MIN_SQUARED_ALPHA));
+        let uu = self.uu.max(least);
+        let vv = self.vv.max(self.uv * self.uv / uu + least * (one + self.vv));
+        let scale = one / Self { uu, vv, ..self }.determinant();
+        Self { uu: vv * scale, uv: zero - self.uv * scale, vv: uu * scale }
+    }
+
+    /// p^T A q.
+    #[inline(always)]
+    pub fn between(self, p: [F; 2], q: [F; 2]) -> F {
+        p[0] * q[0] * self.uu + (p[0] * q[1] + p[1] * q[0]) * self.uv + p[1] * q[1] * self.vv
+    }
+}
+
+/// A lobe as slopes about some normal.
+#[derive(Clone, Copy)]
+pub struct Slopes<F> {
+    pub mean: [F; 2],
+    pub a: Matrix<F>,
+}
+
+impl<F: Real> Slopes<F> {
+    #[inline(always)]
+    pub fn or(self, other: Self, mask: F::Mask) -> Self {
+        let mean = [self.mean[0].or(other.mean[0], mask), self.mean[1].or(other.mean[1], mask)];
+        let (own, other) = (self.a, other.a);
+        let a = Matrix { uu: own.uu.or(other.uu, mask), uv: own.uv.or(other.uv, mask), vv: own.vv.or(other.vv, mask) };
+        Self { mean, a }
+    }
+
+    /// An EM step from here, given the sums of w, w x, w y, w x^2, w x y and w y^2 about the mean; [`STRIDE`] times as far
+    /// where that leaves at least a tenth of the determinant.
+    #[inline(always)]
+    pub fn step(self, [weight, x, y, xx, xy, yy]: [F; 6]) -> Self {
+        let (share, two, stride) = (weight.like(1.0) / weight, weight.like(2.0), weight.like(STRIDE));
+        let (dx, dy) = (x * share, y * share);
+        let a = Matrix {
+            uu: two * (xx * share - dx * dx),
+            uv: two * (xy * share - dx * dy),
+            vv: two * (yy * share - dy * dy),
+        };
+        let [u, v] = self.mean;
+        let plain = Self { mean: [u + dx, v + dy], a };
+        let along = |from: F, to: F| from + stride * (to - from);
+        let far = Matrix { uu: along(self.a.uu, a.uu), uv: along(self.a.uv, a.uv), vv: along(self.a.vv, a.vv) };
+        let least = weight.like(0.1) * a.determinant();
+        let overshoots = far.determinant().at_most(least) | far.uu.at_most(weight.like(0.0));
+        plain.or(Self { mean: [u + stride * dx, v + stride * dy], a: far }, overshoots)
+    }
+}
