@@ -1,7 +1,5 @@
 //! Merging texels: what a coarser texel holds, given the finer ones that it covers.
 
-#![expect(clippy::needless_range_loop, reason = "loops over lanes and channels read several arrays at one index")]
-
 use fearless_simd::{Simd, prelude::*};
 
 use crate::bump::Offset;
