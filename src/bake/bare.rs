@@ -1,6 +1,6 @@
 //! A bare map baked: no document, no material.
 
-use super::base::BaseRows;
+use super::base::{Base, BaseRows};
 use super::bumps::Bumps;
 use super::chain::{Chain, Encoding, GridError, grid};
 use super::fold::Fold;
@@ -9,10 +9,10 @@ use super::notes;
 use super::pyramids::{Quantity, Range, Ranged, bake_quantity, filter_loss};
 use super::relief::Relief;
 use super::report::{Choice, Content};
-use super::settings::{Model, Settings};
+use super::settings::{Form, Model, Settings};
 use super::trial::Trial;
 use crate::map::{Image, Rgba};
-use crate::pyramid::{Pyramid, Rows};
+use crate::pyramid::Rows;
 use crate::texture::EncodeError;
 
 /// The roughness that a bare map's surface has by itself.
@@ -58,6 +58,8 @@ pub struct BareBake {
 
 /// Bakes `relief`. The portable profile writes roughness only where `own` tells what to fold the bumps into.
 pub fn bake_map(relief: &Relief, own: Option<&OwnRoughness>, settings: &Settings) -> Result<BareBake, BareError> {
+    // No document refers to PNGs.
+    let settings = &Settings { form: Form::Strict, ..*settings };
     let size = (relief.width(), relief.height());
     let bumps = Bumps::new(relief, grid(settings, [size])?);
     let mut textures = Vec::new();
@@ -72,7 +74,7 @@ pub fn bake_map(relief: &Relief, own: Option<&OwnRoughness>, settings: &Settings
     let fold = own.map(|own| {
         let image = own.image.as_ref();
         let (width, height) = grid(settings, image.map(|i| (i.width, i.height)).into_iter().chain([size]))?;
-        let base = Pyramid::new(BaseRows::new(width, height, image.map(Rgba), own.factor, None, relief.wrap()));
+        let base = Base::new(BaseRows::new(width, height, image.map(Rgba), own.factor, None, relief.wrap()));
         let resampled = ((width, height) != bumps.size()).then(|| Bumps::new(relief, (width, height)));
         let has_own_grid = resampled.is_some();
         Ok::<_, BareError>((Fold::new(base, resampled.as_ref().unwrap_or(&bumps), 1.0, settings), has_own_grid))
@@ -129,4 +131,20 @@ pub fn bake_map(relief: &Relief, own: Option<&OwnRoughness>, settings: &Settings
     }
     let is_modelled = textures.len() > 1;
     Ok(BareBake { model: if is_modelled { model } else { Model::None }, textures, choice, notes })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::{NormalLayout, NormalMap, Samples};
+
+    #[test]
+    fn pngs_are_not_made_where_no_document_refers_to_them() {
+        let image = Image { width: 8, height: 8, samples: Samples::U8(vec![128; 3 * 64]), channels: 3 };
+        let relief = Relief::Normals(NormalMap::new(image, NormalLayout::Xyz, false).unwrap());
+        let settings = Settings { form: Form::Fallback, ..Settings::default() };
+        let own = OwnRoughness { image: None, factor: 0.5 };
+        let baked = bake_map(&relief, Some(&own), &settings).unwrap();
+        assert!(baked.textures.iter().all(|texture| texture.chain.fallback.is_none()));
+    }
 }

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use crate::bump::Wrap;
 use crate::lobe::{Anisotropy, Roughness, SquaredAlpha};
 use crate::map::Rgba;
-use crate::pyramid::{Linear, Rows};
+use crate::pyramid::{Coarser, Linear, Rows, level_sizes};
 
 /// A texel of the material's own lobe: A (uu, uv, vv), then the red and blue channels, which are only averaged.
 pub type BaseTexel = [f32; 5];
@@ -113,6 +113,61 @@ impl Rows for BaseRows<'_> {
             let a = lobe.squared_alpha().0;
             *texel = [a.uu, a.uv, a.vv, red, blue];
         }
+    }
+}
+
+/// Levels 1 and coarser of a material's own lobe; none where all texels are the same.
+pub struct BaseLevels(Option<Coarser<BaseTexel>>);
+
+impl BaseLevels {
+    /// Those over `rows`.
+    pub fn new(rows: &BaseRows<'_>) -> Self {
+        let is_textured = rows.roughness.is_some() || rows.direction.is_some();
+        Self(is_textured.then(|| Coarser::new(rows)))
+    }
+}
+
+/// A material's own lobe with all its levels.
+pub struct Base<'a> {
+    rows: BaseRows<'a>,
+    coarser: BaseLevels,
+}
+
+impl<'a> Base<'a> {
+    /// All levels over `rows`.
+    pub fn new(rows: BaseRows<'a>) -> Self {
+        let coarser = BaseLevels::new(&rows);
+        Self { rows, coarser }
+    }
+
+    /// The same, where `coarser` has been made of `rows` before.
+    pub fn with_levels(rows: BaseRows<'a>, coarser: BaseLevels) -> Self {
+        Self { rows, coarser }
+    }
+
+    /// Level 0.
+    pub fn finest(&self) -> &BaseRows<'a> {
+        &self.rows
+    }
+
+    /// Sizes of all levels, level 0 first.
+    pub fn sizes(&self) -> Vec<(u32, u32)> {
+        level_sizes(self.rows.width, self.rows.height)
+    }
+
+    /// Writes row `y` of `level` to `out`.
+    pub fn row(&self, level: usize, y: u32, out: &mut [BaseTexel]) {
+        match &self.coarser.0 {
+            Some(coarser) => coarser.row(&self.rows, level, y, out),
+            None => self.rows.row(0, out),
+        }
+    }
+
+    /// The average of all texels.
+    pub fn whole(&self) -> BaseTexel {
+        let mut texel = [BaseTexel::default()];
+        self.row(self.sizes().len() - 1, 0, &mut texel);
+        texel[0]
     }
 }
 

@@ -2,13 +2,12 @@
 
 use rayon::prelude::*;
 
-use super::base::{BaseRows, BaseTexel};
+use super::base::{Base, BaseTexel};
 use super::bumps::Bumps;
 use super::chain::{Chain, Encoding, encode_chain};
 use super::lobes::{Lobes, own_lobe};
 use super::settings::{Model, Settings};
 use crate::lobe::{Anisotropy, Roughness, SquaredAlpha, isotropic_distance};
-use crate::pyramid::Pyramid;
 use crate::simd::map_row;
 use crate::symmetric::Symmetric2;
 use crate::texture::EncodeError;
@@ -18,7 +17,7 @@ const CLEARLY_ELLIPTICAL: f32 = 1.5;
 
 /// A material's lobe roughened by its bumps.
 pub struct Fold<'a> {
-    base: Pyramid<BaseRows<'a>>,
+    base: Base<'a>,
     lobes: Lobes<'a>,
     /// Whether the material's own lobe is anisotropic.
     is_elliptical: bool,
@@ -40,8 +39,8 @@ fn looked_at(height: u32) -> impl IndexedParallelIterator<Item = u32> {
 
 impl<'a> Fold<'a> {
     /// Joins `base` with `bumps` on the same grid. `slope_scale` multiplies offsets (`normalTexture.scale`).
-    pub fn new<'b: 'a>(base: Pyramid<BaseRows<'a>>, bumps: &Bumps<'b>, slope_scale: f32, settings: &Settings) -> Self {
-        let is_elliptical = base.source().is_elliptical();
+    pub fn new<'b: 'a>(base: Base<'a>, bumps: &Bumps<'b>, slope_scale: f32, settings: &Settings) -> Self {
+        let is_elliptical = base.finest().is_elliptical();
         let lobes = Lobes::new(&base, bumps, slope_scale, settings);
         Self { base, lobes, is_elliptical }
     }
@@ -204,7 +203,7 @@ impl<'a> Fold<'a> {
     /// Whether red and blue of the material's own roughness texture are the same everywhere, so that a smaller texture
     /// loses nothing of them.
     pub fn is_plain(&self) -> bool {
-        self.base.source().is_plain()
+        self.base.finest().is_plain()
     }
 
     /// Calls `visit(x, bare lobe, folded lobe, [red, blue])` for each texel of a row.

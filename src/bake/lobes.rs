@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::base::{BaseRows, BaseTexel};
+use super::base::{Base, BaseRows, BaseTexel};
 use super::bumps::Bumps;
 use super::relief::Relief;
 use super::settings::Settings;
@@ -25,8 +25,8 @@ impl<'a> Lobes<'a> {
     /// `base` on the grid of `bumps`, whose offsets are multiplied by `slope_scale`. Levels 1 and coarser of GGX lobes are
     /// merged from level to level by likelihood where the distribution is the bumps' own, else folded by its correction
     /// factor. The best quality then fits them to the bumps' own distribution.
-    pub fn new<'b: 'a>(base: &Pyramid<BaseRows<'a>>, bumps: &Bumps<'b>, slope_scale: f32, settings: &Settings) -> Self {
-        let finest = Finest { base: base.source().clone(), bumps: bumps.rows, slope_scale };
+    pub fn new<'b: 'a>(base: &Base<'a>, bumps: &Bumps<'b>, slope_scale: f32, settings: &Settings) -> Self {
+        let finest = Finest { base: base.finest().clone(), bumps: bumps.rows, slope_scale };
         let folded = || finest.folded(base, bumps, settings).into();
         let coarser = match (settings.distribution, settings.effort) {
             (Distribution::Normal | Distribution::Uniform, _) => folded(),
@@ -155,7 +155,7 @@ struct Finest<'a> {
 }
 
 impl Finest<'_> {
-    fn folded(&self, base: &Pyramid<BaseRows<'_>>, bumps: &Bumps<'_>, settings: &Settings) -> Vec<Level<OrientedLobe>> {
+    fn folded(&self, base: &Base<'_>, bumps: &Bumps<'_>, settings: &Settings) -> Vec<Level<OrientedLobe>> {
         let levels = bumps.sizes().into_iter().enumerate().skip(1);
         match settings.distribution {
             Distribution::Auto => {
@@ -179,7 +179,7 @@ impl Finest<'_> {
         &self,
         level: usize,
         (width, height): (u32, u32),
-        base: &Pyramid<BaseRows<'_>>,
+        base: &Base<'_>,
         bumps: impl Fn(usize, u32, &mut [ShapedMoments]) + Sync,
         settings: &Settings,
     ) -> Level<OrientedLobe> {

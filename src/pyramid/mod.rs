@@ -58,11 +58,6 @@ impl<R: Rows> Pyramid<R> {
     /// The full chain over `source`.
     pub fn new(source: R) -> Self {
         let coarser = Coarser::new(&source);
-        Self::with_levels(source, coarser)
-    }
-
-    /// The same, where the levels over `source` have been made before.
-    pub fn with_levels(source: R, coarser: Coarser<R::Texel>) -> Self {
         Self { source, coarser }
     }
 

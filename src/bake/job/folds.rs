@@ -1,7 +1,7 @@
 //! The job's textures of the portable profile that hold folded lobes.
 
 use super::{Job, JobError, JobOutput, JobTexture, LayerOutcome};
-use crate::bake::base::{BaseAnisotropy, BaseRows, BaseTexel};
+use crate::bake::base::{Base, BaseAnisotropy, BaseLevels, BaseRows};
 use crate::bake::bumps::Bumps;
 use crate::bake::chain::{Encoding, grid};
 use crate::bake::fold::Fold;
@@ -16,7 +16,7 @@ use crate::bake::trial::Trial;
 use crate::gltf::material::LayerKind;
 use crate::gltf::texture::TextureSource;
 use crate::map::{Image, Rgba};
-use crate::pyramid::{Coarser, Pyramid, Rows};
+use crate::pyramid::Rows;
 
 impl Job<'_> {
     /// Folds the bumps into each distinct lobe, choosing its model on the way. Normals point where the lobes do that are
@@ -46,7 +46,7 @@ impl Job<'_> {
                 own.take().map_or_else(|| self.own(layer, Some(relief)), Ok)?;
             let size = self.grid(&images, Some(relief))?;
             let base = self.base(layer, &images, size);
-            let base = if own_size == size { Pyramid::with_levels(base, levels) } else { Pyramid::new(base) };
+            let base = if own_size == size { Base::with_levels(base, levels) } else { Base::new(base) };
             let is_base = layer.layer.kind == LayerKind::Base;
             let correction = (self.settings.profile.has_pyramid() && is_base)
                 .then(|| bumps.correction(layer.slope_scale, self.settings, own_lobe(&base.whole())));
@@ -192,7 +192,7 @@ impl Job<'_> {
         let [roughness, anisotropy] = layer.own_textures();
         let images = OwnImages { roughness: image(roughness)?, anisotropy: image(anisotropy)? };
         let size = self.grid(&images, relief)?;
-        let levels = Coarser::new(&self.base(layer, &images, size));
+        let levels = BaseLevels::new(&self.base(layer, &images, size));
         Ok(Own { images, size, levels })
     }
 
@@ -222,7 +222,7 @@ pub(super) struct Own {
     images: OwnImages,
     size: (u32, u32),
     /// Levels 1 and coarser on a grid of `size`.
-    levels: Coarser<BaseTexel>,
+    levels: BaseLevels,
 }
 
 /// Images of a layer's own lobe.

@@ -1,4 +1,4 @@
-use super::super::base::BaseRows;
+use super::super::base::{Base, BaseRows};
 use super::super::bumps::Bumps;
 use super::super::report::Content;
 use super::super::{BareBake, OwnRoughness, Profile, Relief, bake_map};
@@ -227,7 +227,7 @@ fn levels_that_cannot_be_sampled_do_not_count() {
     let map = NormalMap::new(image, NormalLayout::Xyz, false).unwrap();
     let relief = Relief::Normals(map);
     let bumps = Bumps::new(&relief, (64, 64));
-    let base = Pyramid::new(BaseRows::new(64, 64, None, 0.4, None, [Wrap::Repeat; 2]));
+    let base = Base::new(BaseRows::new(64, 64, None, 0.4, None, [Wrap::Repeat; 2]));
     let settings = settings(0.1);
     let fold = Fold::new(base, &bumps, 1.0, &settings);
     let normals = Normals::of_lobes(&bumps, fold.lobes());
