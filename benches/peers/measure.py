@@ -32,7 +32,7 @@ class Contender:
 
 
 def once(contender):
-    """One run: `wall` and `cpu` in seconds, `peak` in MiB, `said` as the command printed it."""
+    """One run: `wall` and `cpu` in seconds, `peak` and what was `written` in MiB, and what the command printed."""
     if contender.out:
         shutil.rmtree(contender.out, ignore_errors=True)
         os.makedirs(contender.out)
@@ -56,6 +56,9 @@ def once(contender):
             said = next((line.strip() for line in reversed(lines) if line.strip()), "no message")
             raise Failed(f"ended with {process.returncode}: {said[:160]}")
         run = {"wall": wall, "cpu": usage.ru_utime + usage.ru_stime, "peak": usage.ru_maxrss / 1024}
+        if contender.out:
+            files = [os.path.join(folder, name) for folder, _, names in os.walk(contender.out) for name in names]
+            run["written"] = sum(map(os.path.getsize, files)) / 1048576
         if contender.tells:
             run |= json.loads(out.read())
         return run
@@ -88,4 +91,5 @@ def summary(runs):
         "least": min(walls),
         "most": max(walls),
         "runs": len(runs),
+        **({"written": runs[-1]["written"]} if "written" in runs[-1] else {}),
     }

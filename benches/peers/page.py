@@ -153,19 +153,21 @@ def decoders(part):
 def whole(part):
     found = part["errors"]
     model = {"two textures": "isotropic", "default": "default", "pack": "none"}
+    size = lambda name: f"{part['times'][name]['written']:.1f}" if "written" in part["times"][name] else "-"
+    more = lambda name: [size(name), lobes(found.get(model.get(name)))]
     pack = "`ktx create --encode uastc --uastc-quality 0 --zstd 5`" if part["ktx"] else PACK
     return "\n".join([
         f"## A whole bake: one material, normal and roughness of {square(part['size'])}",
         "",
-        "`--only whole`. From PNGs on disk to files on disk, mips included. `maketx` and the stand-in read the normal map only. Lobe errors",
+        "`--only whole`. From PNGs on disk to files on disk, mips included. `maketx` and `ktx create` take the normal map only. Lobe errors",
         "(mean of all levels, worst level) are what the bake itself reports of what engines decode after encoding; plain",
         "mips, as `ktx create` makes them, keep the material's roughness. What `maketx` writes is for renderers that fold it themselves.",
         "",
-        timed(part["times"], "two textures", lambda name: [lobes(found.get(model.get(name)))], ["lobe error"], pack),
+        timed(part["times"], "two textures", more, ["written MiB", "lobe error"], pack),
     ])
 
 
-PACK = "stand-in for `ktx create --generate-mipmap --encode uastc --uastc-quality 0 --zstd 5` (boxes, basis_universal level 0, zstd)"
+PACK = "stand-in for `ktx create --generate-mipmap --encode uastc --uastc-quality 0 --zstd 5` (boxes, basis_universal level 0, zstd 3)"
 
 
 def growth(part):

@@ -1,6 +1,6 @@
 //! An asset baked: all its jobs, and the document that refers to their textures.
 
-use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use serde_json::Value;
@@ -16,7 +16,6 @@ use super::pyramids::Range;
 use super::report::{AssetReport, LayerReport, TextureReport};
 use super::settings::{Form, Settings};
 use super::source::{Source, SourceError};
-use crate::digest::digest;
 use crate::gltf::document::{Container, Document, DocumentError};
 use crate::gltf::json::JsonError;
 use crate::gltf::material::{MaterialError, materials};
@@ -113,7 +112,8 @@ struct Assembly<'a> {
     settings: &'a Settings,
     document: Document,
     names: Names,
-    digests: BTreeMap<ImageLocation, String>,
+    /// Images that textures tell of.
+    told: BTreeSet<ImageLocation>,
     textures: Vec<NewTexture>,
     ranges: Vec<Option<Range>>,
     /// The BIN chunk that became a file.
@@ -135,7 +135,7 @@ impl<'a> Assembly<'a> {
             settings,
             document,
             names: Names::new(source.stem),
-            digests: BTreeMap::new(),
+            told: BTreeSet::new(),
             textures: Vec::new(),
             ranges: Vec::new(),
             bin,
@@ -168,7 +168,7 @@ impl<'a> Assembly<'a> {
     }
 
     fn add_texture(&mut self, texture: JobTexture) -> Result<(), BakeError> {
-        let keys = if self.settings.provenance { self.provenance(&texture)?.keys() } else { Vec::new() };
+        let keys = if self.settings.provenance { self.provenance(&texture).keys() } else { Vec::new() };
         let ktx2 = texture.chain.to_ktx2(&keys);
         let path = self.names.unique(&stem(&texture), texture.content.name());
         let chain = texture.chain;
@@ -205,32 +205,23 @@ impl<'a> Assembly<'a> {
         Ok(NewImage::File(uri))
     }
 
-    fn provenance(&mut self, texture: &JobTexture) -> Result<Provenance, BakeError> {
-        let mut sources = Vec::with_capacity(texture.sources.len());
-        for location in &texture.sources {
-            let blake3 = match self.digests.get(location) {
-                Some(digest) => digest.clone(),
-                None => {
-                    let digest = digest(&self.source.image(location)?);
-                    self.digests.insert(location.clone(), digest.clone());
-                    digest
-                }
-            };
-            sources.push(SourceDigest { uri: describe(location), blake3 });
-        }
-        Ok(Provenance {
+    fn provenance(&mut self, texture: &JobTexture) -> Provenance {
+        self.told.extend(texture.sources.iter().map(|(location, _)| location.clone()));
+        let source =
+            |(location, blake3): &(_, String)| SourceDigest { uri: describe(location), blake3: blake3.clone() };
+        Provenance {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             content: texture.content.name().to_owned(),
             settings: self.settings.to_json(texture.model),
             lobe_errors: texture.lobe_errors.clone(),
-            sources,
-        })
+            sources: texture.sources.iter().map(source).collect(),
+        }
     }
 
     fn finish(mut self) -> Result<Baked, BakeError> {
         let json = self.document.json_mut();
         if self.settings.provenance && !self.textures.is_empty() {
-            let told: Vec<PathBuf> = self.digests.keys().filter_map(file).collect();
+            let told: Vec<PathBuf> = self.told.iter().filter_map(file).collect();
             DocumentProvenance::new(self.source, |path| told.iter().any(|told| told == path))?.write(json)?;
         }
         // First, so that textures of the material's own lobe count as needed.

@@ -35,7 +35,7 @@ pub use extension::EXTENSION;
 pub use job::JobError;
 pub use png::encode_png;
 pub use provenance::DocumentProvenance;
-pub use publish::{Places, PublishError, check_file, claim, publish, read_file, write_file, write_unsynced};
+pub use publish::{Places, PublishError, check_file, claim, hash_file, publish, read_file, write_file, write_unsynced};
 pub use pyramids::Range;
 pub use relief::Relief;
 pub use settings::{Form, Model, Profile, Settings};

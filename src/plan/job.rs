@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
 use super::error::RunError;
-use crate::bake::{Settings, Survey, read_file, survey};
+use crate::bake::{Settings, Survey, hash_file, read_file, survey};
 use crate::config::Values;
 use crate::digest::digest;
 use crate::gltf::document::{Container, Document};
@@ -83,9 +83,8 @@ impl Job {
             vec![JobInput { path: source.to_owned(), blake3: Some(digest(&bytes)), bytes: bytes.len() as u64 }];
         for file in &survey.files {
             let path = beside(source, file);
-            let bytes = read_file(&path).ok();
-            let (blake3, bytes) = (bytes.as_deref().map(digest), bytes.map_or(0, |b| b.len() as u64));
-            inputs.push(JobInput { path, blake3, bytes });
+            let (blake3, bytes) = hash_file(&path).ok().unzip();
+            inputs.push(JobInput { path, blake3, bytes: bytes.unwrap_or(0) });
         }
         let names = survey.files.iter().map(|file| file.to_string_lossy());
         let files: Vec<(String, &Option<String>)> = [stem.clone().into()]

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::error::RunError;
 use super::job::{Job, beside};
-use crate::bake::{Places, PublishError, claim, read_file, write_file};
+use crate::bake::{Places, PublishError, claim, hash_file, read_file, write_file};
 use crate::cache::{Cache, CacheError, Entry, Stored};
 use crate::digest::digest;
 
@@ -91,5 +91,5 @@ fn planned<'j>(job: &'j Job, file: &Path) -> Option<&'j str> {
 
 /// Whether the file at `path` has the bytes whose BLAKE3 in hex is `blake3`.
 pub fn holds(path: &Path, blake3: &str) -> bool {
-    read_file(path).is_ok_and(|bytes| digest(&bytes) == blake3)
+    hash_file(path).is_ok_and(|(found, _)| found == blake3)
 }

@@ -1,5 +1,5 @@
 //! A stand-in for `ktx create --generate-mipmap --encode uastc --uastc-quality 0 --zstd 5`, which is in no registry: the same
-//! decoding, mips, encoder and supercompression, by the `png` crate, boxes and basis_universal's level 0.
+//! decoding, mips and encoder, with zstd as Roughcast's `fast` has it, by the `png` crate, boxes and basis_universal's level 0.
 
 use std::path::Path;
 
@@ -28,7 +28,6 @@ pub fn measure(image: &Path, out: &Path) -> Result<Value, Failure> {
             texels = halved(&texels, sizes[finer], (width, height));
         }
         let blocks = Encoder::Basisu(0, Interface::Plain).blocks(&texels, width, height)?;
-        // `Fast` is zstd 5.
         levels.push(StoredLevel::new(blocks, Format::UastcRgb, Effort::Fast));
     }
     let file = Ktx2Writer { format: Format::UastcRgb, width, height, levels: &levels, keys: &[] }.to_bytes();

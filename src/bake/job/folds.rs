@@ -138,8 +138,7 @@ impl Job<'_> {
             let [roughness, anisotropy] = layer.own_textures();
             let own_location = roughness.map(|t| t.location.clone());
             let named_after = own_location.ok_or_else(|| layer.name.clone());
-            let mut sources = vec![self.plan.source.location.clone()];
-            sources.extend(layer.own_locations().into_iter().cloned());
+            let sources = self.hashed([&self.plan.source.location].into_iter().chain(layer.own_locations()));
             let texture = |content, chain, sampler, slots| JobTexture {
                 content,
                 chain,
@@ -174,7 +173,7 @@ impl Job<'_> {
                 chain,
                 range: None,
                 named_after: Ok(self.plan.source.location.clone()),
-                sources: vec![self.plan.source.location.clone()],
+                sources: self.hashed([&self.plan.source.location]),
                 slots: layers.iter().map(LayerPlan::normal_slot).collect(),
                 sampler: self.plan.source.sampler,
                 model: Model::None,

@@ -6,6 +6,9 @@ mod pyramids;
 
 pub use error::JobError;
 
+use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
+
 use super::bumps::Bumps;
 use super::chain::{Chain, grid};
 use super::extension::Unfolded;
@@ -19,6 +22,7 @@ use super::settings::{Model, Settings};
 use super::source::Source;
 use super::view::Finest;
 use crate::bump::Frame;
+use crate::digest::digest;
 use crate::gltf::density::NoDensity;
 use crate::gltf::material::Mapping;
 use crate::gltf::rewrite::Slot;
@@ -37,8 +41,8 @@ pub struct JobTexture {
     pub range: Option<Range>,
     /// The image that its file is named after; without one, the material is.
     pub named_after: Result<ImageLocation, String>,
-    /// Images that it was made from.
-    pub sources: Vec<ImageLocation>,
+    /// Images that it was made from, each with the BLAKE3 of its file in hex; none without provenance.
+    pub sources: Vec<(ImageLocation, String)>,
     /// References of materials to it.
     pub slots: Vec<Slot>,
     /// Index into `samplers`.
@@ -105,7 +109,7 @@ pub fn run(
     geometry: &Geometry<'_>,
     settings: &Settings,
 ) -> Result<JobOutput, JobError> {
-    let job = Job { plan, source, settings, geometry };
+    let job = Job { plan, source, settings, geometry, digests: Mutex::default() };
     // Decoders have one thread each, and normals take the longest.
     let (relief, first) = rayon::join(|| job.relief(), || plan.layers.first().map(|layer| job.own(layer, None)));
     let (relief, mut relief_notes) = relief?;
@@ -164,6 +168,8 @@ struct Job<'a> {
     source: &'a Source<'a>,
     settings: &'a Settings,
     geometry: &'a Geometry<'a>,
+    /// BLAKE3 of each image file that was read, for provenance: of the bytes that are baked.
+    digests: Mutex<BTreeMap<ImageLocation, String>>,
 }
 
 impl Job<'_> {
@@ -228,7 +234,19 @@ impl Job<'_> {
         if is_baked(&bytes) || texture.other_forms.iter().any(form_is_baked) {
             return Err(JobError::AlreadyBaked { material: material(), texture: describe(&texture.location) });
         }
+        if self.settings.provenance {
+            self.digests
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner)
+                .insert(texture.location.clone(), digest(&bytes));
+        }
         Ok(bytes)
+    }
+
+    /// Those of `locations` that were read, with their digests.
+    fn hashed<'l>(&self, locations: impl IntoIterator<Item = &'l ImageLocation>) -> Vec<(ImageLocation, String)> {
+        let digests = self.digests.lock().unwrap_or_else(PoisonError::into_inner);
+        locations.into_iter().filter_map(|l| Some((l.clone(), digests.get(l)?.clone()))).collect()
     }
 
     fn decoded(&self, file: &[u8], texture: &TextureSource, material: &str, decode: Decode) -> Result<Image, JobError> {

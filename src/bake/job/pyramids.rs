@@ -106,7 +106,7 @@ impl Job<'_> {
             chain,
             range: Some(range),
             named_after: Ok(self.plan.source.location.clone()),
-            sources: vec![self.plan.source.location.clone()],
+            sources: self.hashed([&self.plan.source.location]),
             slots: Vec::new(),
             sampler: self.plan.source.sampler,
             model,
