@@ -55,10 +55,9 @@ def once(contender):
             lines = err.read().decode(errors="replace").split("\n")
             said = next((line.strip() for line in reversed(lines) if line.strip()), "no message")
             raise Failed(f"ended with {process.returncode}: {said[:160]}")
-        run = {"wall": wall, "cpu": usage.ru_utime + usage.ru_stime, "peak": usage.ru_maxrss / 1024}
-        if contender.out:
-            files = [os.path.join(folder, name) for folder, _, names in os.walk(contender.out) for name in names]
-            run["written"] = sum(map(os.path.getsize, files)) / 1048576
+        files = [os.path.join(folder, name) for folder, _, names in os.walk(contender.out or "") for name in names]
+        written = sum(map(os.path.getsize, files)) / 1048576
+        run = {"wall": wall, "cpu": usage.ru_utime + usage.ru_stime, "peak": usage.ru_maxrss / 1024, "written": written}
         if contender.tells:
             run |= json.loads(out.read())
         return run
@@ -91,5 +90,5 @@ def summary(runs):
         "least": min(walls),
         "most": max(walls),
         "runs": len(runs),
-        **({"written": runs[-1]["written"]} if "written" in runs[-1] else {}),
+        "written": runs[-1]["written"],
     }

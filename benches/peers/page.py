@@ -153,8 +153,8 @@ def decoders(part):
 def whole(part):
     found = part["errors"]
     model = {"two textures": "isotropic", "default": "default", "pack": "none"}
-    size = lambda name: f"{part['times'][name]['written']:.1f}" if "written" in part["times"][name] else "-"
-    more = lambda name: [size(name), lobes(found.get(model.get(name)))]
+    written = lambda name: part["times"][name]["written"]
+    more = lambda name: [f"{written(name):.1f}" if written(name) else "-", lobes(found.get(model.get(name)))]
     pack = "`ktx create --encode uastc --uastc-quality 0 --zstd 5`" if part["ktx"] else PACK
     return "\n".join([
         f"## A whole bake: one material, normal and roughness of {square(part['size'])}",

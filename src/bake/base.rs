@@ -116,7 +116,7 @@ impl Rows for BaseRows<'_> {
     }
 }
 
-/// Levels 1 and coarser of a material's own lobe; none where all texels are the same.
+/// Levels 1 and coarser of a material's own lobe; none without textures, where all texels are the same.
 pub struct BaseLevels(Option<Coarser<BaseTexel>>);
 
 impl BaseLevels {

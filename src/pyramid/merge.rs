@@ -20,7 +20,8 @@ pub trait Merge: Copy + Default + Send + Sync {
     /// The texel of `numbers`.
     fn of(numbers: Self::Numbers<f32>) -> Self;
 
-    /// The merged numbers of at most `MOST` parts. `weights` are as many as `parts`, not negative, and sum to 1.
+    /// The merged numbers of `parts`. `weights` are as many, not negative, and sum to 1. Where merging needs room for each part,
+    /// there is room for `MOST`, and [`Merge::merge`] must see to larger numbers of them.
     fn merged<F: Real, const MOST: usize>(weights: &[F], parts: &[Self::Numbers<F>]) -> Self::Numbers<F>;
 
     /// The merged texel of any number of parts, with weights like those of [`Merge::merged`].
@@ -151,6 +152,12 @@ where
     #[inline(always)]
     fn of(numbers: Self) -> Self {
         numbers
+    }
+
+    /// Without the copy of the parts: maps are magnified texel by texel.
+    #[inline]
+    fn merge(weights: &[f32], parts: &[Self]) -> Self {
+        Self::merged::<_, MAX_PARTS>(weights, parts)
     }
 
     #[inline(always)]

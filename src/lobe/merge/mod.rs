@@ -47,8 +47,9 @@ impl Merge for OrientedLobe {
 
     fn merge(weights: &[f32], parts: &[Self]) -> Self {
         if parts.len() <= MAX_PARTS {
-            let parts: Vec<_> = parts.iter().map(Self::numbers).collect();
-            return Self::of(Self::merged::<_, MAX_PARTS>(weights, &parts));
+            let mut numbers = [[0.0; 6]; MAX_PARTS];
+            numbers.iter_mut().zip(parts).for_each(|(numbers, part)| *numbers = part.numbers());
+            return Self::of(Self::merged::<_, MAX_PARTS>(weights, &numbers[..parts.len()]));
         }
         let groups = weights.chunks(MAX_PARTS).zip(parts.chunks(MAX_PARTS));
         let (weights, parts): (Vec<f32>, Vec<Self>) = groups

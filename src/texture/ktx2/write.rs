@@ -98,7 +98,7 @@ pub struct Ktx2Writer<'a> {
 }
 
 /// On the UASTC of `../shared/data` level 5 takes twice the time of level 3 and makes files 1.6 % smaller, on that of normals
-/// and roughness without any flat place 3 times for 2 %: an eighth of a whole bake (`zstd -b3 -e5`). On three real assets
+/// and roughness without any flat place 3 times for 2 % (`zstd -b3 -e5`). On three real assets
 /// level 18 makes them 7 % smaller than level 5 at a twentieth of its speed.
 fn zstd_level(effort: Effort) -> i32 {
     match effort {
