@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
+use rayon::prelude::*;
 use serde_json::Value;
 
 use super::container::{self, ContainerError};
@@ -150,8 +151,14 @@ impl<'a> Assembly<'a> {
 
     fn add(&mut self, output: JobOutput) -> Result<(), BakeError> {
         let first = self.textures.len();
-        for texture in output.textures {
-            self.add_texture(texture)?;
+        let keys = |texture: &JobTexture| match self.settings.provenance {
+            true => self.provenance(texture).keys(),
+            false => Vec::new(),
+        };
+        let ktx2: Vec<Vec<u8>> =
+            output.textures.par_iter().map(|texture| texture.chain.to_ktx2(&keys(texture))).collect();
+        for (texture, ktx2) in output.textures.into_iter().zip(ktx2) {
+            self.add_texture(texture, ktx2)?;
         }
         for layer in output.layers {
             self.unit_factors.extend(layer.unit_factor);
@@ -167,9 +174,10 @@ impl<'a> Assembly<'a> {
         Ok(())
     }
 
-    fn add_texture(&mut self, texture: JobTexture) -> Result<(), BakeError> {
-        let keys = if self.settings.provenance { self.provenance(&texture).keys() } else { Vec::new() };
-        let ktx2 = texture.chain.to_ktx2(&keys);
+    fn add_texture(&mut self, texture: JobTexture, ktx2: Vec<u8>) -> Result<(), BakeError> {
+        if self.settings.provenance {
+            self.told.extend(texture.sources.iter().map(|(location, _)| location.clone()));
+        }
         let path = self.names.unique(&stem(&texture), texture.content.name());
         let chain = texture.chain;
         self.report.textures.push(TextureReport {
@@ -205,8 +213,7 @@ impl<'a> Assembly<'a> {
         Ok(NewImage::File(uri))
     }
 
-    fn provenance(&mut self, texture: &JobTexture) -> Provenance {
-        self.told.extend(texture.sources.iter().map(|(location, _)| location.clone()));
+    fn provenance(&self, texture: &JobTexture) -> Provenance {
         let source =
             |(location, blake3): &(_, String)| SourceDigest { uri: describe(location), blake3: blake3.clone() };
         Provenance {

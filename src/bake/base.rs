@@ -58,8 +58,21 @@ impl BaseRows<'_> {
         self.strength > 0.0
     }
 
+    /// Writes the red, green, blue and alpha of row `y` of the roughness texture to `out`; 1 without one.
+    fn surface(&self, y: u32, out: &mut [[f32; 4]]) {
+        match &self.roughness {
+            Some(rows) => rows.row(y, out),
+            None => out.fill([1.0; 4]),
+        }
+    }
+
     fn roughness(&self, green: f32) -> Roughness {
         Roughness((green * self.roughness_factor).clamp(0.0, 1.0))
+    }
+
+    /// Of a round lobe.
+    fn squared_alpha(&self, green: f32) -> f32 {
+        SquaredAlpha::isotropic(self.roughness(green).into()).0.uu
     }
 
     /// Whether red and blue of the roughness texture are the same everywhere.
@@ -88,14 +101,11 @@ impl Rows for BaseRows<'_> {
     }
 
     fn row(&self, y: u32, out: &mut [BaseTexel]) {
-        let mut surface = vec![[1.0; 4]; out.len()];
-        if let Some(rows) = &self.roughness {
-            rows.row(y, &mut surface);
-        }
-        if self.strength == 0.0 {
+        let mut surface = vec![[0.0; 4]; out.len()];
+        self.surface(y, &mut surface);
+        if !self.is_elliptical() {
             for (texel, [red, green, blue, _]) in out.iter_mut().zip(surface) {
-                let SquaredAlpha(a) = SquaredAlpha::isotropic(self.roughness(green).into());
-                *texel = [a.uu, a.uv, a.vv, red, blue];
+                *texel = whole_texel([self.squared_alpha(green), red, blue]);
             }
             return;
         }
@@ -116,14 +126,55 @@ impl Rows for BaseRows<'_> {
     }
 }
 
-/// Levels 1 and coarser of a material's own lobe; none without textures, where all texels are the same.
-pub struct BaseLevels(Option<Coarser<BaseTexel>>);
+/// Of a texel whose lobe is round: its squared alpha, red and blue.
+type RoundTexel = [f32; 3];
+
+/// The texel with all its numbers.
+fn whole_texel([squared_alpha, red, blue]: RoundTexel) -> BaseTexel {
+    [squared_alpha, 0.0, squared_alpha, red, blue]
+}
+
+/// The rows of a material whose lobes are round.
+struct RoundRows<'r, 'a>(&'r BaseRows<'a>);
+
+impl Rows for RoundRows<'_, '_> {
+    type Texel = RoundTexel;
+
+    fn width(&self) -> u32 {
+        self.0.width
+    }
+
+    fn height(&self) -> u32 {
+        self.0.height
+    }
+
+    fn row(&self, y: u32, out: &mut [RoundTexel]) {
+        let mut surface = vec![[0.0; 4]; out.len()];
+        self.0.surface(y, &mut surface);
+        for (texel, [red, green, blue, _]) in out.iter_mut().zip(surface) {
+            *texel = [self.0.squared_alpha(green), red, blue];
+        }
+    }
+}
+
+/// Levels 1 and coarser of a material's own lobe.
+pub enum BaseLevels {
+    /// Without textures all texels are the same.
+    Same,
+    /// Round lobes, whose other numbers need no memory: 3/5 of it.
+    Round(Coarser<RoundTexel>),
+    /// Lobes that are ellipses.
+    Elliptical(Coarser<BaseTexel>),
+}
 
 impl BaseLevels {
     /// Those over `rows`.
     pub fn new(rows: &BaseRows<'_>) -> Self {
-        let is_textured = rows.roughness.is_some() || rows.direction.is_some();
-        Self(is_textured.then(|| Coarser::new(rows)))
+        match (rows.roughness.is_some() || rows.direction.is_some(), rows.is_elliptical()) {
+            (false, _) => Self::Same,
+            (true, false) => Self::Round(Coarser::new(&RoundRows(rows))),
+            (true, true) => Self::Elliptical(Coarser::new(rows)),
+        }
     }
 }
 
@@ -157,9 +208,15 @@ impl<'a> Base<'a> {
 
     /// Writes row `y` of `level` to `out`.
     pub fn row(&self, level: usize, y: u32, out: &mut [BaseTexel]) {
-        match &self.coarser.0 {
-            Some(coarser) => coarser.row(&self.rows, level, y, out),
-            None => self.rows.row(0, out),
+        match &self.coarser {
+            BaseLevels::Same => self.rows.row(0, out),
+            BaseLevels::Round(_) if level == 0 => self.rows.row(y, out),
+            BaseLevels::Round(coarser) => {
+                let mut row = vec![RoundTexel::default(); out.len()];
+                coarser.row(&RoundRows(&self.rows), level, y, &mut row);
+                out.iter_mut().zip(row).for_each(|(texel, round)| *texel = whole_texel(round));
+            }
+            BaseLevels::Elliptical(coarser) => coarser.row(&self.rows, level, y, out),
         }
     }
 

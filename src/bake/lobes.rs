@@ -58,7 +58,7 @@ impl<'a> Lobes<'a> {
     /// Their squared alphas alone, where the material's own lobes of that row are known: `own`.
     pub fn squared_alphas(&self, own: &[BaseTexel], level: usize, y: u32, out: &mut [SquaredAlpha]) {
         // Bumps that are not resampled do not vary within a texel.
-        if level == 0 && self.finest.bumps.is_source() {
+        if level == 0 && self.finest.bumps.unchanged().is_some() {
             out.iter_mut().zip(own).for_each(|(a, texel)| *a = own_lobe(texel));
             return;
         }
@@ -215,21 +215,26 @@ impl Rows for Finest<'_> {
     }
 
     fn row(&self, y: u32, out: &mut [OrientedLobe]) {
-        let (mut own, mut bumps) = (vec![BaseTexel::default(); out.len()], vec![Moments::default(); out.len()]);
-        self.base.row(y, &mut own);
-        self.bumps.row(y, &mut bumps);
         let scale = self.slope_scale;
-        map_row(
-            bumps.iter().map(|m| [m.mean.u * scale, m.mean.v * scale]),
-            out,
-            |[u, v]| normal_from_offset(Offset { u, v }),
-            |lobe, normal| lobe.normal = normal,
-        );
+        let point = |offsets: &[[f32; 2]], out: &mut [OrientedLobe]| {
+            let normal = |[u, v]: [f32; 2]| normal_from_offset(Offset { u: u * scale, v: v * scale });
+            map_row(offsets.iter().copied(), out, normal, |lobe, normal| lobe.normal = normal);
+        };
+        let (mut own, mut offsets) = (vec![BaseTexel::default(); out.len()], vec![[0.0; 2]; out.len()]);
+        self.base.row(y, &mut own);
         // Bumps that are not resampled do not vary within a texel.
-        let varies = !self.bumps.is_source();
+        if let Some(relief) = self.bumps.unchanged() {
+            relief.offsets(y, &mut offsets);
+            point(&offsets, out);
+            out.iter_mut().zip(&own).for_each(|(lobe, texel)| lobe.squared_alpha = own_lobe(texel));
+            return;
+        }
+        let mut bumps = vec![Moments::default(); out.len()];
+        self.bumps.row(y, &mut bumps);
+        offsets.iter_mut().zip(&bumps).for_each(|(offset, m)| *offset = [m.mean.u, m.mean.v]);
+        point(&offsets, out);
         for ((lobe, texel), m) in out.iter_mut().zip(&own).zip(&bumps) {
-            let own = own_lobe(texel);
-            lobe.squared_alpha = if varies { own.fold(m.covariance.scaled([scale; 2])) } else { own };
+            lobe.squared_alpha = own_lobe(texel).fold(m.covariance.scaled([scale; 2]));
         }
     }
 }

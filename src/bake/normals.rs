@@ -26,9 +26,9 @@ enum Offsets<'a> {
 }
 
 /// Offsets without their covariances, which are 3/5 of the memory of moments.
-struct Means<R>(R);
+struct Means<'a>(Area<&'a Relief>);
 
-impl<R: Rows<Texel = Moments>> Rows for Means<R> {
+impl Rows for Means<'_> {
     type Texel = [f32; 2];
 
     fn width(&self) -> u32 {
@@ -40,6 +40,9 @@ impl<R: Rows<Texel = Moments>> Rows for Means<R> {
     }
 
     fn row(&self, y: u32, out: &mut [[f32; 2]]) {
+        if let Some(relief) = self.0.unchanged() {
+            return relief.offsets(y, out);
+        }
         let mut moments = vec![Moments::default(); out.len()];
         self.0.row(y, &mut moments);
         out.iter_mut().zip(moments).for_each(|(mean, m)| *mean = [m.mean.u, m.mean.v]);

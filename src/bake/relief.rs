@@ -30,6 +30,16 @@ impl Relief {
         }
     }
 
+    /// Writes the offsets (f_u, f_v) of row `y` to `out`.
+    pub fn offsets(&self, y: u32, out: &mut [[f32; 2]]) {
+        match self {
+            Self::Normals(map) => NormalOffsets::new(map).offsets(y, out),
+            Self::Heights { map, slope_per_step, wrap } => {
+                HeightOffsets::new(map, *slope_per_step, *wrap).offsets(y, out);
+            }
+        }
+    }
+
     /// Texels whose slope is not what the map says.
     pub fn outliers(&self) -> Outliers {
         match self {

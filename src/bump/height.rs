@@ -102,6 +102,18 @@ impl<'a> HeightOffsets<'a> {
     }
 }
 
+impl HeightOffsets<'_> {
+    /// Writes f_u and f_v of row `y` to `out`.
+    pub fn offsets(&self, y: u32, out: &mut [[f32; 2]]) {
+        let mut slopes = vec![[0.0; 2]; out.len()];
+        self.slopes(y, &mut slopes);
+        for (texel, [u, v]) in out.iter_mut().zip(slopes) {
+            let Offset { u, v } = Offset::clamped(u, v);
+            *texel = [u, v];
+        }
+    }
+}
+
 impl Rows for HeightOffsets<'_> {
     type Texel = Moments;
 
@@ -114,11 +126,9 @@ impl Rows for HeightOffsets<'_> {
     }
 
     fn row(&self, y: u32, out: &mut [Moments]) {
-        let mut slopes = vec![[0.0; 2]; out.len()];
-        self.slopes(y, &mut slopes);
-        for (texel, [u, v]) in out.iter_mut().zip(slopes) {
-            *texel = Moments::flat(Offset::clamped(u, v));
-        }
+        let mut offsets = vec![[0.0; 2]; out.len()];
+        self.offsets(y, &mut offsets);
+        out.iter_mut().zip(offsets).for_each(|(texel, [u, v])| *texel = Moments::flat(Offset { u, v }));
     }
 }
 

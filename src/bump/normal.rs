@@ -64,14 +64,51 @@ impl<'a> NormalOffsets<'a> {
         (0..self.map.height())
             .into_par_iter()
             .map_init(
-                || vec![[0.0; 3]; self.map.width() as usize],
-                |normals, y| {
+                || (vec![[0.0; 3]; self.map.width() as usize], vec![0.0; self.map.width() as usize]),
+                |(normals, marks), y| {
                     self.map.row(y, normals);
-                    let count = |filter: fn(&[f32; 3]) -> bool| normals.iter().filter(|n| filter(n)).count() as u64;
-                    Outliers { steep: count(|n| n[2] > 0.0 && is_steep(*n)), below: count(|n| n[2] <= 0.0) }
+                    let mark = |normal| [f32::from(u8::from(is_steep(normal)))];
+                    map_row(normals.iter().copied(), marks, mark, |out, [mark]| *out = mark);
+                    // Most rows have none, which vectors find out.
+                    if marks.iter().fold(0, |any, mark| any | mark.to_bits()) == 0 {
+                        return Outliers::default();
+                    }
+                    let below = normals.iter().filter(|normal| normal[2] <= 0.0).count() as u64;
+                    let steep = normals.iter().filter(|normal| is_steep(**normal)).count() as u64;
+                    Outliers { steep: steep - below, below }
                 },
             )
             .reduce(Outliers::default, Outliers::plus)
+    }
+}
+
+impl NormalOffsets<'_> {
+    /// Writes f_u and f_v of row `y` to `out`.
+    pub fn offsets(&self, y: u32, out: &mut [[f32; 2]]) {
+        self.each(y, out, |texel, Offset { u, v }| *texel = [u, v]);
+    }
+
+    #[inline]
+    fn each<T>(&self, y: u32, out: &mut [T], store: impl Fn(&mut T, Offset)) {
+        let mut normals = vec![[0.0; 3]; out.len()];
+        self.map.row(y, &mut normals);
+        let mut steep = 0.0;
+        map_row(
+            normals.iter().copied(),
+            out,
+            |normal| {
+                let Offset { u, v } = slopes(normal);
+                [u, v, f32::from(u8::from(is_steep(normal)))]
+            },
+            |texel, [u, v, is_steep]| {
+                store(texel, Offset { u, v });
+                steep += is_steep;
+            },
+        );
+        if steep > 0.0 {
+            let steep = out.iter_mut().zip(normals).filter(|(_, normal)| is_steep(*normal));
+            steep.for_each(|(texel, normal)| store(texel, offset_from_normal(normal)));
+        }
     }
 }
 
@@ -87,25 +124,7 @@ impl Rows for NormalOffsets<'_> {
     }
 
     fn row(&self, y: u32, out: &mut [Moments]) {
-        let mut normals = vec![[0.0; 3]; out.len()];
-        self.map.row(y, &mut normals);
-        let mut steep = 0.0;
-        map_row(
-            normals.iter().copied(),
-            out,
-            |normal| {
-                let Offset { u, v } = slopes(normal);
-                [u, v, f32::from(u8::from(is_steep(normal)))]
-            },
-            |texel, [u, v, is_steep]| {
-                *texel = Moments::flat(Offset { u, v });
-                steep += is_steep;
-            },
-        );
-        if steep > 0.0 {
-            let steep = out.iter_mut().zip(normals).filter(|(_, normal)| is_steep(*normal));
-            steep.for_each(|(texel, normal)| texel.mean = offset_from_normal(normal));
-        }
+        self.each(y, out, |texel, offset| *texel = Moments::flat(offset));
     }
 }
 

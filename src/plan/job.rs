@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
@@ -81,11 +82,11 @@ impl Job {
         let output: &Path = &output.components().collect::<PathBuf>();
         let mut inputs =
             vec![JobInput { path: source.to_owned(), blake3: Some(digest(&bytes)), bytes: bytes.len() as u64 }];
-        for file in &survey.files {
+        inputs.par_extend(survey.files.par_iter().map(|file| {
             let path = beside(source, file);
             let (blake3, bytes) = hash_file(&path).ok().unzip();
-            inputs.push(JobInput { path, blake3, bytes: bytes.unwrap_or(0) });
-        }
+            JobInput { path, blake3, bytes: bytes.unwrap_or(0) }
+        }));
         let names = survey.files.iter().map(|file| file.to_string_lossy());
         let files: Vec<(String, &Option<String>)> = [stem.clone().into()]
             .into_iter()

@@ -45,16 +45,16 @@ impl<F: Copy, const N: usize> Numbers<F> for [F; N] {
 }
 
 /// [`Merge::merge`] for texels side by side: that of lane i has the weights `weights[..][i]`, at most `MOST`, and the parts
-/// `part(.., i)`.
+/// `part(.., i)`. `lanes` is room for their numbers.
 // Loops and not closures over arrays: what is not inlined into the caller has none of its vectors.
 #[inline(always)]
 pub(super) fn merge_lanes<S: Simd, T: Merge, const MOST: usize>(
     simd: S,
     weights: &[[f32; LANES]],
     part: impl Fn(usize, usize) -> T,
+    lanes: &mut [T::Numbers<[f32; LANES]>; MOST],
 ) -> [T; LANES] {
     let zero = Wide::splat(simd, 0.0);
-    let mut lanes = [T::Numbers::<[f32; LANES]>::all([0.0; LANES]); MOST];
     for tap in 0..weights.len() {
         for lane in 0..LANES {
             let numbers = part(tap, lane).numbers();

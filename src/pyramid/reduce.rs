@@ -4,7 +4,7 @@ use fearless_simd::{Level as InstructionSet, Simd};
 use rayon::prelude::*;
 
 use super::Rows;
-use super::merge::{MAX_PARTS, Merge, merge_lanes};
+use super::merge::{MAX_PARTS, Merge, Numbers, merge_lanes};
 use crate::simd::{LANES, dispatch};
 
 /// Texels under one coarser texel along one axis: at most 3.
@@ -150,17 +150,19 @@ fn reduce_lanes<S: Simd, T: Merge, const MOST: usize>(
         true => &rows[tap * fine_width..][..fine_width],
         false => &[],
     });
+    let mut lanes = [T::Numbers::<[f32; LANES]>::all([0.0; LANES]); MOST];
     for (group, out) in out.chunks_mut(LANES).enumerate() {
         // Beyond the last texel it is merged again.
         let across: [Taps; LANES] =
             std::array::from_fn(|lane| Taps::new(fine_width as u32, (group * LANES + lane.min(out.len() - 1)) as u32));
-        let taps = across[0].count;
+        // Four are two by two: no division is left.
+        let taps = if MOST == 4 { 2 } else { across[0].count };
         let mut weights = [[0.0; LANES]; MOST];
         for (index, weights) in weights.iter_mut().enumerate().take(down.count * taps) {
             *weights = std::array::from_fn(|lane| down.weights[index / taps] * across[lane].weights[index % taps]);
         }
         let part = |tap: usize, lane: usize| rows[tap / taps][across[lane].first as usize + tap % taps];
-        let merged = merge_lanes::<_, T, MOST>(simd, &weights[..down.count * taps], part);
+        let merged = merge_lanes::<_, T, MOST>(simd, &weights[..down.count * taps], part, &mut lanes);
         out.copy_from_slice(&merged[..out.len()]);
     }
 }

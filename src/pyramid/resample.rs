@@ -18,9 +18,9 @@ impl<R: Rows> Area<R> {
         Self { source, width, height }
     }
 
-    /// Whether the grid is that of the source, whose texels come back as they are.
-    pub fn is_source(&self) -> bool {
-        (self.width, self.height) == (self.source.width(), self.source.height())
+    /// The source where the grid is its own: texels come back as they are.
+    pub fn unchanged(&self) -> Option<&R> {
+        ((self.width, self.height) == (self.source.width(), self.source.height())).then_some(&self.source)
     }
 }
 
@@ -36,8 +36,8 @@ impl<R: Rows> Rows for Area<R> {
     }
 
     fn row(&self, y: u32, out: &mut [R::Texel]) {
-        if self.is_source() {
-            return self.source.row(y, out);
+        if let Some(source) = self.unchanged() {
+            return source.row(y, out);
         }
         let fine_width = self.source.width() as usize;
         let down = overlaps(self.source.height(), self.height, y);

@@ -97,7 +97,11 @@ impl Job<'_> {
             let fold = fold.filter(|_| is_portable && model != Model::None);
             let folding = Encoding::of(self.settings, 3).starting_at(first);
             let folded = fold.as_ref().map(|f| f.bake(model, folding)).transpose()?;
-            let fold_notes = fold.map_or_else(Vec::new, |fold| notes::of_fold(&fold, model, relief.noise()));
+            let fold_notes = fold.map_or_else(Vec::new, |fold| {
+                let notes = notes::of_fold(&fold, model, relief.noise());
+                fold.drop_all();
+                notes
+            });
             for user in &users {
                 let LayerOutcome {
                     report,

@@ -1,6 +1,6 @@
-//! Eight blocks that are being searched, and their way from and to single ones.
+//! Blocks side by side that are being searched, and their way from and to single ones.
 
-use fearless_simd::{Simd, SimdBase, SimdCvtFloat, SimdCvtTruncate, prelude::*, u32x8};
+use fearless_simd::{Simd, SimdBase, SimdCvtFloat, SimdCvtTruncate, prelude::*, u32x16};
 
 use super::lanes::{Grid, take};
 use super::pack::Block;
@@ -91,33 +91,63 @@ impl<S: Simd> Blocks<S> {
 
     /// To single blocks.
     #[inline(always)]
-    pub fn store(&self) -> [Block; LANES] {
-        let (pattern, selector): ([f32; LANES], [f32; LANES]) = (self.pattern.into(), self.selector.into());
-        let error: [f32; LANES] = self.error.into();
-        let mut blocks: [Block; LANES] = std::array::from_fn(|j| Block {
-            pattern: pattern[j] as usize,
-            selector: selector[j] as usize,
-            error: error[j],
-            ..Block::empty(self.modes[j])
-        });
-        for (k, four) in self.endpoints.as_flattened().as_flattened().as_chunks().0.iter().enumerate() {
-            for (block, bytes) in blocks.iter_mut().zip(packed(four)) {
-                block.endpoints.as_flattened_mut().as_flattened_mut().as_chunks_mut().0[k] = bytes;
-            }
+    pub fn store(&self) -> Stored {
+        let mut stored = Stored {
+            modes: self.modes,
+            patterns: self.pattern.into(),
+            selectors: self.selector.into(),
+            errors: self.error.into(),
+            endpoints: [[0; LANES]; 6],
+            weights: [[0; LANES]; 8],
+        };
+        for (words, four) in stored.endpoints.iter_mut().zip(self.endpoints.as_flattened().as_flattened().as_chunks().0)
+        {
+            *words = packed(four);
         }
-        for (k, four) in self.weights.as_flattened().as_chunks().0.iter().enumerate() {
-            for (block, bytes) in blocks.iter_mut().zip(packed(four)) {
-                block.weights.as_flattened_mut().as_chunks_mut().0[k] = bytes;
-            }
+        for (words, four) in stored.weights.iter_mut().zip(self.weights.as_flattened().as_chunks().0) {
+            *words = packed(four);
         }
-        blocks
+        stored
+    }
+}
+
+/// [`Blocks`] in memory.
+pub(super) struct Stored {
+    modes: [&'static Mode; LANES],
+    patterns: [f32; LANES],
+    selectors: [f32; LANES],
+    pub errors: [f32; LANES],
+    /// Four bytes of each block, all of them in the order of [`Block::endpoints`].
+    endpoints: [[u32; LANES]; 6],
+    /// The same of [`Block::weights`].
+    weights: [[u32; LANES]; 8],
+}
+
+impl Stored {
+    /// The block in a lane.
+    #[inline(always)]
+    pub fn block(&self, lane: usize) -> Block {
+        let mut block = Block {
+            pattern: self.patterns[lane] as usize,
+            selector: self.selectors[lane] as usize,
+            error: self.errors[lane],
+            ..Block::empty(self.modes[lane])
+        };
+        let endpoints = block.endpoints.as_flattened_mut().as_flattened_mut().as_chunks_mut().0;
+        for (bytes, words) in endpoints.iter_mut().zip(&self.endpoints) {
+            *bytes = words[lane].to_le_bytes();
+        }
+        for (bytes, words) in block.weights.as_flattened_mut().as_chunks_mut().0.iter_mut().zip(&self.weights) {
+            *bytes = words[lane].to_le_bytes();
+        }
+        block
     }
 }
 
 /// Four bytes of each block, one vector for each.
 #[inline(always)]
 fn unpacked<S: Simd>(simd: S, bytes: [[u8; 4]; LANES]) -> [Wide<S>; 4] {
-    let words = u32x8::simd_from(simd, bytes.map(u32::from_le_bytes));
+    let words = u32x16::simd_from(simd, bytes.map(u32::from_le_bytes));
     [
         Wide::float_from(words & 255),
         Wide::float_from((words >> 8) & 255),
@@ -128,9 +158,8 @@ fn unpacked<S: Simd>(simd: S, bytes: [[u8; 4]; LANES]) -> [Wide<S>; 4] {
 
 /// The reverse.
 #[inline(always)]
-fn packed<S: Simd>([a, b, c, d]: &[Wide<S>; 4]) -> [[u8; 4]; LANES] {
+fn packed<S: Simd>([a, b, c, d]: &[Wide<S>; 4]) -> [u32; LANES] {
     let [a, b, c, d] =
-        [u32x8::truncate_from(*a), u32x8::truncate_from(*b), u32x8::truncate_from(*c), u32x8::truncate_from(*d)];
-    let words: [u32; LANES] = (a | b << 8 | c << 16 | d << 24).into();
-    words.map(u32::to_le_bytes)
+        [u32x16::truncate_from(*a), u32x16::truncate_from(*b), u32x16::truncate_from(*c), u32x16::truncate_from(*d)];
+    (a | b << 8 | c << 16 | d << 24).into()
 }

@@ -2,7 +2,7 @@
 
 #![expect(clippy::needless_range_loop, reason = "loops over channels read several arrays at one index")]
 
-use fearless_simd::{Select, Simd, SimdBase, SimdCvtFloat, prelude::*, u32x8};
+use fearless_simd::{Select, Simd, SimdBase, SimdCvtFloat, prelude::*, u32x16};
 
 use super::blocks::Blocks;
 use super::lanes::Grid;
@@ -201,7 +201,7 @@ pub(super) struct Split<S: Simd, const N: usize, const K: usize> {
 #[inline(always)]
 fn mask<S: Simd>(simd: S, pattern: Wide<S>, members: impl Fn(usize) -> u16) -> Grid<S> {
     let pattern: [f32; LANES] = pattern.into();
-    let bits = u32x8::simd_from(simd, pattern.map(|p| u32::from(members(p as usize))));
+    let bits = u32x16::simd_from(simd, pattern.map(|p| u32::from(members(p as usize))));
     let mut mask = [Wide::splat(simd, 0.0); 16];
     for (i, member) in mask.iter_mut().enumerate() {
         *member = Wide::float_from((bits >> i as u32) & 1);

@@ -18,7 +18,7 @@ use super::moments::{count, counted};
 use super::tables::Range;
 use crate::simd::{LANES, Real, Wide};
 
-/// Unit normals of eight blocks, in units of [`UNIT`].
+/// Unit normals of blocks side by side, in units of [`UNIT`].
 pub(super) type Normals<S> = [Grid<S>; 3];
 
 /// Decoded levels are 127.5 (1 + component).

@@ -36,16 +36,15 @@ pub(super) struct Hints {
 
 impl Hints {
     /// Appends the fields that `mode` has.
+    #[inline(always)]
     pub fn write(&self, mode: &Mode, out: &mut Bits) {
         // BC1 hint 0 (endpoints rounded to 5:6:5 as they are) is never better than fitting them.
         out.push(0, 1);
         if mode.full_hints {
             out.push(self.bc1_selectors.into(), 1);
         }
-        out.push(self.flip.into(), 1);
-        out.push(self.differential.into(), 1);
-        out.push(self.tables[0].into(), 3);
-        out.push(self.tables[1].into(), 3);
+        let tables = u64::from(self.tables[0]) << 2 | u64::from(self.tables[1]) << 5;
+        out.push(u64::from(self.flip) | u64::from(self.differential) << 1 | tables, 8);
         if mode.full_hints {
             out.push(self.bias.into(), 5);
         }
@@ -67,14 +66,14 @@ impl Hints {
         Self::new(etc1(&[level(0), level(1), level(2)]), texels, mode)
     }
 
-    /// The same for eight blocks.
+    /// The same for blocks side by side.
     #[inline(always)]
-    pub fn of_eight<S: Simd>(simd: S, texels: &[Texels; LANES], modes: [&Mode; LANES]) -> [Self; LANES] {
+    pub fn of_lanes<S: Simd>(simd: S, texels: [&Texels; LANES], modes: [&Mode; LANES]) -> [Self; LANES] {
         let mut fields = [[0.0; LANES]; 5];
         for (lanes, field) in fields.iter_mut().zip(etc1(&channels(simd, texels))) {
             *lanes = field.into();
         }
-        std::array::from_fn(|j| Self::new(fields.map(|field| field[j]), &texels[j], modes[j]))
+        std::array::from_fn(|j| Self::new(fields.map(|field| field[j]), texels[j], modes[j]))
     }
 
     #[inline(always)]
@@ -90,7 +89,7 @@ impl Hints {
     }
 }
 
-/// The fields of [`Hints`] on ETC1, of one block or of eight: flip, differential, the index into [`LEAST_BIAS`] and both tables.
+/// The fields of [`Hints`] on ETC1, of one block or of several side by side: flip, differential, the index into [`LEAST_BIAS`] and both tables.
 /// All sums are whole numbers that floats hold.
 #[inline(always)]
 fn etc1<F: Real>(levels: &[[F; 16]; 3]) -> [F; 5] {

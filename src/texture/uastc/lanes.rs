@@ -1,13 +1,13 @@
-//! Eight blocks side by side.
+//! Blocks side by side.
 //!
 //! A block is small and its search full of sums and choices, which vectors of its own texels would do badly. So a vector
-//! holds one number of each of eight blocks, and every block gets the bits that it would get alone.
+//! holds one number of each of [`LANES`] blocks, and every block gets the bits that it would get alone.
 //!
 //! All code on vectors must end up inside of the function that is compiled for the processor's instructions: functions and
 //! closures are `inline(always)`, and the standard library's `map`, `fold` and `from_fn`, which are not, see single numbers
 //! only. With them the encoder was no faster than one block at a time.
 
-use fearless_simd::{Select, Simd, SimdBase, SimdCvtFloat, prelude::*, u32x8};
+use fearless_simd::{Select, Simd, SimdBase, SimdCvtFloat, prelude::*, u32x16};
 
 use crate::simd::{LANES, Real, Wide};
 
@@ -15,19 +15,19 @@ use crate::simd::{LANES, Real, Wide};
 /// and the low bits of the sum are that integer. (`round` takes a call on baseline x86-64.)
 pub(super) const ROUND: f32 = 12_582_912.0;
 
-/// A number for each texel of a block, row 0 first, of eight blocks.
+/// A number for each texel of a block, row 0 first, of blocks side by side.
 pub(super) type Grid<S> = [Wide<S>; 16];
 
 /// Texels of one block.
 pub(in crate::texture::uastc) type Texels = [[u8; 4]; 16];
 
-/// The first `N` channels of eight blocks.
+/// The first `N` channels of blocks side by side.
 #[inline(always)]
-pub(super) fn channels<S: Simd, const N: usize>(simd: S, blocks: &[Texels; LANES]) -> [Grid<S>; N] {
+pub(super) fn channels<S: Simd, const N: usize>(simd: S, blocks: [&Texels; LANES]) -> [Grid<S>; N] {
     let mut grids = [[Wide::splat(simd, 0.0); 16]; N];
     for i in 0..16 {
         let words: [u32; LANES] = std::array::from_fn(|j| u32::from_le_bytes(blocks[j][i]));
-        let words = u32x8::simd_from(simd, words);
+        let words = u32x16::simd_from(simd, words);
         for (c, grid) in grids.iter_mut().enumerate() {
             grid[i] = Wide::float_from((words >> (8 * c as u32)) & 255);
         }
@@ -35,7 +35,7 @@ pub(super) fn channels<S: Simd, const N: usize>(simd: S, blocks: &[Texels; LANES
     grids
 }
 
-/// Sum over the texels, of one block or of eight.
+/// Sum over the texels, of one block or of several side by side.
 #[inline(always)]
 pub(super) fn sum<F: Real>(v: impl Fn(usize) -> F) -> F {
     // Four sums at once, so that none waits for the one before.

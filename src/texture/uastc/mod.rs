@@ -34,7 +34,7 @@ use lanes::Texels;
 use pack::pack_solid;
 pub use rate::lower_rate;
 use rayon::prelude::*;
-use row::{Row, eights};
+use row::{Row, groups};
 
 use crate::simd::dispatch;
 
@@ -146,9 +146,9 @@ fn encode_row<S: Simd>(
     row.search_opaque(simd, &opaque, metric, effort);
     row.search_rgba(simd, &other, effort);
     opaque.append(&mut other);
-    for (eight, at) in eights(&opaque) {
-        let hints = Hints::of_eight(simd, &at.map(|k| row.texels[k]), at.map(|k| row.blocks[k].mode));
-        for (&k, hints) in eight.iter().zip(&hints) {
+    for (group, at) in groups(&opaque) {
+        let hints = Hints::of_lanes(simd, at.map(|k| &row.texels[k]), at.map(|k| row.blocks[k].mode));
+        for (&k, hints) in group.iter().zip(&hints) {
             out[k] = row.blocks[k].clone().pack(hints);
         }
     }

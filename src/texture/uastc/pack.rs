@@ -51,27 +51,34 @@ impl Block {
     /// Makes the top bit of every anchor weight 0, which the format leaves out: where it is 1, the
     /// weights of that subset and plane are mirrored and their endpoints exchanged. The weight
     /// ramps are symmetric, so the colours stay the same.
+    #[inline(always)]
     fn mirror_anchors(&mut self) {
         let top = (1u8 << self.mode.weight_bits) - 1;
         for plane in 0..self.mode.planes {
+            // Sixteen bits for each channel.
+            let alone = 0xffff << (16 * self.selector);
+            let channels = match (self.mode.planes, plane) {
+                (1, _) => u64::MAX,
+                (_, 0) => !alone,
+                _ => alone,
+            };
             for subset in 0..self.mode.subsets {
-                let members = self.members(subset);
-                if self.weights[plane][self.anchor(subset) as usize & 15] <= top / 2 {
-                    continue;
-                }
-                for (i, weight) in self.weights[plane].iter_mut().enumerate() {
-                    *weight ^= top * (members >> i & 1) as u8;
-                }
-                for c in 0..self.mode.channels {
-                    if self.plane_of(c) == plane {
-                        self.endpoints[subset][c].swap(0, 1);
-                    }
-                }
+                // Masks and no branches: half of all anchors are above the middle.
+                let is_high = self.weights[plane][self.anchor(subset) as usize & 15] > top / 2;
+                let weights = u128::from_le_bytes(self.weights[plane]);
+                let members = bytes_of(self.members(subset)) & u128::from_le_bytes([top; 16]);
+                self.weights[plane] = (weights ^ members & u128::from(is_high).wrapping_neg()).to_le_bytes();
+                let ends = &mut self.endpoints[subset];
+                let pairs = ends.as_flattened().iter().rev().fold(0u64, |pairs, &end| pairs << 8 | u64::from(end));
+                let exchanged = (pairs & 0x00ff_00ff_00ff_00ff) << 8 | pairs >> 8 & 0x00ff_00ff_00ff_00ff;
+                let pairs = pairs ^ (pairs ^ exchanged) & channels & u64::from(is_high).wrapping_neg();
+                ends.as_flattened_mut().copy_from_slice(&pairs.to_le_bytes());
             }
         }
     }
 
     /// The sixteen bytes.
+    #[inline(always)]
     pub fn pack(mut self, hints: &Hints) -> [u8; 16] {
         self.mirror_anchors();
         let mode = self.mode;
@@ -91,6 +98,7 @@ impl Block {
         out.bits.to_le_bytes()
     }
 
+    #[inline(always)]
     fn write_endpoints(&self, out: &mut Bits) {
         let Range { bits, base, code, .. } = self.mode.range;
         let (group, lengths) = self.mode.range.groups();
@@ -116,6 +124,7 @@ impl Block {
         }
     }
 
+    #[inline(always)]
     fn write_weights(&self, out: &mut Bits) {
         let bits = self.mode.weight_bits;
         let mut weights = self.weights[0];
@@ -146,7 +155,19 @@ impl Block {
     }
 }
 
+/// 255 in byte i where bit i of `members` is set.
+#[inline(always)]
+fn bytes_of(members: u16) -> u128 {
+    // Eight bits side by side, each moved to a byte of its own; what is not 0 then carries into the top bit.
+    let half = |bits: u16| {
+        let apart = u64::from(bits & 255) * 0x0101_0101_0101_0101 & 0x8040_2010_0804_0201;
+        ((apart + 0x7f7f_7f7f_7f7f_7f7f | apart) >> 7 & 0x0101_0101_0101_0101) * 255
+    };
+    u128::from(half(members)) | u128::from(half(members >> 8)) << 64
+}
+
 /// Eight weights of `width` bits in a row, from eight bytes.
+#[inline(always)]
 fn close_up(weights: &[u8], mut width: u32) -> u64 {
     let mut word = weights.iter().rev().fold(0, |word, &weight| word << 8 | u64::from(weight));
     // Odd lanes move down to even ones; lanes double three times.
@@ -159,6 +180,7 @@ fn close_up(weights: &[u8], mut width: u32) -> u64 {
 }
 
 /// `word` with bit `at` left out and all above it moved down.
+#[inline(always)]
 fn without_bit(word: u128, at: u32) -> u128 {
     let below = (1 << at) - 1;
     (word & below) | (word >> 1 & !below)
@@ -200,6 +222,7 @@ pub(super) struct Bits {
 
 impl Bits {
     /// Appends the `len` low bits of `value`, whose other bits are 0.
+    #[inline(always)]
     pub fn push(&mut self, value: u64, len: u32) {
         self.bits |= u128::from(value) << self.len;
         self.len += len;

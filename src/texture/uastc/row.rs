@@ -1,9 +1,9 @@
-//! The blocks of one row, searched eight at a time.
+//! The blocks of one row, searched as many at a time as a vector has lanes.
 //!
 //! Blocks that stand beside each other are searched together; then, since a last step differs by mode, blocks of equal mode
 //! are.
 
-use fearless_simd::Simd;
+use fearless_simd::{Simd, prelude::*};
 
 use super::blocks::Blocks;
 use super::direction::normals;
@@ -11,7 +11,7 @@ use super::lanes::{Grid, Texels, channels};
 use super::pack::Block;
 use super::tables::{MODE_0, MODES};
 use super::{Effort, Metric, normals as directions, search};
-use crate::simd::LANES;
+use crate::simd::{LANES, Real, Wide};
 
 /// Blocks and where they come from.
 pub(super) struct Row {
@@ -31,7 +31,7 @@ impl Row {
         let scale = metric.scale();
         match (metric, effort) {
             (Metric::Direction, effort) => {
-                self.by_eights(
+                self.by_groups(
                     which,
                     #[inline(always)]
                     |texels, _| directions::fast(simd, &channels(simd, texels)),
@@ -43,7 +43,7 @@ impl Row {
                     |blocks, texels| aim(simd, blocks, texels, 2, 0),
                 );
                 if effort == Effort::Best {
-                    self.by_eights(
+                    self.by_groups(
                         which,
                         #[inline(always)]
                         |texels, blocks| directions::best(simd, &channels(simd, texels), Blocks::load(simd, blocks)),
@@ -56,13 +56,34 @@ impl Row {
                     );
                 }
             }
-            (_, Effort::Fast) => self.by_eights(
-                which,
-                #[inline(always)]
-                |texels, _| search::fast_rgb(simd, &colours(simd, texels, &scale), &scale),
-            ),
+            (_, Effort::Fast) => {
+                let [planes, grey] = self.first(
+                    which,
+                    #[inline(always)]
+                    |texels| search::fast_lines(simd, &colours(simd, texels, &scale), &scale),
+                );
+                self.offer(
+                    simd,
+                    &planes,
+                    #[inline(always)]
+                    |texels, winner| search::fast_planes(simd, &colours(simd, texels, &scale), &scale, winner),
+                );
+                let poor: Vec<_> = which.iter().copied().filter(|&k| self.blocks[k].error > search::GOOD).collect();
+                self.offer(
+                    simd,
+                    &poor,
+                    #[inline(always)]
+                    |texels, winner| search::fast_subsets(simd, &colours(simd, texels, &scale), &scale, winner),
+                );
+                self.offer(
+                    simd,
+                    &grey,
+                    #[inline(always)]
+                    |texels, winner| search::fast_grey(simd, &colours(simd, texels, &scale), &scale, winner),
+                );
+            }
             (_, Effort::Best) => {
-                self.by_eights(
+                self.by_groups(
                     which,
                     #[inline(always)]
                     |texels, _| search::best_rgb(simd, &colours(simd, texels, &scale), &scale),
@@ -80,27 +101,67 @@ impl Row {
     /// Finds the blocks at `which` with alpha.
     #[inline(always)]
     pub fn search_rgba<S: Simd>(&mut self, simd: S, which: &[usize], effort: Effort) {
-        self.by_eights(
+        self.by_groups(
             which,
             #[inline(always)]
             |texels, _| search::rgba(simd, &channels(simd, texels), effort == Effort::Best),
         );
     }
 
-    /// Replaces the blocks at `which` by what `make` makes of eight of them and of their texels.
+    /// Replaces the blocks at `which` by the first ones that `make` makes of the texels of a group; and where, beside them, it
+    /// tells that others may be better.
     #[inline(always)]
-    fn by_eights<S: Simd>(&mut self, which: &[usize], make: impl Fn(&[Texels; LANES], [&Block; LANES]) -> Blocks<S>) {
-        for (eight, at) in eights(which) {
-            let made = make(&at.map(|k| self.texels[k]), at.map(|k| &self.blocks[k])).store();
-            for (&k, block) in eight.iter().zip(made) {
-                self.blocks[k] = block;
+    fn first<S: Simd, const N: usize>(
+        &mut self,
+        which: &[usize],
+        make: impl Fn([&Texels; LANES]) -> (Blocks<S>, [<Wide<S> as Real>::Mask; N]),
+    ) -> [Vec<usize>; N] {
+        let mut others = [const { Vec::new() }; N];
+        for (group, at) in groups(which) {
+            let (made, may_win) = make(at.map(|k| &self.texels[k]));
+            let made = made.store();
+            for (lane, &k) in group.iter().enumerate() {
+                self.blocks[k] = made.block(lane);
+            }
+            for (others, may_win) in others.iter_mut().zip(may_win) {
+                let bits = may_win.to_bitmask();
+                others.extend(group.iter().enumerate().filter(|(j, _)| bits >> j & 1 == 1).map(|(_, &k)| k));
+            }
+        }
+        others
+    }
+
+    /// Replaces the blocks at `which` by what `make` makes of the texels of a group, where that is better. It is given their
+    /// errors as blocks that any better one can take over. Gathering the blocks that a candidate may suit keeps all lanes busy: among
+    /// neighbours one of sixteen nearly always does.
+    #[inline(always)]
+    fn offer<S: Simd>(&mut self, simd: S, which: &[usize], make: impl Fn([&Texels; LANES], Blocks<S>) -> Blocks<S>) {
+        for (group, at) in groups(which) {
+            let error = Wide::simd_from(simd, at.map(|k| self.blocks[k].error));
+            let made = make(at.map(|k| &self.texels[k]), Blocks { error, ..Blocks::none(simd) });
+            let made = made.store();
+            for (lane, &k) in group.iter().enumerate() {
+                if made.errors[lane] < self.blocks[k].error {
+                    self.blocks[k] = made.block(lane);
+                }
             }
         }
     }
 
-    /// Changes the blocks at `which`, eight of one mode and selector at a time.
+    /// Replaces the blocks at `which` by what `make` makes of a group of them and of their texels.
     #[inline(always)]
-    fn by_kind<S: Simd>(&mut self, simd: S, which: &[usize], change: impl Fn(&mut Blocks<S>, &[Texels; LANES])) {
+    fn by_groups<S: Simd>(&mut self, which: &[usize], make: impl Fn([&Texels; LANES], [&Block; LANES]) -> Blocks<S>) {
+        for (group, at) in groups(which) {
+            let made = make(at.map(|k| &self.texels[k]), at.map(|k| &self.blocks[k])).store();
+            for (lane, &k) in group.iter().enumerate() {
+                self.blocks[k] = made.block(lane);
+            }
+        }
+    }
+
+    /// Changes the blocks at `which`, a group of one mode and selector at a time.
+    #[inline(always)]
+    fn by_kind<S: Simd>(&mut self, simd: S, which: &[usize], change: impl Fn(&mut Blocks<S>, [&Texels; LANES])) {
         // Selectors are 0 to 3.
         let mut kinds = vec![Vec::new(); 4 * MODES];
         for &k in which {
@@ -108,7 +169,7 @@ impl Row {
             kinds[4 * usize::from(block.mode.number) + block.selector].push(k);
         }
         for kind in kinds {
-            self.by_eights(
+            self.by_groups(
                 &kind,
                 #[inline(always)]
                 |texels, blocks| {
@@ -121,14 +182,14 @@ impl Row {
     }
 }
 
-/// `which` by eights, as they are and filled up with the last one.
-pub(super) fn eights(which: &[usize]) -> impl Iterator<Item = (&[usize], [usize; LANES])> {
-    which.chunks(LANES).map(|eight| (eight, std::array::from_fn(|j| eight[j.min(eight.len() - 1)])))
+/// `which` by groups for the lanes of a vector, as they are and filled up with the last one.
+pub(super) fn groups(which: &[usize]) -> impl Iterator<Item = (&[usize], [usize; LANES])> {
+    which.chunks(LANES).map(|group| (group, std::array::from_fn(|j| group[j.min(group.len() - 1)])))
 }
 
 /// Levels, times `scale`.
 #[inline(always)]
-fn colours<S: Simd>(simd: S, texels: &[Texels; LANES], scale: &[f32; 3]) -> [Grid<S>; 3] {
+fn colours<S: Simd>(simd: S, texels: [&Texels; LANES], scale: &[f32; 3]) -> [Grid<S>; 3] {
     let mut levels: [Grid<S>; 3] = channels(simd, texels);
     for (levels, scale) in levels.iter_mut().zip(scale) {
         for level in levels {
@@ -140,6 +201,6 @@ fn colours<S: Simd>(simd: S, texels: &[Texels; LANES], scale: &[f32; 3]) -> [Gri
 
 /// [`Blocks::aim`] at the normals that `texels` stand for.
 #[inline(always)]
-fn aim<S: Simd>(simd: S, blocks: &mut Blocks<S>, texels: &[Texels; LANES], rounds: usize, passes: usize) {
+fn aim<S: Simd>(simd: S, blocks: &mut Blocks<S>, texels: [&Texels; LANES], rounds: usize, passes: usize) {
     blocks.aim(simd, &normals(&channels(simd, texels)), rounds, passes);
 }

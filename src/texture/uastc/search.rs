@@ -1,7 +1,7 @@
 //! Choice of the mode of blocks of colours.
 //!
 //! Both efforts fit candidates and keep the one with the least squared error. `best_rgb` fits all
-//! that pay; `fast_rgb` first estimates errors from the moments of the colours and fits only what
+//! that pay; the `fast` ones first estimate errors from the moments of the colours and fit only what
 //! can win: on 83,000 blocks of eighteen real maps the gates below cost 0.03 dB.
 
 use fearless_simd::{Select, Simd, SimdBase, prelude::*};
@@ -20,27 +20,26 @@ use crate::simd::{Real, Wide};
 /// Rounds of regression for opaque blocks; a third gains 0.04 dB.
 const ROUNDS: usize = 2;
 
+/// Estimates are right within a factor of 2 for 90 % of blocks.
+const DOUBT: f32 = 2.0;
+
+/// Below this error of a block (1 per texel and channel) a second subset hardly ever wins.
+pub(super) const GOOD: f32 = 50.0;
+
 impl<S: Simd> Blocks<S> {
     /// [`Blocks::offer`] of lines of one number where all texels are grey, with `passes` over single endpoints.
     #[inline(always)]
     fn offer_grey(&mut self, simd: S, texels: &[Grid<S>; 3], scale: &[f32; 3], passes: usize) {
-        let mut levels = *texels;
-        for (levels, scale) in levels.iter_mut().zip(scale) {
-            for level in levels {
-                // Exact: scales are powers of two.
-                *level *= 1.0 / scale;
-            }
-        }
-        let [r, g, b] = levels;
-        let off = sum(
-            #[inline(always)]
-            |i| (r[i] - g[i]) * (r[i] - g[i]) + (b[i] - g[i]) * (b[i] - g[i]),
-        );
-        let is_grey = off.simd_eq(0.0);
+        let is_grey = is_grey(texels, scale);
         if is_grey.any_true() {
             let weight = scale[0] * scale[0] + scale[1] * scale[1] + scale[2] * scale[2];
-            self.offer(&grey::<_, 4>(simd, &[g], weight, &MODE_15, passes), is_grey);
-            self.offer(&grey::<_, 5>(simd, &[g], weight, &MODE_18, passes), is_grey);
+            let mut green = texels[1];
+            for level in &mut green {
+                // Exact: scales are powers of two.
+                *level *= 1.0 / scale[1];
+            }
+            self.offer(&grey::<_, 4>(simd, &[green], weight, &MODE_15, passes), is_grey);
+            self.offer(&grey::<_, 5>(simd, &[green], weight, &MODE_18, passes), is_grey);
         }
     }
 
@@ -74,6 +73,21 @@ impl<S: Simd> Blocks<S> {
             self.offer(&one_line::<_, N, 4>(simd, texels, all, axis, scale, &MODE_0, rounds), middle);
         }
     }
+}
+
+/// Where red, green and blue of all texels are equal.
+#[inline(always)]
+fn is_grey<S: Simd>([r, g, b]: &[Grid<S>; 3], scale: &[f32; 3]) -> <Wide<S> as Real>::Mask {
+    // Exact: scales are powers of two.
+    let [red, green, blue] = [1.0 / scale[0], 1.0 / scale[1], 1.0 / scale[2]];
+    let off = sum(
+        #[inline(always)]
+        |i| {
+            let (x, z) = (r[i] * red - g[i] * green, b[i] * blue - g[i] * green);
+            x * x + z * z
+        },
+    );
+    off.simd_eq(0.0)
 }
 
 /// Blocks of grey `texels`, whose squared differences count `weight` times.
@@ -158,38 +172,63 @@ pub(super) fn best_rgb<S: Simd>(simd: S, texels: &[Grid<S>; 3], scale: &[f32; 3]
     winner
 }
 
-/// Quickly found blocks for opaque `texels`, whose channels have `scale` per level.
+/// Lines through opaque `texels`, whose channels have `scale` per level, where they are likely to be the best; and where two
+/// planes and where grey lines are likely to.
 #[inline(always)]
-pub(super) fn fast_rgb<S: Simd>(simd: S, texels: &[Grid<S>; 3], scale: &[f32; 3]) -> Blocks<S> {
-    /// Estimates are right within a factor of 2 for 90 % of blocks.
-    const DOUBT: f32 = 2.0;
-    /// Below this error of a block (1 per texel and channel) a second subset hardly ever wins.
-    const GOOD: f32 = 50.0;
-
+pub(super) fn fast_lines<S: Simd>(
+    simd: S,
+    texels: &[Grid<S>; 3],
+    scale: &[f32; 3],
+) -> (Blocks<S>, [<Wide<S> as Real>::Mask; 2]) {
     let all = moments(simd, texels, None);
     let axis = principal_axis(simd, &all.scatter);
     let along = scatter_along(simd, &all.scatter, &axis);
     let off = trace(&all.scatter) - along;
-    let (selector, planes_estimate) = likely_planes(simd, &all);
     let line_estimate = off * 1.05 + along * 0.003 + 3.0;
+    let (_, planes_estimate) = likely_planes(simd, &all);
     let mut winner = Blocks::none(simd);
-
     let is_line_likely = line_estimate.simd_lt(planes_estimate * DOUBT);
     winner.offer_line(simd, texels, &all, &axis, scale, ROUNDS, is_line_likely);
-    let is_plane_likely = planes_estimate.simd_lt(line_estimate * DOUBT);
-    if is_plane_likely.any_true() {
-        let planes = two_planes::<_, 3, 2>(simd, texels, &all, selector, scale, &MODE_6, ROUNDS);
-        winner.offer(&planes, is_plane_likely);
+    (winner, [planes_estimate.simd_lt(line_estimate * DOUBT), is_grey(texels, scale)])
+}
+
+/// Two planes, where they are better than `winner`.
+#[inline(always)]
+pub(super) fn fast_planes<S: Simd>(
+    simd: S,
+    texels: &[Grid<S>; 3],
+    scale: &[f32; 3],
+    mut winner: Blocks<S>,
+) -> Blocks<S> {
+    let all = moments(simd, texels, None);
+    let (selector, _) = likely_planes(simd, &all);
+    winner.offer(&two_planes::<_, 3, 2>(simd, texels, &all, selector, scale, &MODE_6, ROUNDS), every(simd));
+    winner
+}
+
+/// Two subsets, where they are better than `winner`.
+#[inline(always)]
+pub(super) fn fast_subsets<S: Simd>(
+    simd: S,
+    texels: &[Grid<S>; 3],
+    scale: &[f32; 3],
+    mut winner: Blocks<S>,
+) -> Blocks<S> {
+    let all = moments(simd, texels, None);
+    let axis = principal_axis(simd, &all.scatter);
+    let [pattern] = likely_patterns(simd, texels, &all, &axis);
+    let split = Split::in_two(simd, texels, pattern);
+    let (off, along) = split.scatter(simd);
+    let is_likely = (off + along / 12.0).simd_lt(winner.error * 1.4);
+    if is_likely.any_true() {
+        winner.offer(&split_lines::<_, 3, 2, 2>(simd, texels, &split, scale, &MODE_4, ROUNDS), is_likely);
     }
-    if winner.error.simd_gt(GOOD).any_true() {
-        let [pattern] = likely_patterns(simd, texels, &all, &axis);
-        let split = Split::in_two(simd, texels, pattern);
-        let (off, along) = split.scatter(simd);
-        let is_likely = winner.error.simd_gt(GOOD) & (off + along / 12.0).simd_lt(winner.error * 1.4);
-        if is_likely.any_true() {
-            winner.offer(&split_lines::<_, 3, 2, 2>(simd, texels, &split, scale, &MODE_4, ROUNDS), is_likely);
-        }
-    }
+    winner
+}
+
+/// Lines of one number through grey `texels`, where they are better than `winner`.
+#[inline(always)]
+pub(super) fn fast_grey<S: Simd>(simd: S, texels: &[Grid<S>; 3], scale: &[f32; 3], mut winner: Blocks<S>) -> Blocks<S> {
     winner.offer_grey(simd, texels, scale, 1);
     winner
 }

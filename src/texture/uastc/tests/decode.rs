@@ -1,6 +1,6 @@
 //! Blocks decode to exactly what the encoder took them for.
 
-use super::super::blocks::Blocks;
+use super::super::blocks::{Blocks, Stored};
 use super::super::candidate::{Split, one_line, split_lines, two_planes};
 use super::super::hints::Hints;
 use super::super::lanes::{Grid, channels};
@@ -18,12 +18,12 @@ use fearless_simd::{Level, Simd, SimdBase};
 pub(super) fn every_mode<const N: usize>(texels: &Texels) -> Vec<(u8, Block)> {
     // Any lane will do.
     let blocks = dispatch!(Level::new(), simd => every_mode_with::<_, N>(simd, texels));
-    let one = |(k, blocks): (usize, [Block; LANES])| blocks[k % LANES].clone();
+    let one = |(k, blocks): (usize, Stored)| blocks.block(k % LANES);
     blocks.into_iter().enumerate().map(one).map(|block| (block.mode.number, block)).collect()
 }
 
-fn every_mode_with<S: Simd, const N: usize>(simd: S, texels: &Texels) -> Vec<[Block; LANES]> {
-    let lanes: [Grid<S>; N] = channels(simd, &[*texels; LANES]);
+fn every_mode_with<S: Simd, const N: usize>(simd: S, texels: &Texels) -> Vec<Stored> {
+    let lanes: [Grid<S>; N] = channels(simd, [texels; LANES]);
     let all = moments(simd, &lanes, None);
     let axis = principal_axis(simd, &all.scatter);
     let splat = |number: usize| Wide::splat(simd, number as f32);

@@ -62,8 +62,8 @@ fn least_error(block: &Block, source: &Texels) -> f64 {
 fn aim(block: &mut Block, source: &Texels, rounds: usize, passes: usize) {
     dispatch!(Level::new(), simd => {
         let mut blocks = Blocks::load(simd, [&*block; LANES]);
-        blocks.aim(simd, &unit_normals(&channels(simd, &[*source; LANES])), rounds, passes);
-        *block = blocks.store()[0].clone();
+        blocks.aim(simd, &unit_normals(&channels(simd, [source; LANES])), rounds, passes);
+        *block = blocks.store().block(0);
     });
 }
 

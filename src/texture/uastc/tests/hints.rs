@@ -163,15 +163,19 @@ fn hints_are_those_of_whole_numbers_in_every_lane() {
         let (base, range) = (random.byte(), [1, 8, 60, 255][i % 4]);
         std::array::from_fn(|_| std::array::from_fn(|_| base.saturating_add(random.byte() % range)))
     }));
-    for eight in blocks.chunks(LANES).filter(|eight| eight.len() == LANES) {
+    for group in blocks.chunks(LANES).filter(|group| group.len() == LANES) {
         let modes: [_; LANES] = std::array::from_fn(|j| if j % 2 == 0 { &MODE_0 } else { &MODE_6 });
-        let eight: &[Texels; LANES] = eight.try_into().unwrap();
-        let alone: Vec<Hints> = eight.iter().zip(modes).map(|(texels, mode)| Hints::of(texels, mode)).collect();
-        for (hints, texels) in alone.iter().zip(eight) {
+        let group: &[Texels; LANES] = group.try_into().unwrap();
+        let alone: Vec<Hints> = group.iter().zip(modes).map(|(texels, mode)| Hints::of(texels, mode)).collect();
+        for (hints, texels) in alone.iter().zip(group) {
             assert_eq!((hints.flip, hints.differential, hints.bias, hints.tables), by_integers(texels), "{texels:?}");
         }
         for set in instruction_sets() {
-            assert_eq!(dispatch!(set, simd => Hints::of_eight(simd, eight, modes)).to_vec(), alone, "{set:?}");
+            assert_eq!(
+                dispatch!(set, simd => Hints::of_lanes(simd, group.each_ref(), modes)).to_vec(),
+                alone,
+                "{set:?}"
+            );
         }
     }
 }
