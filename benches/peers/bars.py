@@ -73,6 +73,7 @@ def whole(part):
         at_most("the same beside decoding them side by side", 6, ratio(times, "two textures", "decoding side by side")),
         at_least("`maketx --bumpslopes` beside the bake to two textures", 4, ratio(times, "maketx", "two textures")),
         at_least(f"{ktx} of one map beside the bake of two", 6, ratio(times, "pack", "two textures")),
+        at_least(f"{ktx} of both maps beside the bake of them", 6, ratio(times, "pack both", "two textures")),
     ]
 
 

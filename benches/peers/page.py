@@ -40,7 +40,7 @@ def timed(times, base, extra=lambda name: [], columns=(), pack="pack"):
     rows = []
     wall = times.get(base, {}).get("wall")
     for name, run in times.items():
-        label = pack if name == "pack" else NAMES.get(name, name)
+        label = {"pack": pack, "pack both": "the same of both maps, one after the other"}.get(name, NAMES.get(name, name))
         if "failed" in run:
             rows.append([label, "failed: " + run["failed"].replace("|", "/"), *[""] * (5 + len(columns))])
             continue
@@ -152,14 +152,14 @@ def decoders(part):
 
 def whole(part):
     found = part["errors"]
-    model = {"two textures": "isotropic", "default": "default", "pack": "none"}
+    model = {"two textures": "isotropic", "default": "default", "pack": "none", "pack both": "none"}
     written = lambda name: part["times"][name]["written"]
     more = lambda name: [f"{written(name):.1f}" if written(name) else "-", lobes(found.get(model.get(name)))]
     pack = "`ktx create --encode uastc --uastc-quality 0 --zstd 5`" if part["ktx"] else PACK
     return "\n".join([
         f"## A whole bake: one material, normal and roughness of {square(part['size'])}",
         "",
-        "`--only whole`. From PNGs on disk to files on disk, mips included. `maketx` and `ktx create` take the normal map only. Lobe errors",
+        "`--only whole`. From PNGs on disk to files on disk, mips included. `maketx` and the first `ktx create` take the normal map only. Lobe errors",
         "(mean of all levels, worst level) are what the bake itself reports of what engines decode after encoding; plain",
         "mips, as `ktx create` makes them, keep the material's roughness. What `maketx` writes is for renderers that fold it themselves.",
         "",

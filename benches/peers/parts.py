@@ -2,6 +2,7 @@
 
 import json
 import os
+import shlex
 from pathlib import Path
 
 from measure import Contender, Failed, alternate, once
@@ -54,14 +55,22 @@ class Bench:
         argv = [self.tools.maketx, "--bumpslopes", "--bumpformat", "normal", "-d", "half", "--threads", "2"]
         return Contender([*argv, self.normal(size), "-o", f"{self.out}/slopes.exr"], out=self.out)
 
-    def pack(self, size=None):
-        """`ktx create` where there is one, else our stand-in."""
-        target = f"{self.out}/packed.ktx2"
+    def packed(self, image, target):
+        """The command line of `ktx create` where there is one, else of our stand-in."""
         if self.tools.ktx:
             argv = [self.tools.ktx, "create", "--format", "R8G8B8_UNORM", "--assign-tf", "linear", "--generate-mipmap"]
             argv += ["--encode", "uastc", "--uastc-quality", "0", "--zstd", "5", "--threads", "2"]
-            return Contender([*argv, self.normal(size), target], out=self.out)
-        return Contender([self.tools.peers, "pack", self.normal(size), target], out=self.out)
+            return [*argv, image, target]
+        return [self.tools.peers, "pack", image, target]
+
+    def pack(self, size=None):
+        return Contender(self.packed(self.normal(size), f"{self.out}/packed.ktx2"), out=self.out)
+
+    def pack_both(self):
+        """Both maps, one after the other: as many textures as a bake makes."""
+        normal = shlex.join(self.packed(self.normal(), f"{self.out}/normal.ktx2"))
+        surface = shlex.join(self.packed(self.surface(), f"{self.out}/surface.ktx2"))
+        return Contender(["sh", "-c", f"{normal} && {surface}"], out=self.out)
 
     def inner(self, *argv, rounds=None):
         """A subcommand of our crate that times itself."""
@@ -131,6 +140,7 @@ def whole(bench):
         "default": bench.bake(bench.size, 1, told),
         "maketx": bench.maketx(),
         "pack": bench.pack(),
+        "pack both": bench.pack_both(),
     }
     times = alternate(contenders, bench.rounds)
     return {"size": bench.size, "times": times, "errors": errors(bench), "ktx": bool(bench.tools.ktx)}
