@@ -32,7 +32,7 @@ impl<'a> Lobes<'a> {
             (Distribution::Normal | Distribution::Uniform, _) => folded(),
             (Distribution::Auto, effort) => {
                 let merged = match settings.family {
-                    Family::Ggx => Coarser::new(&finest),
+                    Family::Ggx => Coarser::keeping(&finest, MOST_MERGED),
                     // Merging normal distributions by likelihood is adding moments.
                     Family::Beckmann => folded(),
                 };
@@ -89,6 +89,10 @@ impl<'a> Lobes<'a> {
         self.coarser.whole(&self.finest)
     }
 }
+
+/// Texels of the largest level of merged lobes that is kept, level 1 of 8192 x 8192: merging takes far longer than all else that
+/// a row is made of. It is 400 MB, level 1 of 16384 x 16384 would be 1.6 GB.
+const MOST_MERGED: u64 = 1 << 24;
 
 /// How many levels finer the lobes are that a fit takes for the truth.
 const FIT_DEPTH: usize = 3;

@@ -56,9 +56,8 @@ impl Drop for Seat<'_> {
     }
 }
 
-/// About what a bake of `job` takes: its maps are baked one after another, and the largest takes most. With three textures
-/// 0.4 GB at 4096^2 and 1.8 GB at 16384^2, where the largest levels are not kept, for a normal map by itself. With `rdo` a level is held as RGBA8 beside three
-/// copies of its blocks.
+/// About what a bake of `job` takes: its maps are baked one after another, and the largest takes most. Levels are kept up to level 1
+/// of 4096^2, lobes up to level 1 of 8192^2. With `rdo` a level is held as RGBA8 beside three copies of its blocks.
 fn memory(job: &Job) -> u64 {
     let texels = |input: &JobInput| match imagesize::size(&input.path) {
         Ok(size) => size.width as u64 * size.height as u64,
@@ -68,7 +67,7 @@ fn memory(job: &Job) -> u64 {
     };
     let largest = job.inputs.iter().map(texels).max().unwrap_or(0);
     let rewritten = if job.settings.contains_key("rdo") { 7 * largest } else { 0 };
-    20 * largest.min(1 << 24) + 5 * largest + rewritten
+    12 * largest.min(1 << 24) + 8 * largest.min(1 << 26) + 5 * largest + rewritten
 }
 
 #[cfg(test)]

@@ -12,8 +12,8 @@ pub struct Coarser<T> {
     kept: Vec<Level<T>>,
 }
 
-/// Texels of the largest level that is kept, level 1 of 4096 x 4096. Making level 1 anew whenever it is read costs time, keeping
-/// it memory: with a lobe for each texel 1.6 GB at 16384 x 16384, twice the map.
+/// Texels of the largest level that is kept, level 1 of 4096 x 4096, of numbers that are merged as fast as they are read. Making
+/// level 1 anew whenever it is read costs time, keeping it memory.
 const MOST_KEPT: u64 = 1 << 22;
 
 impl<T: Merge> Coarser<T> {
@@ -23,7 +23,7 @@ impl<T: Merge> Coarser<T> {
     }
 
     /// The same, of which levels with more than `most` texels are not kept.
-    pub(super) fn keeping(source: &impl Rows<Texel = T>, most: u64) -> Self {
+    pub fn keeping(source: &impl Rows<Texel = T>, most: u64) -> Self {
         let sizes = level_sizes(source.width(), source.height());
         let is_large = |&&(width, height): &&(u32, u32)| u64::from(width) * u64::from(height) > most;
         let passing = sizes.iter().skip(1).take_while(is_large).count();
