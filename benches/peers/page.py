@@ -19,6 +19,7 @@ NAMES = {
     "best rgb": "Roughcast `best`, by colour",
     **{f"level {i}{s}": f"basis_universal level {i}{s and ', C interface' + s}" for i in (0, 1) for s in ("", " with statistics")},
     "level 2": "basis_universal level 2",
+    "pack both": "the same of both maps, one after the other",
 }
 
 
@@ -40,7 +41,7 @@ def timed(times, base, extra=lambda name: [], columns=(), pack="pack"):
     rows = []
     wall = times.get(base, {}).get("wall")
     for name, run in times.items():
-        label = {"pack": pack, "pack both": "the same of both maps, one after the other"}.get(name, NAMES.get(name, name))
+        label = pack if name == "pack" else NAMES.get(name, name)
         if "failed" in run:
             rows.append([label, "failed: " + run["failed"].replace("|", "/"), *[""] * (5 + len(columns))])
             continue

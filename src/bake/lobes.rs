@@ -90,8 +90,8 @@ impl<'a> Lobes<'a> {
     }
 }
 
-/// Texels of the largest level of merged lobes that is kept, level 1 of 8192 x 8192: merging takes far longer than all else that
-/// a row is made of. It is 400 MB, level 1 of 16384 x 16384 would be 1.6 GB.
+/// Texels of the largest level of merged lobes that is kept, level 1 of 8192 x 8192 or level 2 of 16384 x 16384: 400 MB. Merging
+/// takes far longer than all else that a row is made of: 8192 x 8192 bakes in 5.0 s instead of 7.1.
 const MOST_MERGED: u64 = 1 << 24;
 
 /// How many levels finer the lobes are that a fit takes for the truth.

@@ -100,9 +100,7 @@ impl<'a> HeightOffsets<'a> {
             ];
         }
     }
-}
 
-impl HeightOffsets<'_> {
     /// Writes f_u and f_v of row `y` to `out`.
     pub fn offsets(&self, y: u32, out: &mut [[f32; 2]]) {
         let mut slopes = vec![[0.0; 2]; out.len()];

@@ -80,9 +80,7 @@ impl<'a> NormalOffsets<'a> {
             )
             .reduce(Outliers::default, Outliers::plus)
     }
-}
 
-impl NormalOffsets<'_> {
     /// Writes f_u and f_v of row `y` to `out`.
     pub fn offsets(&self, y: u32, out: &mut [[f32; 2]]) {
         self.each(y, out, |texel, Offset { u, v }| *texel = [u, v]);

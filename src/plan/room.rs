@@ -56,8 +56,9 @@ impl Drop for Seat<'_> {
     }
 }
 
-/// About what a bake of `job` takes: its maps are baked one after another, and the largest takes most. Levels are kept up to level 1
-/// of 4096^2, lobes up to level 1 of 8192^2. With `rdo` a level is held as RGBA8 beside three copies of its blocks.
+/// About what a bake of `job` takes at the default quality: its maps are baked one after another, and the largest takes
+/// most. Levels are kept up to level 1 of 4096^2, lobes up to level 1 of 8192^2. With `rdo` a level is held as RGBA8
+/// beside three copies of its blocks.
 fn memory(job: &Job) -> u64 {
     let texels = |input: &JobInput| match imagesize::size(&input.path) {
         Ok(size) => size.width as u64 * size.height as u64,

@@ -161,7 +161,7 @@ fn bytes_of(members: u16) -> u128 {
     // Eight bits side by side, each moved to a byte of its own; what is not 0 then carries into the top bit.
     let half = |bits: u16| {
         let apart = (u64::from(bits & 255) * 0x0101_0101_0101_0101) & 0x8040_2010_0804_0201;
-        (((apart + 0x7f7f_7f7f_7f7f_7f7f) | apart) >> 7 & 0x0101_0101_0101_0101) * 255
+        ((apart + 0x7f7f_7f7f_7f7f_7f7f) >> 7 & 0x0101_0101_0101_0101) * 255
     };
     u128::from(half(members)) | u128::from(half(members >> 8)) << 64
 }

@@ -1,7 +1,7 @@
 //! The blocks of one row, searched as many at a time as a vector has lanes.
 //!
-//! Blocks that stand beside each other are searched together; then, since a last step differs by mode, blocks of equal mode
-//! are.
+//! Blocks that stand beside each other are searched together; then those that a further candidate may suit; and, since a
+//! last step differs by mode, blocks of equal mode.
 
 use fearless_simd::{Simd, prelude::*};
 
@@ -131,9 +131,9 @@ impl Row {
         others
     }
 
-    /// Replaces the blocks at `which` by what `make` makes of the texels of a group, where that is better. It is given their
-    /// errors as blocks that any better one can take over. Gathering the blocks that a candidate may suit keeps all lanes busy: among
-    /// neighbours one of sixteen nearly always does.
+    /// Replaces the blocks at `which` by what `make` makes of the texels of a group, where that is better. `make` starts from
+    /// empty blocks with the errors so far. Gathering the blocks that a candidate may suit keeps all lanes busy: among
+    /// neighbours it suits one lane nearly always and all of them hardly ever.
     #[inline(always)]
     fn offer<S: Simd>(&mut self, simd: S, which: &[usize], make: impl Fn([&Texels; LANES], Blocks<S>) -> Blocks<S>) {
         for (group, at) in groups(which) {

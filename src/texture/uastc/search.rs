@@ -20,9 +20,6 @@ use crate::simd::{Real, Wide};
 /// Rounds of regression for opaque blocks; a third gains 0.04 dB.
 const ROUNDS: usize = 2;
 
-/// Estimates are right within a factor of 2 for 90 % of blocks.
-const DOUBT: f32 = 2.0;
-
 /// Below this error of a block (1 per texel and channel) a second subset hardly ever wins.
 pub(super) const GOOD: f32 = 50.0;
 
@@ -173,13 +170,16 @@ pub(super) fn best_rgb<S: Simd>(simd: S, texels: &[Grid<S>; 3], scale: &[f32; 3]
 }
 
 /// Lines through opaque `texels`, whose channels have `scale` per level, where they are likely to be the best; and where two
-/// planes and where grey lines are likely to.
+/// planes may be better, and where all texels are grey.
 #[inline(always)]
 pub(super) fn fast_lines<S: Simd>(
     simd: S,
     texels: &[Grid<S>; 3],
     scale: &[f32; 3],
 ) -> (Blocks<S>, [<Wide<S> as Real>::Mask; 2]) {
+    /// Estimates are right within a factor of 2 for 90 % of blocks.
+    const DOUBT: f32 = 2.0;
+
     let all = moments(simd, texels, None);
     let axis = principal_axis(simd, &all.scatter);
     let along = scatter_along(simd, &all.scatter, &axis);
