@@ -12,8 +12,8 @@ pub struct Coarser<T> {
     kept: Vec<Level<T>>,
 }
 
-/// Texels of the largest level that is kept, level 1 of 4096 x 4096, of numbers that are merged as fast as they are read. Making
-/// level 1 anew whenever it is read costs time, keeping it memory.
+/// Texels of the largest level that is kept, level 1 of 4096 x 4096, where merging is quick. Making level 1 anew whenever it is read
+/// costs time, keeping it memory.
 const MOST_KEPT: u64 = 1 << 22;
 
 impl<T: Merge> Coarser<T> {

@@ -45,8 +45,7 @@ impl<F: Copy, const N: usize> Numbers<F> for [F; N] {
 }
 
 /// [`Merge::merge`] for texels side by side: that of lane i has the weights `weights[..][i]`, at most `MOST`, and the parts
-/// `part(.., i)`. `lanes` is room for their numbers, which
-/// is cleared once for all groups.
+/// `part(.., i)`. `lanes` is room for their numbers, which is cleared once for all groups.
 // Loops and not closures over arrays: what is not inlined into the caller has none of its vectors.
 #[inline(always)]
 pub(super) fn merge_lanes<S: Simd, T: Merge, const MOST: usize>(

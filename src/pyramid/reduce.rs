@@ -155,8 +155,7 @@ fn reduce_lanes<S: Simd, T: Merge, const MOST: usize>(
         // Beyond the last texel it is merged again.
         let across: [Taps; LANES] =
             std::array::from_fn(|lane| Taps::new(fine_width as u32, (group * LANES + lane.min(out.len() - 1)) as u32));
-        // Four are two by two: no division is left.
-        let taps = if MOST == 4 { 2 } else { across[0].count };
+        let taps = across[0].count;
         let mut weights = [[0.0; LANES]; MOST];
         for (index, weights) in weights.iter_mut().enumerate().take(down.count * taps) {
             *weights = std::array::from_fn(|lane| down.weights[index / taps] * across[lane].weights[index % taps]);

@@ -90,8 +90,7 @@ impl Hints {
 }
 
 /// The fields of [`Hints`] on ETC1, of one block or of several side by side: flip, differential, the index into
-/// [`LEAST_BIAS`] and both tables.
-/// All sums are whole numbers that floats hold.
+/// [`LEAST_BIAS`] and both tables. All sums are whole numbers that floats hold.
 #[inline(always)]
 fn etc1<F: Real>(levels: &[[F; 16]; 3]) -> [F; 5] {
     let (zero, one) = (levels[0][0].like(0.0), levels[0][0].like(1.0));

@@ -66,20 +66,20 @@ impl Row {
                     simd,
                     &planes,
                     #[inline(always)]
-                    |texels, winner| search::fast_planes(simd, &colours(simd, texels, &scale), &scale, winner),
+                    |winner, texels| winner.offer_planes(simd, &colours(simd, texels, &scale), &scale),
                 );
                 let poor: Vec<_> = which.iter().copied().filter(|&k| self.blocks[k].error > search::GOOD).collect();
                 self.offer(
                     simd,
                     &poor,
                     #[inline(always)]
-                    |texels, winner| search::fast_subsets(simd, &colours(simd, texels, &scale), &scale, winner),
+                    |winner, texels| winner.offer_subsets(simd, &colours(simd, texels, &scale), &scale),
                 );
                 self.offer(
                     simd,
                     &grey,
                     #[inline(always)]
-                    |texels, winner| search::fast_grey(simd, &colours(simd, texels, &scale), &scale, winner),
+                    |winner, texels| winner.offer_grey(simd, &colours(simd, texels, &scale), &scale, 1),
                 );
             }
             (_, Effort::Best) => {
@@ -131,18 +131,19 @@ impl Row {
         others
     }
 
-    /// Replaces the blocks at `which` by what `make` makes of the texels of a group, where that is better. `make` starts from
-    /// empty blocks with the errors so far. Gathering the blocks that a candidate may suit keeps all lanes busy: among
-    /// neighbours it suits one lane nearly always and all of them hardly ever.
+    /// Replaces the blocks at `which` where `offer` finds better ones; it is given empty blocks with the errors so far. Gathering
+    /// the blocks that a candidate may suit keeps all lanes busy: among neighbours it suits one lane nearly always and all of
+    /// them hardly ever.
     #[inline(always)]
-    fn offer<S: Simd>(&mut self, simd: S, which: &[usize], make: impl Fn([&Texels; LANES], Blocks<S>) -> Blocks<S>) {
+    fn offer<S: Simd>(&mut self, simd: S, which: &[usize], offer: impl Fn(&mut Blocks<S>, [&Texels; LANES])) {
         for (group, at) in groups(which) {
             let error = Wide::simd_from(simd, at.map(|k| self.blocks[k].error));
-            let made = make(at.map(|k| &self.texels[k]), Blocks { error, ..Blocks::none(simd) });
-            let made = made.store();
+            let mut winner = Blocks { error, ..Blocks::none(simd) };
+            offer(&mut winner, at.map(|k| &self.texels[k]));
+            let winner = winner.store();
             for (lane, &k) in group.iter().enumerate() {
-                if made.errors[lane] < self.blocks[k].error {
-                    self.blocks[k] = made.block(lane);
+                if winner.errors[lane] < self.blocks[k].error {
+                    self.blocks[k] = winner.block(lane);
                 }
             }
         }

@@ -26,7 +26,7 @@ pub(super) const GOOD: f32 = 50.0;
 impl<S: Simd> Blocks<S> {
     /// [`Blocks::offer`] of lines of one number where all texels are grey, with `passes` over single endpoints.
     #[inline(always)]
-    fn offer_grey(&mut self, simd: S, texels: &[Grid<S>; 3], scale: &[f32; 3], passes: usize) {
+    pub fn offer_grey(&mut self, simd: S, texels: &[Grid<S>; 3], scale: &[f32; 3], passes: usize) {
         let is_grey = is_grey(texels, scale);
         if is_grey.any_true() {
             let weight = scale[0] * scale[0] + scale[1] * scale[1] + scale[2] * scale[2];
@@ -37,6 +37,28 @@ impl<S: Simd> Blocks<S> {
             }
             self.offer(&grey::<_, 4>(simd, &[green], weight, &MODE_15, passes), is_grey);
             self.offer(&grey::<_, 5>(simd, &[green], weight, &MODE_18, passes), is_grey);
+        }
+    }
+
+    /// [`Blocks::offer`] of two planes, the channel that gains most from it alone.
+    #[inline(always)]
+    pub fn offer_planes(&mut self, simd: S, texels: &[Grid<S>; 3], scale: &[f32; 3]) {
+        let all = moments(simd, texels, None);
+        let (selector, _) = likely_planes(simd, &all);
+        self.offer(&two_planes::<_, 3, 2>(simd, texels, &all, selector, scale, &MODE_6, ROUNDS), every(simd));
+    }
+
+    /// [`Blocks::offer`] of two subsets in the likeliest pattern.
+    #[inline(always)]
+    pub fn offer_subsets(&mut self, simd: S, texels: &[Grid<S>; 3], scale: &[f32; 3]) {
+        let all = moments(simd, texels, None);
+        let axis = principal_axis(simd, &all.scatter);
+        let [pattern] = likely_patterns(simd, texels, &all, &axis);
+        let split = Split::in_two(simd, texels, pattern);
+        let (off, along) = split.scatter(simd);
+        let is_likely = (off + along / 12.0).simd_lt(self.error * 1.4);
+        if is_likely.any_true() {
+            self.offer(&split_lines::<_, 3, 2, 2>(simd, texels, &split, scale, &MODE_4, ROUNDS), is_likely);
         }
     }
 
@@ -190,47 +212,6 @@ pub(super) fn fast_lines<S: Simd>(
     let is_line_likely = line_estimate.simd_lt(planes_estimate * DOUBT);
     winner.offer_line(simd, texels, &all, &axis, scale, ROUNDS, is_line_likely);
     (winner, [planes_estimate.simd_lt(line_estimate * DOUBT), is_grey(texels, scale)])
-}
-
-/// Two planes, where they are better than `winner`.
-#[inline(always)]
-pub(super) fn fast_planes<S: Simd>(
-    simd: S,
-    texels: &[Grid<S>; 3],
-    scale: &[f32; 3],
-    mut winner: Blocks<S>,
-) -> Blocks<S> {
-    let all = moments(simd, texels, None);
-    let (selector, _) = likely_planes(simd, &all);
-    winner.offer(&two_planes::<_, 3, 2>(simd, texels, &all, selector, scale, &MODE_6, ROUNDS), every(simd));
-    winner
-}
-
-/// Two subsets, where they are better than `winner`.
-#[inline(always)]
-pub(super) fn fast_subsets<S: Simd>(
-    simd: S,
-    texels: &[Grid<S>; 3],
-    scale: &[f32; 3],
-    mut winner: Blocks<S>,
-) -> Blocks<S> {
-    let all = moments(simd, texels, None);
-    let axis = principal_axis(simd, &all.scatter);
-    let [pattern] = likely_patterns(simd, texels, &all, &axis);
-    let split = Split::in_two(simd, texels, pattern);
-    let (off, along) = split.scatter(simd);
-    let is_likely = (off + along / 12.0).simd_lt(winner.error * 1.4);
-    if is_likely.any_true() {
-        winner.offer(&split_lines::<_, 3, 2, 2>(simd, texels, &split, scale, &MODE_4, ROUNDS), is_likely);
-    }
-    winner
-}
-
-/// Lines of one number through grey `texels`, where they are better than `winner`.
-#[inline(always)]
-pub(super) fn fast_grey<S: Simd>(simd: S, texels: &[Grid<S>; 3], scale: &[f32; 3], mut winner: Blocks<S>) -> Blocks<S> {
-    winner.offer_grey(simd, texels, scale, 1);
-    winner
 }
 
 /// The channel that is best given a plane of its own, and the squared error to expect then.
