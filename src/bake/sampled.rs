@@ -112,30 +112,28 @@ struct Tap {
     weight: f32,
 }
 
-/// Encodes and decodes blocks, stacked to a texture of one column. Every encoder treats blocks one by one.
+/// Encodes and decodes blocks as a texture of one row of them. Every encoder treats blocks one by one.
 fn through(encoding: Encoding, blocks: &mut [[[f32; 4]; 16]]) -> Result<(), EncodeError> {
-    let rows = blocks.len() as u32 * EDGE;
-    if rows == 0 {
+    let width = blocks.len() as u32 * EDGE;
+    if width == 0 {
         return Ok(());
     }
     let format = encoding.format;
     let bytes = {
         let row = |y: u32, out: &mut [[f32; 4]]| {
-            let from = (y % EDGE * EDGE) as usize;
-            out.copy_from_slice(&blocks[(y / EDGE) as usize][from..from + EDGE as usize]);
+            let from = (y * EDGE) as usize;
+            for (out, block) in out.chunks_exact_mut(EDGE as usize).zip(blocks.iter()) {
+                out.copy_from_slice(&block[from..from + EDGE as usize]);
+            }
         };
-        encode(&Texels { width: EDGE, height: rows, row: &row }, format, encoding.metric, encoding.effort)?
+        encode(&Texels { width, height: EDGE, row: &row }, format, encoding.metric, encoding.effort)?
     };
-    let failed = || EncodeError::Encoder {
-        format,
-        width: EDGE,
-        height: rows,
-        reason: "its blocks cannot be decoded".to_owned(),
-    };
-    let image = decode_payload(&bytes, format, (EDGE, rows)).ok_or_else(failed)?;
+    let failed =
+        || EncodeError::Encoder { format, width, height: EDGE, reason: "its blocks cannot be decoded".to_owned() };
+    let image = decode_payload(&bytes, format, (width, EDGE)).ok_or_else(failed)?;
     for (i, block) in blocks.iter_mut().enumerate() {
         for (j, texel) in block.iter_mut().enumerate() {
-            let (x, y) = (j as u32 % EDGE, i as u32 * EDGE + j as u32 / EDGE);
+            let (x, y) = (i as u32 * EDGE + j as u32 % EDGE, j as u32 / EDGE);
             for (c, value) in texel.iter_mut().enumerate() {
                 *value = image.sample(x, y, c as u32).unwrap_or(0.0);
             }

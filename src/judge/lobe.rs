@@ -59,19 +59,17 @@ impl Lobe {
     }
 
     /// Share of half-vectors per steradian about the unit vector `h`; 0 below the normal's horizon.
-    #[inline]
+    #[inline(always)]
     pub fn density(&self, h: Vector) -> f64 {
         let z = dot(self.normal, h);
-        if z <= 0.0 {
-            return 0.0;
-        }
         let [xx, xy, xz, yy, yz, zz] = self.m;
         let [x, y, w] = h;
         let q = xx * x * x + yy * y * y + zz * w * w + 2.0 * (xy * x * y + xz * x * w + yz * y * w);
-        match self.family {
+        let above = match self.family {
             Family::Ggx => self.peak * z / (q * q),
             Family::Beckmann => self.peak * libm::exp(1.0 - q / (z * z)) / (z * z * z),
-        }
+        };
+        if z <= 0.0 { 0.0 } else { above }
     }
 
     /// The half-vector of a point of the unit square; an even spread of points follows the density.

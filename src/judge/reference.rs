@@ -1,8 +1,11 @@
 //! The lobe error, with the truth sampled once and shared by all candidates.
 
+use std::array;
+
 use super::footprint::Footprint;
 use super::lobe::{Family, Lobe};
 use super::vector::Vector;
+use crate::simd::dispatch;
 
 /// Samples per footprint that keep the error of [`Reference::error`] below 0.002 (test
 /// `doubling_the_samples_changes_little`).
@@ -39,15 +42,7 @@ impl Reference {
             }
             points.push(lobes[lobe_index].1.sample(even_point(first + i)));
         }
-        let mut densities = vec![0.0; points.len()];
-        // Lobe by lobe for a few points at a time: 16384 lobes do not fit a cache.
-        for (points, sums) in points.chunks(32).zip(densities.chunks_mut(32)) {
-            for (weight, lobe) in &lobes {
-                for (h, sum) in points.iter().zip(sums.iter_mut()) {
-                    *sum += weight * lobe.density(*h);
-                }
-            }
-        }
+        let densities = points.chunks(STRIP).flat_map(|points| sums_of_densities(&lobes, points)).collect();
         Self { family, points, densities }
     }
 
@@ -81,6 +76,24 @@ impl Reference {
         let sum: f64 = pairs.map(|(h, density)| (1.0 - lobe.density(*h) / density).max(0.0)).sum();
         sum / count as f64
     }
+}
+
+/// Points that are worked on at a time: 16384 lobes do not fit a cache, the numbers of a few points do.
+const STRIP: usize = 32;
+
+/// The weighted densities of `lobes`, summed in their order, at each of up to [`STRIP`] points.
+fn sums_of_densities(lobes: &[(f64, Lobe)], points: &[Vector]) -> impl Iterator<Item = f64> + use<> {
+    // Equal coordinates side by side, so that compilers make vectors of them; after the last point it comes again.
+    let [x, y, z]: [[f64; STRIP]; 3] = [0, 1, 2].map(|axis| array::from_fn(|i| points[i.min(points.len() - 1)][axis]));
+    let mut sums = [0.0; STRIP];
+    dispatch!(fearless_simd::Level::new(), _simd => {
+        for (weight, lobe) in lobes {
+            for i in 0..STRIP {
+                sums[i] += weight * lobe.density([x[i], y[i], z[i]]);
+            }
+        }
+    });
+    sums.into_iter().take(points.len())
 }
 
 /// Point `i` of a sequence that fills the unit square evenly: the additive recurrence of the plastic constant

@@ -3,6 +3,7 @@
 /// A vector in (T, B, N).
 pub type Vector = [f64; 3];
 
+#[inline]
 pub fn dot(a: Vector, b: Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
