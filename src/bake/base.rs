@@ -59,19 +59,27 @@ impl BaseRows<'_> {
     }
 
     /// Writes the red, green, blue and alpha of row `y` of the roughness texture to `out`; 1 without one.
-    fn surface(&self, y: u32, out: &mut [[f32; 4]]) {
+    pub fn surface(&self, y: u32, out: &mut [[f32; 4]]) {
         match &self.roughness {
             Some(rows) => rows.row(y, out),
             None => out.fill([1.0; 4]),
         }
     }
 
+    /// Writes row `y` of the texture that holds these lobes, which are round, to `out`: roughness in green, red and blue as they are.
+    pub fn round_row(&self, y: u32, out: &mut [[f32; 4]]) {
+        self.surface(y, out);
+        out.iter_mut().for_each(|texel| texel[1] = self.roughness(texel[1]).0);
+    }
+
+    #[inline(always)]
     fn roughness(&self, green: f32) -> Roughness {
         Roughness((green * self.roughness_factor).clamp(0.0, 1.0))
     }
 
     /// Of a round lobe.
-    fn squared_alpha(&self, green: f32) -> f32 {
+    #[inline(always)]
+    pub fn squared_alpha(&self, green: f32) -> f32 {
         SquaredAlpha::isotropic(self.roughness(green).into()).0.uu
     }
 
@@ -212,9 +220,9 @@ impl<'a> Base<'a> {
             BaseLevels::Same => self.rows.row(0, out),
             BaseLevels::Round(_) if level == 0 => self.rows.row(y, out),
             BaseLevels::Round(coarser) => {
-                let mut row = vec![RoundTexel::default(); out.len()];
-                coarser.row(&RoundRows(&self.rows), level, y, &mut row);
-                out.iter_mut().zip(row).for_each(|(texel, round)| *texel = whole_texel(round));
+                coarser.with_row(&RoundRows(&self.rows), level, y, |row| {
+                    out.iter_mut().zip(row).for_each(|(texel, round)| *texel = whole_texel(*round));
+                });
             }
             BaseLevels::Elliptical(coarser) => coarser.row(&self.rows, level, y, out),
         }

@@ -159,6 +159,9 @@ impl<'a> Fold<'a> {
     pub fn roughness_rows(&self, model: Model) -> impl Fn(usize, u32, &mut [[f32; 4]]) + Sync {
         let axis = self.reference();
         move |level, y, out| {
+            if self.lobes.are_own(level) && !self.is_elliptical {
+                return self.base.finest().round_row(y, out);
+            }
             let (base, full) = self.rows(level, y, out.len());
             let texels = base.iter().zip(&full).map(|(base, SquaredAlpha(a))| [base[3], base[4], a.uu, a.uv, a.vv]);
             let lobe = |uu, uv, vv| SquaredAlpha(Symmetric2::new(uu, uv, vv));

@@ -57,31 +57,35 @@ impl<'a> Lobes<'a> {
 
     /// Their squared alphas alone, where the material's own lobes of that row are known: `own`.
     pub fn squared_alphas(&self, own: &[BaseTexel], level: usize, y: u32, out: &mut [SquaredAlpha]) {
-        // Bumps that are not resampled do not vary within a texel.
-        if level == 0 && self.finest.bumps.unchanged().is_some() {
+        if self.are_own(level) {
             out.iter_mut().zip(own).for_each(|(a, texel)| *a = own_lobe(texel));
             return;
         }
-        let mut lobes = vec![OrientedLobe::default(); out.len()];
-        self.row(level, y, &mut lobes);
-        out.iter_mut().zip(lobes).for_each(|(a, lobe)| *a = lobe.squared_alpha);
+        self.coarser.with_row(&self.finest, level, y, |lobes| {
+            out.iter_mut().zip(lobes).for_each(|(a, lobe)| *a = lobe.squared_alpha);
+        });
+    }
+
+    /// Whether squared alphas of `level` are the material's own: bumps that are not resampled do not vary within a texel.
+    pub fn are_own(&self, level: usize) -> bool {
+        level == 0 && self.finest.bumps.unchanged().is_some()
     }
 
     /// Writes the offsets (f_u, f_v) that a normal map should hold to `out`: where the lobes of row `y` of `level` point,
     /// before scaling.
     pub fn offsets(&self, level: usize, y: u32, out: &mut [[f32; 2]]) {
         let scale = 1.0 / self.slope_scale();
-        let mut lobes = vec![OrientedLobe::default(); out.len()];
-        self.row(level, y, &mut lobes);
-        map_row(
-            lobes.iter().map(|lobe| lobe.normal),
-            out,
-            |normal| {
-                let Offset { u, v } = slopes(normal);
-                [u * scale, v * scale]
-            },
-            |offset, made| *offset = made,
-        );
+        self.coarser.with_row(&self.finest, level, y, |lobes| {
+            map_row(
+                lobes.iter().map(|lobe| lobe.normal),
+                out,
+                |normal| {
+                    let Offset { u, v } = slopes(normal);
+                    [u * scale, v * scale]
+                },
+                |offset, made| *offset = made,
+            );
+        });
     }
 
     /// The single texel of the coarsest level.
@@ -220,19 +224,39 @@ impl Rows for Finest<'_> {
 
     fn row(&self, y: u32, out: &mut [OrientedLobe]) {
         let scale = self.slope_scale;
+        let normal = |[u, v]: [f32; 2]| normal_from_offset(Offset { u: u * scale, v: v * scale });
         let point = |offsets: &[[f32; 2]], out: &mut [OrientedLobe]| {
-            let normal = |[u, v]: [f32; 2]| normal_from_offset(Offset { u: u * scale, v: v * scale });
             map_row(offsets.iter().copied(), out, normal, |lobe, normal| lobe.normal = normal);
         };
-        let (mut own, mut offsets) = (vec![BaseTexel::default(); out.len()], vec![[0.0; 2]; out.len()]);
-        self.base.row(y, &mut own);
+        let mut offsets = vec![[0.0; 2]; out.len()];
         // Bumps that are not resampled do not vary within a texel.
         if let Some(relief) = self.bumps.unchanged() {
             relief.offsets(y, &mut offsets);
+            if !self.base.is_elliptical() {
+                let mut surface = vec![[0.0; 4]; out.len()];
+                self.base.surface(y, &mut surface);
+                map_row(
+                    offsets.iter().zip(&surface).map(|(&[u, v], &[_, green, ..])| [u, v, green]),
+                    out,
+                    |[u, v, green]| {
+                        let [x, y, z] = normal([u, v]);
+                        [x, y, z, self.base.squared_alpha(green)]
+                    },
+                    |lobe, [x, y, z, squared_alpha]| {
+                        lobe.normal = [x, y, z];
+                        lobe.squared_alpha = SquaredAlpha(Symmetric2::diagonal(squared_alpha, squared_alpha));
+                    },
+                );
+                return;
+            }
+            let mut own = vec![BaseTexel::default(); out.len()];
+            self.base.row(y, &mut own);
             point(&offsets, out);
             out.iter_mut().zip(&own).for_each(|(lobe, texel)| lobe.squared_alpha = own_lobe(texel));
             return;
         }
+        let mut own = vec![BaseTexel::default(); out.len()];
+        self.base.row(y, &mut own);
         let mut bumps = vec![Moments::default(); out.len()];
         self.bumps.row(y, &mut bumps);
         offsets.iter_mut().zip(&bumps).for_each(|(offset, m)| *offset = [m.mean.u, m.mean.v]);

@@ -38,6 +38,19 @@ impl<T: Merge> Coarser<T> {
         }
     }
 
+    /// Calls `read` with row `y` of `level`, which may be 0: with the kept row where there is one, which need not be copied.
+    pub fn with_row<O>(&self, source: &impl Rows<Texel = T>, level: usize, y: u32, read: impl FnOnce(&[T]) -> O) -> O {
+        match level.checked_sub(self.passing + 1) {
+            None => {
+                let rows = Passing { source, level };
+                let mut row = vec![T::default(); rows.width() as usize];
+                rows.row(y, &mut row);
+                read(&row)
+            }
+            Some(kept) => read(self.kept[kept].texels_of(y)),
+        }
+    }
+
     /// The single texel of the coarsest level.
     pub fn whole(&self, source: &impl Rows<Texel = T>) -> T {
         let mut texel = [T::default()];

@@ -33,8 +33,15 @@ impl<T: Merge> Rows for Level<T> {
     }
 
     fn row(&self, y: u32, out: &mut [T]) {
+        out.copy_from_slice(self.texels_of(y));
+    }
+}
+
+impl<T> Level<T> {
+    /// The texels of row `y`.
+    pub(super) fn texels_of(&self, y: u32) -> &[T] {
         let width = self.width as usize;
-        out.copy_from_slice(&self.texels[y as usize * width..][..width]);
+        &self.texels[y as usize * width..][..width]
     }
 }
 
