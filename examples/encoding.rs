@@ -119,7 +119,7 @@ fn encoded(normals: &Image, format: Format, metric: Metric, effort: Effort) -> R
         }
     };
     let level = encode(&Texels { width, height, row: &row }, format, metric, effort)?;
-    let levels = [StoredLevel::new(level, format, effort)];
-    let file = Ktx2Writer { format, width, height, levels: &levels, keys: &[] }.to_bytes();
+    let levels = vec![StoredLevel::new(level, format, effort)];
+    let file = Ktx2Writer { format, width, height, levels, keys: &[] }.into_bytes();
     Ok(Ktx2::parse(&file)?.decode_level(0)?)
 }

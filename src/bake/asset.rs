@@ -155,9 +155,12 @@ impl<'a> Assembly<'a> {
             true => self.provenance(texture).keys(),
             false => Vec::new(),
         };
-        let ktx2: Vec<Vec<u8>> =
-            output.textures.par_iter().map(|texture| texture.chain.to_ktx2(&keys(texture))).collect();
-        for (texture, ktx2) in output.textures.into_iter().zip(ktx2) {
+        let with_file = |mut texture: JobTexture| {
+            let ktx2 = texture.chain.take_ktx2(&keys(&texture));
+            (texture, ktx2)
+        };
+        let textures: Vec<_> = output.textures.into_par_iter().map(with_file).collect();
+        for (texture, ktx2) in textures {
             self.add_texture(texture, ktx2)?;
         }
         for layer in output.layers {
@@ -185,7 +188,7 @@ impl<'a> Assembly<'a> {
             content: texture.content,
             width: chain.width,
             height: chain.height,
-            levels: chain.levels.len(),
+            levels: chain.level_count(),
             trimmed: chain.trimmed,
             bytes: ktx2.len(),
             range: texture.range.clone(),

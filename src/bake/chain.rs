@@ -1,12 +1,16 @@
 //! Encoded mip chains.
 
+use std::mem;
+
 use super::png::fallback;
 use super::settings::{Form, Settings};
+use crate::pyramid::level_sizes;
 use crate::texture::ktx2::{Key, Ktx2Writer, StoredLevel, Storing};
 use crate::texture::uastc::{Effort, Metric};
 use crate::texture::{EncodeError, Format, Target, Texels, encode, lower_rate};
 
 /// A texture with all its levels encoded.
+#[derive(Clone)]
 pub struct Chain {
     /// How texels are stored.
     pub format: Format,
@@ -17,7 +21,7 @@ pub struct Chain {
     /// Rows of level 0.
     pub height: u32,
     /// Level 0 first.
-    pub levels: Vec<StoredLevel>,
+    levels: Vec<StoredLevel>,
     /// Level 0 as a PNG file, where it is asked for.
     pub fallback: Option<Vec<u8>>,
 }
@@ -181,8 +185,18 @@ fn encode_band(texels: &Texels<'_>, encoding: Encoding) -> Result<Vec<u8>, Encod
 impl Chain {
     /// The KTX2 file of the chain.
     pub fn to_ktx2(&self, keys: &[Key]) -> Vec<u8> {
-        let &Self { format, width, height, ref levels, .. } = self;
-        Ktx2Writer { format, width, height, levels, keys }.to_bytes()
+        self.clone().take_ktx2(keys)
+    }
+
+    /// The same, made of the bytes of the levels, which are gone then.
+    pub fn take_ktx2(&mut self, keys: &[Key]) -> Vec<u8> {
+        let Self { format, width, height, .. } = *self;
+        Ktx2Writer { format, width, height, levels: mem::take(&mut self.levels), keys }.into_bytes()
+    }
+
+    /// How many levels it has.
+    pub fn level_count(&self) -> usize {
+        level_sizes(self.width, self.height).len()
     }
 }
 
@@ -198,13 +212,13 @@ mod tests {
                 *texel = [value(3), value(5), value(11), 1.0];
             }
         };
-        let sizes = crate::pyramid::level_sizes(52, 36);
+        let sizes = level_sizes(52, 36);
         for target in [Target::Basis, Target::Float] {
             let settings = Settings { target, ..Settings::default() };
             for encoding in [Encoding::of(&settings, 3), Encoding::of_normals(&settings)] {
                 let file = |most| {
                     let levels = encode_levels(&sizes, encoding, most, &row).unwrap();
-                    Ktx2Writer { format: encoding.format, width: 52, height: 36, levels: &levels, keys: &[] }.to_bytes()
+                    Ktx2Writer { format: encoding.format, width: 52, height: 36, levels, keys: &[] }.into_bytes()
                 };
                 let whole = file(1 << 20);
                 for most in [1, 500, 3000] {

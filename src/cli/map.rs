@@ -136,7 +136,7 @@ impl Written {
                 "content": texture.content,
                 "width": texture.chain.width,
                 "height": texture.chain.height,
-                "levels": texture.chain.levels.len(),
+                "levels": texture.chain.level_count(),
                 "bytes": bytes,
                 "range": texture.range,
             })
@@ -159,7 +159,7 @@ impl Written {
                 texture.content.name(),
                 chain.width,
                 chain.height,
-                chain.levels.len(),
+                chain.level_count(),
                 *bytes as f64 / 1e3
             );
         }

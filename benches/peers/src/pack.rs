@@ -30,7 +30,7 @@ pub fn measure(image: &Path, out: &Path) -> Result<Value, Failure> {
         let blocks = Encoder::Basisu(0, Interface::Plain).blocks(&texels, width, height)?;
         levels.push(StoredLevel::new(blocks, Format::UastcRgb, Effort::Fast));
     }
-    let file = Ktx2Writer { format: Format::UastcRgb, width, height, levels: &levels, keys: &[] }.to_bytes();
+    let file = Ktx2Writer { format: Format::UastcRgb, width, height, levels, keys: &[] }.into_bytes();
     std::fs::write(out, &file)?;
     Ok(json!({ "bytes": file.len() }))
 }

@@ -1,6 +1,7 @@
 //! The container writer. KTX File Format Specification 2.0, sections named at the line.
 
 use std::io::Write;
+use std::mem;
 use std::num::NonZeroU8;
 
 use ::ktx2::dfd::{Basic, Block, ChannelTypeQualifiers, DataFormatFlags, SampleInformation};
@@ -83,7 +84,7 @@ impl Storing {
 }
 
 /// A KTX2 file to be written: a 2-D texture with a full chain of levels.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Ktx2Writer<'a> {
     /// How texels are stored.
     pub format: Format,
@@ -92,7 +93,7 @@ pub struct Ktx2Writer<'a> {
     /// Rows of level 0.
     pub height: u32,
     /// Levels of that format, level 0 first.
-    pub levels: &'a [StoredLevel],
+    pub levels: Vec<StoredLevel>,
     /// Written sorted, beside `KTXorientation` = `rd`.
     pub keys: &'a [Key],
 }
@@ -109,8 +110,8 @@ fn zstd_level(effort: Effort) -> i32 {
 
 impl Ktx2Writer<'_> {
     /// The bytes of the file.
-    pub fn to_bytes(&self) -> Vec<u8> {
-        let &Self { format, width, height, levels, keys } = self;
+    pub fn into_bytes(self) -> Vec<u8> {
+        let Self { format, width, height, mut levels, keys } = self;
         let supercompressed = format == Format::UastcRgb;
         let (descriptor, type_size) = data_format_descriptor(format);
         let key_values = key_value_data(keys);
@@ -151,17 +152,23 @@ impl Ktx2Writer<'_> {
                 sgd_byte_length: 0,
             },
         };
-        let mut file = Vec::with_capacity(end);
-        file.extend_from_slice(&header.as_bytes());
+        // Level 0, which comes last, is most of the file: what comes before it is put there, so that new memory need not be cleared for all.
+        let mut file = levels.first_mut().map(|level| mem::take(&mut level.bytes)).unwrap_or_default();
+        let (length, start) = (file.len(), end - file.len());
+        let mut before = Vec::with_capacity(start);
+        before.extend_from_slice(&header.as_bytes());
         for level in index.iter().rev() {
-            file.extend_from_slice(&level.as_bytes());
+            before.extend_from_slice(&level.as_bytes());
         }
-        file.extend_from_slice(&descriptor);
-        file.extend_from_slice(&key_values);
+        before.extend_from_slice(&descriptor);
+        before.extend_from_slice(&key_values);
         for (stored, level) in levels.iter().rev().zip(&index) {
-            file.resize(level.byte_offset as usize, 0);
-            file.extend_from_slice(&stored.bytes);
+            before.resize(level.byte_offset as usize, 0);
+            before.extend_from_slice(&stored.bytes);
         }
+        file.resize(end, 0);
+        file.copy_within(..length, start);
+        file[..start].copy_from_slice(&before);
         file
     }
 }

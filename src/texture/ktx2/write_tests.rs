@@ -22,7 +22,7 @@ fn texture(format: Format, width: u32, height: u32, keys: &[Key]) -> Option<Vec<
         Ok(StoredLevel::new(level, format, Effort::Fast))
     });
     let levels = levels.collect::<Result<Vec<_>, EncodeError>>().ok()?;
-    Some(Ktx2Writer { format, width, height, levels: &levels, keys }.to_bytes())
+    Some(Ktx2Writer { format, width, height, levels, keys }.into_bytes())
 }
 
 #[test]
