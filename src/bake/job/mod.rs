@@ -19,7 +19,7 @@ use super::pyramids::Range;
 use super::relief::Relief;
 use super::report::{Content, LayerReport};
 use super::settings::{Model, Settings};
-use super::source::Source;
+use super::source::{Bytes, Source};
 use super::view::Finest;
 use crate::bump::Frame;
 use crate::digest::digest;
@@ -219,7 +219,7 @@ impl Job<'_> {
         Ok(image)
     }
 
-    fn file(&self, texture: &TextureSource, material: &str) -> Result<Vec<u8>, JobError> {
+    fn file(&self, texture: &TextureSource, material: &str) -> Result<Bytes, JobError> {
         let material = || material.to_owned();
         let read = |location: &ImageLocation| {
             self.source.image(location).map_err(|error| JobError::Source {
@@ -233,12 +233,6 @@ impl Job<'_> {
         let form_is_baked = |form| read(form).is_ok_and(|bytes| is_baked(&bytes));
         if is_baked(&bytes) || texture.other_forms.iter().any(form_is_baked) {
             return Err(JobError::AlreadyBaked { material: material(), texture: describe(&texture.location) });
-        }
-        if self.settings.provenance {
-            self.digests
-                .lock()
-                .unwrap_or_else(PoisonError::into_inner)
-                .insert(texture.location.clone(), digest(&bytes));
         }
         Ok(bytes)
     }
@@ -255,7 +249,13 @@ impl Job<'_> {
             _ => None,
         };
         let options = DecodeOptions { max_pixels: self.settings.max_texels, extension, ..Default::default() };
-        decode(file, &options).map_err(|error| JobError::Decode {
+        let hash = || self.settings.provenance.then(|| digest(file));
+        // Decoders have one thread each.
+        let (image, digest) = rayon::join(|| decode(file, &options), hash);
+        if let Some(digest) = digest {
+            self.digests.lock().unwrap_or_else(PoisonError::into_inner).insert(texture.location.clone(), digest);
+        }
+        image.map_err(|error| JobError::Decode {
             material: material.to_owned(),
             texture: describe(&texture.location),
             error,
