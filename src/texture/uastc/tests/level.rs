@@ -99,10 +99,10 @@ fn bytes_are_pinned() {
 }
 
 const PINNED: [u64; 8] = [
-    0xfa31_1c62_edb3_b027,
-    0x065b_0af4_2581_1e21,
-    0x5ad5_7db3_b49a_6fe2,
-    0x7fda_b45f_ccf6_9910,
+    0x9149_27dc_01ee_bcb7,
+    0xb8f1_2353_ed11_99f3,
+    0xbfe5_3e02_dd68_41f5,
+    0xa811_1e4e_89dc_5fbd,
     0x43bf_7501_a4fb_1f6b,
     0xebc8_1ed0_b7ab_2817,
     0xb1d3_9176_0e06_eaee,
