@@ -59,10 +59,23 @@ impl BaseRows<'_> {
     }
 
     /// Writes the red, green, blue and alpha of row `y` of the roughness texture to `out`; 1 without one.
-    pub fn surface(&self, y: u32, out: &mut [[f32; 4]]) {
+    fn surface(&self, y: u32, out: &mut [[f32; 4]]) {
         match &self.roughness {
             Some(rows) => rows.row(y, out),
             None => out.fill([1.0; 4]),
+        }
+    }
+
+    /// Writes the green alone of that row to `out`.
+    pub fn greens(&self, y: u32, out: &mut [f32]) {
+        match self.roughness.as_ref().map(Linear::unchanged) {
+            None => out.fill(1.0),
+            Some(Some(texels)) => texels.greens(y, out),
+            Some(None) => {
+                let mut surface = vec![[0.0; 4]; out.len()];
+                self.surface(y, &mut surface);
+                out.iter_mut().zip(surface).for_each(|(green, texel)| *green = texel[1]);
+            }
         }
     }
 

@@ -233,10 +233,10 @@ impl Rows for Finest<'_> {
         if let Some(relief) = self.bumps.unchanged() {
             relief.offsets(y, &mut offsets);
             if !self.base.is_elliptical() {
-                let mut surface = vec![[0.0; 4]; out.len()];
-                self.base.surface(y, &mut surface);
+                let mut greens = vec![0.0; out.len()];
+                self.base.greens(y, &mut greens);
                 map_row(
-                    offsets.iter().zip(&surface).map(|(&[u, v], &[_, green, ..])| [u, v, green]),
+                    offsets.iter().zip(&greens).map(|(&[u, v], &green)| [u, v, green]),
                     out,
                     |[u, v, green]| {
                         let [x, y, z] = normal([u, v]);

@@ -59,6 +59,26 @@ impl Rows for Rgba<'_> {
     }
 }
 
+impl Rgba<'_> {
+    /// Writes the green of row `y` to `out`.
+    pub fn greens(&self, y: u32, out: &mut [f32]) {
+        let channels = self.0.channels as usize;
+        let start = y as usize * out.len() * channels + usize::from(channels > 1);
+        match &self.0.samples {
+            Samples::U8(all) => every(&all[start..], channels, out, |v| UNORM8[usize::from(v)]),
+            Samples::U16(all) => every(&all[start..], channels, out, |v| f32::from(v) / 65535.0),
+            Samples::F32(all) => every(&all[start..], channels, out, |v| v),
+        }
+    }
+}
+
+/// Writes every `step`th of `samples`, from the first on.
+fn every<T: Copy>(samples: &[T], step: usize, out: &mut [f32], value: impl Fn(T) -> f32) {
+    for (out, sample) in out.iter_mut().zip(samples.iter().step_by(step)) {
+        *out = value(*sample);
+    }
+}
+
 fn expand<T: Copy>(samples: &[T], channels: usize, out: &mut [[f32; 4]], value: impl Fn(T) -> f32) {
     match channels {
         1 => each(samples, out, |&[grey]| [value(grey), value(grey), value(grey), 1.0]),
@@ -95,6 +115,27 @@ const fn unorm8() -> [f32; 256] {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn greens_are_those_of_the_texels() {
+        for channels in 1..=4 {
+            let bytes: Vec<u8> = (0..12 * channels).map(|i| (i * 19 % 251) as u8).collect();
+            let all: [Samples; 3] = [
+                Samples::U16(bytes.iter().map(|&v| 257 * u16::from(v) / 2).collect()),
+                Samples::F32(bytes.iter().map(|&v| f32::from(v) - 3.5).collect()),
+                Samples::U8(bytes),
+            ];
+            for samples in all {
+                let image = Image { width: 4, height: 3, channels, samples };
+                for y in 0..3 {
+                    let (mut texels, mut greens) = ([[0.0; 4]; 4], [0.0; 4]);
+                    Rgba(&image).row(y, &mut texels);
+                    Rgba(&image).greens(y, &mut greens);
+                    assert_eq!(greens, texels.map(|texel| texel[1]), "{channels} channels");
+                }
+            }
+        }
+    }
 
     #[test]
     fn grey_with_alpha_is_grey_in_every_colour() {

@@ -89,6 +89,11 @@ impl<R: Rows> Linear<R> {
     pub fn new(source: R, width: u32, height: u32, wrap: [Wrap; 2]) -> Self {
         Self { source, width, height, wrap }
     }
+
+    /// As [`Area::unchanged`].
+    pub fn unchanged(&self) -> Option<&R> {
+        ((self.width, self.height) == (self.source.width(), self.source.height())).then_some(&self.source)
+    }
 }
 
 impl<R: Rows> Rows for Linear<R> {
@@ -103,8 +108,8 @@ impl<R: Rows> Rows for Linear<R> {
     }
 
     fn row(&self, y: u32, out: &mut [R::Texel]) {
-        if (self.width, self.height) == (self.source.width(), self.source.height()) {
-            return self.source.row(y, out);
+        if let Some(source) = self.unchanged() {
+            return source.row(y, out);
         }
         let fine_width = self.source.width() as usize;
         let down = neighbours(self.source.height(), self.height, y, self.wrap[1]);
