@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use roughcast::bake::{Bytes, Form, Model, Settings, Source, bake};
+use roughcast::bake::{Form, Model, Settings, Source, bake};
 use roughcast::gltf::document::Document;
 use roughcast::map::{DecodeOptions, decode};
 
@@ -18,15 +18,11 @@ fn main() {
 }
 
 /// The files of the asset.
-fn files() -> BTreeMap<PathBuf, Bytes> {
+fn files() -> BTreeMap<PathBuf, Vec<u8>> {
     let folder = tempfile::tempdir().expect("a temporary folder");
     common::asset::write(folder.path(), common::size(), 1).expect("a folder that takes files");
     let entries = fs::read_dir(folder.path()).expect("the folder").map(|entry| entry.expect("a file").path());
-    let named = |path: PathBuf| {
-        let bytes = Bytes::new(fs::read(&path).expect("a file"));
-        (PathBuf::from(path.file_name().expect("a name")), bytes)
-    };
-    entries.map(named).collect()
+    entries.map(|path| (PathBuf::from(path.file_name().expect("a name")), fs::read(&path).expect("a file"))).collect()
 }
 
 fn whole(bencher: Bencher, form: Form, model: Model) {

@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use super::settings::Settings;
-use super::source::{Bytes, Source};
+use super::source::Source;
 use super::view::{Finest, View};
 use crate::bump::Frame;
 use crate::gltf::density::{NoDensity, density};
@@ -17,7 +17,7 @@ use crate::pyramid::level_sizes;
 pub struct Geometry<'a> {
     root: &'a Value,
     /// None where neither frame nor view asks anything of meshes.
-    buffers: Option<Vec<Bytes>>,
+    buffers: Option<Vec<Vec<u8>>>,
     has_frame: bool,
     main_direction: [f32; 3],
     view: Option<View>,
@@ -42,20 +42,13 @@ impl<'a> Geometry<'a> {
     /// See [`layout`]; `None` under the unit frame.
     pub fn layout(&self, material: usize, mapping: &Mapping) -> Option<Layout> {
         let buffers = self.buffers.as_ref().filter(|_| self.has_frame)?;
-        layout(self.root, material, mapping, self.main_direction, &|i| buffers.get(i).map(|bytes| bytes.as_slice()))
+        layout(self.root, material, mapping, self.main_direction, &|i| buffers.get(i).map(Vec::as_slice))
     }
 
     /// See [`turn_map`]; `None` under the unit frame.
     pub fn turn_map(&self, material: usize, mapping: &Mapping, size: [u32; 2]) -> Option<TurnMap> {
         let buffers = self.buffers.as_ref().filter(|_| self.has_frame)?;
-        turn_map(
-            self.root,
-            material,
-            mapping,
-            self.main_direction,
-            &|i| buffers.get(i).map(|bytes| bytes.as_slice()),
-            size,
-        )
+        turn_map(self.root, material, mapping, self.main_direction, &|i| buffers.get(i).map(Vec::as_slice), size)
     }
 
     /// The finest level that the view can sample of a map of `size`; `None` without a view. See [`density`] for why it
@@ -63,7 +56,7 @@ impl<'a> Geometry<'a> {
     pub fn finest(&self, material: usize, mapping: &Mapping, size: (u32, u32)) -> Option<Result<Finest, NoDensity>> {
         let (view, buffers) = (self.view.as_ref()?, self.buffers.as_ref()?);
         let measure = |placements: &Vec<Placement>| {
-            let buffer = |i: usize| buffers.get(i).map(|bytes| bytes.as_slice());
+            let buffer = |i: usize| buffers.get(i).map(Vec::as_slice);
             density(self.root, placements, material, mapping, size, &buffer)
         };
         let density = self.placements.as_ref().map_err(|bad| NoDensity::from(*bad)).and_then(measure);

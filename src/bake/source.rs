@@ -2,16 +2,12 @@
 
 use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use serde::Deserialize;
 
 use crate::gltf::document::{Document, DocumentError};
 use crate::gltf::texture::ImageLocation;
 use crate::gltf::uri::{Uri, UriError};
-
-/// The bytes of a file, for all who work on them.
-pub type Bytes = Arc<Vec<u8>>;
 
 /// A document and how to read the files beside it.
 #[derive(Clone, Copy)]
@@ -21,7 +17,7 @@ pub struct Source<'a> {
     /// The document.
     pub document: &'a Document,
     /// Reads a file, given its path relative to the document.
-    pub read: &'a (dyn Fn(&Path) -> io::Result<Bytes> + Sync),
+    pub read: &'a (dyn Fn(&Path) -> io::Result<Vec<u8>> + Sync),
 }
 
 /// Why bytes cannot be had.
@@ -66,34 +62,34 @@ const MAX_DATA_URI: usize = 2 << 30;
 
 impl Source<'_> {
     /// The bytes that `uri` names.
-    pub fn uri(&self, uri: &str) -> Result<Bytes, SourceError> {
+    pub fn uri(&self, uri: &str) -> Result<Vec<u8>, SourceError> {
         match Uri::parse(uri)? {
-            Uri::Data(data) => Ok(Bytes::new(data.decode(MAX_DATA_URI)?)),
+            Uri::Data(data) => Ok(data.decode(MAX_DATA_URI)?),
             Uri::Path(path) => (self.read)(&path).map_err(|error| SourceError::Read { path, error }),
         }
     }
 
     /// The bytes of an image file.
-    pub fn image(&self, location: &ImageLocation) -> Result<Bytes, SourceError> {
+    pub fn image(&self, location: &ImageLocation) -> Result<Vec<u8>, SourceError> {
         match location {
             ImageLocation::Uri(uri) => self.uri(uri),
             ImageLocation::BufferView(view) => {
                 let (buffer, range) = self.document.buffer_view(*view)?;
                 let bytes = self.buffer(buffer)?;
                 let short = SourceError::ShortBuffer { buffer, expected: range.end, found: bytes.len() };
-                bytes.get(range).map(|bytes| Bytes::new(bytes.to_vec())).ok_or(short)
+                bytes.get(range).map(<[u8]>::to_vec).ok_or(short)
             }
         }
     }
 
     /// The bytes of a buffer.
-    pub fn buffer(&self, index: usize) -> Result<Bytes, SourceError> {
+    pub fn buffer(&self, index: usize) -> Result<Vec<u8>, SourceError> {
         let uri: Option<String> =
             self.document.json().read(&format!("/buffers/{index}/uri")).map_err(DocumentError::from)?;
         match uri {
             Some(uri) => self.uri(&uri),
             None if index == 0 => {
-                self.document.bin().map(|bin| Bytes::new(bin.to_vec())).ok_or(SourceError::NoBuffer { buffer: index })
+                self.document.bin().map(<[u8]>::to_vec).ok_or(SourceError::NoBuffer { buffer: index })
             }
             None => Err(SourceError::NoBuffer { buffer: index }),
         }

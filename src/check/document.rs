@@ -15,7 +15,7 @@ use super::scope::Scope;
 use super::sources::{Sources, Textures};
 use super::texture::{Usage, check_texture};
 use super::variance::{Levels, Ranged, check_variance};
-use crate::bake::{Bytes, Source, SourceError};
+use crate::bake::{Source, SourceError};
 use crate::gltf::document::{Container, Document, DocumentError};
 use crate::gltf::texture::ImageLocation;
 use crate::gltf::uri::{Uri, relative_path};
@@ -35,7 +35,7 @@ pub struct CheckedDocument {
 pub fn check_document(
     name: &str,
     bytes: &[u8],
-    read: &(dyn Fn(&Path) -> io::Result<Bytes> + Sync),
+    read: &(dyn Fn(&Path) -> io::Result<Vec<u8>> + Sync),
     scope: &Scope<'_>,
 ) -> CheckedDocument {
     let mut findings = Findings::new(name, "");
@@ -159,7 +159,7 @@ impl Images<'_> {
     }
 
     /// The bytes of the KTX2 of a texture.
-    fn ktx2(&self, texture: u32, textures: &Textures) -> Option<Bytes> {
+    fn ktx2(&self, texture: u32, textures: &Textures) -> Option<Vec<u8>> {
         let image = self.root.images.get(textures.get(texture as usize).basisu?)?;
         self.source.image(&location(image)?).ok()
     }

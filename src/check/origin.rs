@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::io;
 use std::path::Path;
 
-use crate::bake::{Bytes, Source};
+use crate::bake::Source;
 use crate::digest::digest;
 use crate::gltf::document::Document;
 use crate::gltf::texture::ImageLocation;
@@ -13,13 +13,13 @@ use crate::gltf::texture::ImageLocation;
 /// The sources of one baked asset, with digests that were computed.
 pub struct Origin<'a> {
     document: Option<Document>,
-    read: &'a (dyn Fn(&Path) -> io::Result<Bytes> + Sync),
+    read: &'a (dyn Fn(&Path) -> io::Result<Vec<u8>> + Sync),
     digests: RefCell<BTreeMap<String, Result<Vec<String>, String>>>,
 }
 
 impl<'a> Origin<'a> {
     /// Sources beside `document`, or of a bare map where there is none. `read` takes paths relative to it.
-    pub fn new(document: Option<Document>, read: &'a (dyn Fn(&Path) -> io::Result<Bytes> + Sync)) -> Self {
+    pub fn new(document: Option<Document>, read: &'a (dyn Fn(&Path) -> io::Result<Vec<u8>> + Sync)) -> Self {
         Self { document, read, digests: RefCell::default() }
     }
 
@@ -43,7 +43,7 @@ impl<'a> Origin<'a> {
         locations.iter().map(hash).collect()
     }
 
-    fn bytes(&self, location: &ImageLocation) -> Result<Bytes, String> {
+    fn bytes(&self, location: &ImageLocation) -> Result<Vec<u8>, String> {
         match (&self.document, location) {
             (Some(document), _) => {
                 Source { stem: "", document, read: self.read }.image(location).map_err(|e| e.to_string())

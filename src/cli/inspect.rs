@@ -9,7 +9,7 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::Outcome;
-use crate::bake::{Bytes, PublishError, Source, SourceError, read_file, write_file};
+use crate::bake::{PublishError, Source, SourceError, read_file, write_file};
 use crate::gltf::document::{Document, DocumentError};
 use crate::gltf::texture::ImageLocation;
 use crate::inspect::{
@@ -100,7 +100,7 @@ fn inspect(args: &Args) -> Result<(Facts, Vec<PathBuf>), InspectError> {
     }
     let document = Document::parse(&bytes)?;
     let folder = args.file.parent().unwrap_or(Path::new(""));
-    let source = Source { stem: "", document: &document, read: &|path| read_file(&folder.join(path)).map(Bytes::new) };
+    let source = Source { stem: "", document: &document, read: &|path| read_file(&folder.join(path)) };
     let facts = inspect_document(&source)?;
     let mut written = Vec::new();
     if let Some(output) = &args.extract {

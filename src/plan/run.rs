@@ -1,6 +1,7 @@
 //! Running a job: from the cache if it is there, else by baking; either way all declared outputs are there afterwards.
 
 use std::collections::BTreeMap;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
@@ -9,7 +10,7 @@ use super::job::{Job, beside};
 use super::restore::{Found, Lookup, restore};
 use super::room::Room;
 use crate::bake::report::AssetReport;
-use crate::bake::{Baked, Bytes, Places, Source, bake, publish, read_file};
+use crate::bake::{Baked, Places, Source, bake, publish, read_file};
 use crate::cache::{CacheError, Entry, Warn};
 use crate::digest::digest;
 use crate::gltf::document::{Container, Document};
@@ -109,19 +110,12 @@ fn baked(job: &Job, room: &Room, advance: &dyn Fn(f32)) -> Result<Baked, RunErro
     let settings = job.typed_settings()?;
     let _seat = room.enter(job);
     let inputs = Inputs::new(job);
-    // Files are hashed by who has nothing else to do while their images are decoded.
-    let result: Result<_, RunError> = rayon::in_place_scope(|scope| {
-        let read = |path: PathBuf| {
-            let bytes = read_file(&path).map(Bytes::new);
-            let same = bytes.as_ref().ok().cloned();
-            scope.spawn(|_| inputs.compare(path, same));
-            bytes
-        };
-        let document = Document::parse(&read(job.source.clone()).map_err(RunError::Read)?)?;
+    let result: Result<_, RunError> = (|| {
+        let document = Document::parse(&inputs.read(&job.source).map_err(RunError::Read)?)?;
+        let read = |file: &Path| inputs.read(&beside(&job.source, file));
         let stem = job.stem();
-        let beside = |file: &Path| read(beside(&job.source, file));
-        Ok(bake(&Source { stem: &stem, document: &document, read: &beside }, &settings, advance)?)
-    });
+        Ok(bake(&Source { stem: &stem, document: &document, read: &read }, &settings, advance)?)
+    })();
     // Whatever else went wrong, half of a file that was being written explains it.
     match inputs.changed() {
         Some(path) => Err(RunError::Changed { path }),
@@ -147,18 +141,19 @@ impl<'j> Inputs<'j> {
         Self { digests, changed: Mutex::new(None) }
     }
 
-    /// Whether `path` holds what was planned, now that `bytes` were read of it, or nothing.
-    fn compare(&self, path: PathBuf, bytes: Option<Bytes>) {
-        let found = bytes.map(|bytes| digest(&bytes));
-        let planned = self.digests.get(path.as_path()).copied().flatten();
+    fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
+        let read = read_file(path);
+        let found = read.as_ref().ok().map(|bytes| digest(bytes));
+        let planned = self.digests.get(path).copied().flatten();
         // What was there and is gone has changed, too; what was not there is missed by who needs it.
         let is_as_planned = found.as_deref() == planned;
         if !is_as_planned && let Ok(mut changed) = self.changed.lock() {
             // Images are read side by side: of all that changed, the first by name is told.
-            if changed.as_ref().is_none_or(|told| path < *told) {
-                *changed = Some(path);
+            if changed.as_deref().is_none_or(|told| path < told) {
+                *changed = Some(path.to_owned());
             }
         }
+        read
     }
 
     fn changed(&self) -> Option<PathBuf> {
@@ -176,7 +171,7 @@ mod tests {
         let digests = paths.iter().map(|path| (Path::new(path), Some("of a file that is gone"))).collect();
         let inputs = Inputs { digests, changed: Mutex::new(None) };
         for path in paths {
-            inputs.compare(path.into(), None);
+            assert!(inputs.read(Path::new(path)).is_err());
         }
         assert_eq!(inputs.changed(), Some("a.png".into()));
     }

@@ -7,7 +7,7 @@
 use std::io;
 use std::path::Path;
 
-use roughcast::bake::{Bytes, Model, Profile, Settings, Source, bake};
+use roughcast::bake::{Model, Profile, Settings, Source, bake};
 use roughcast::check::{Scope, check_document};
 use roughcast::config::{Config, resolve};
 use roughcast::gltf::document::Document;
@@ -20,8 +20,8 @@ const MAX_TEXELS: u64 = 1 << 12;
 /// A .gltf or .glb, whose images are one normal map of 8x8 texels; what is baked from it can be read.
 pub fn document(bytes: &[u8]) {
     let read = |path: &Path| match path.extension().and_then(|e| e.to_str()) {
-        Some("png") => Ok(Bytes::new(include_bytes!("../../fixtures/maps/line_normal.png").to_vec())),
-        Some("bin") => Ok(Bytes::new(vec![0; 256])),
+        Some("png") => Ok(include_bytes!("../../fixtures/maps/line_normal.png").to_vec()),
+        Some("bin") => Ok(vec![0; 256]),
         _ => Err(io::Error::from(io::ErrorKind::NotFound)),
     };
     let _ = check_document("fuzzed.gltf", bytes, &read, &Scope { is_deep: true, ..Scope::default() });

@@ -19,7 +19,7 @@ use super::pyramids::Range;
 use super::relief::Relief;
 use super::report::{Content, LayerReport};
 use super::settings::{Model, Settings};
-use super::source::{Bytes, Source};
+use super::source::Source;
 use super::view::Finest;
 use crate::bump::Frame;
 use crate::digest::digest;
@@ -219,7 +219,7 @@ impl Job<'_> {
         Ok(image)
     }
 
-    fn file(&self, texture: &TextureSource, material: &str) -> Result<Bytes, JobError> {
+    fn file(&self, texture: &TextureSource, material: &str) -> Result<Vec<u8>, JobError> {
         let material = || material.to_owned();
         let read = |location: &ImageLocation| {
             self.source.image(location).map_err(|error| JobError::Source {

@@ -19,7 +19,7 @@ use super::jobs;
 use super::report::Status;
 use super::selection::SettingOptions;
 use super::work::Work;
-use crate::bake::{Bytes, Settings, read_file};
+use crate::bake::{Settings, read_file};
 use crate::check::{self, Code, Finding, Findings, Origin, Report, Scope, Severity, Usage};
 
 /// Read baked files again and report what engines would stumble over, or what is not up to date.
@@ -205,7 +205,7 @@ impl Args {
         let mut findings = Findings::new(&name, "");
         let source_path = self.source.as_ref().map(|folder| folder.join(&target.below));
         let source_folder = source_path.as_deref().and_then(Path::parent).unwrap_or(Path::new("")).to_owned();
-        let read_source = |path: &Path| read_file(&source_folder.join(path)).map(Bytes::new);
+        let read_source = |path: &Path| read_file(&source_folder.join(path));
         let origin = source_path.and_then(|path| match source_document(&path) {
             Ok(document) => Some(Origin::new(Some(document), &read_source)),
             Err(reason) => {
@@ -218,8 +218,7 @@ impl Args {
         // Without a word on settings, any will do; a fix will bake with the defaults then.
         let asset = sources.assets.get(&target.key()).filter(|_| sources.is_configured || self.fix);
         let scope = Scope { settings: asset.map(|asset| &asset.resolved.settings), ..self.scope(origin.as_ref()) };
-        let checked =
-            check::check_document(&name, &bytes, &|path| self.read(&folder.join(path)).map(Bytes::new), &scope);
+        let checked = check::check_document(&name, &bytes, &|path| self.read(&folder.join(path)), &scope);
         let mut findings = findings.into_list();
         findings.extend(checked.findings);
         let files = checked.files.iter().filter_map(|file| fs::canonicalize(folder.join(file)).ok()).collect();
@@ -235,8 +234,7 @@ impl Args {
             findings.add(Code::LeftOver, "", message);
         } else {
             let folder = self.source.as_ref().map(|f| f.join(target.below.parent().unwrap_or(Path::new(""))));
-            let read_source =
-                |path: &Path| read_file(&folder.as_deref().unwrap_or(Path::new("")).join(path)).map(Bytes::new);
+            let read_source = |path: &Path| read_file(&folder.as_deref().unwrap_or(Path::new("")).join(path));
             let origin = folder.as_ref().map(|_| Origin::new(None, &read_source));
             check::check_texture(&bytes, Usage::default(), &self.scope(origin.as_ref()), &mut findings);
         }

@@ -6,7 +6,7 @@ use std::path::Path;
 use serde_json::Value;
 
 use super::RenderError;
-use crate::bake::{Baked, Bytes, EXTENSION, Form, Model, Profile, Settings, Source, bake};
+use crate::bake::{Baked, EXTENSION, Form, Model, Profile, Settings, Source, bake};
 use crate::check::{RoughnessModel, RoughnessPyramid};
 use crate::gltf::document::Document;
 use crate::gltf::material::{BumpSource, Layer, LayerKind, materials};
@@ -94,7 +94,7 @@ pub fn read_back(source: &Source<'_>, baked: &Baked, max_texels: u64) -> Result<
     let Baked { document, files, .. } = baked;
     let document = Document::parse(document)?;
     let read = |path: &Path| match files.iter().find(|file| file.path == path) {
-        Some(file) => Ok(Bytes::new(file.bytes.clone())),
+        Some(file) => Ok(file.bytes.clone()),
         None => (source.read)(path),
     };
     let source = Source { stem: source.stem, document: &document, read: &read };

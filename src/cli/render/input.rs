@@ -7,7 +7,7 @@ use serde_json::json;
 
 use super::RenderError;
 use super::columns::{Columns, columns};
-use crate::bake::{Bytes, Settings, Source, read_file};
+use crate::bake::{Settings, Source, read_file};
 use crate::gltf::document::Document;
 use crate::gltf::uri::encode_path;
 use crate::inspect::encode_exr;
@@ -31,7 +31,7 @@ pub enum Input {
     /// An image file.
     Map {
         /// Its bytes.
-        bytes: Bytes,
+        bytes: Vec<u8>,
         /// Its file name.
         name: String,
         /// What it holds.
@@ -58,7 +58,7 @@ impl Input {
             let image = Image { width: WAVES, height: WAVES, channels: 1, samples };
             let failed = |reason| RenderError::Encode { path: "waves.exr".into(), reason };
             let bytes = encode_exr(image).map_err(failed)?;
-            return Ok(Self::Map { bytes: Bytes::new(bytes), name: "waves.exr".to_owned(), kind: MapKind::Waves });
+            return Ok(Self::Map { bytes, name: "waves.exr".to_owned(), kind: MapKind::Waves });
         };
         let bytes = read_file(path).map_err(RenderError::Read)?;
         let extension = path.extension().unwrap_or_default();
@@ -68,7 +68,7 @@ impl Input {
         }
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let kind = height_scale.map_or(MapKind::Normals, MapKind::Heights);
-        Ok(Self::Map { bytes: Bytes::new(bytes), name, kind })
+        Ok(Self::Map { bytes, name, kind })
     }
 
     /// Bakes every material with bumps. A bare map gets `roughness`, else what suits `subject`.
@@ -91,7 +91,7 @@ impl Input {
     ) -> Result<T, RenderError> {
         match self {
             Self::Asset { document, folder, stem } => {
-                let read = |path: &Path| read_file(&folder.join(path)).map(Bytes::new);
+                let read = |path: &Path| read_file(&folder.join(path));
                 then(&Source { stem, document, read: &read })
             }
             Self::Map { bytes, name, kind } => {
@@ -121,7 +121,7 @@ impl Input {
                 });
                 let document = Document::parse(asset.to_string().as_bytes())?;
                 let read = |path: &Path| {
-                    if path == Path::new(name) { Ok(Bytes::clone(bytes)) } else { Err(io::ErrorKind::NotFound.into()) }
+                    if path == Path::new(name) { Ok(bytes.clone()) } else { Err(io::ErrorKind::NotFound.into()) }
                 };
                 then(&Source { stem: "", document: &document, read: &read })
             }
