@@ -163,6 +163,31 @@ struct Finest<'a> {
 }
 
 impl Finest<'_> {
+    /// The unit normal of an offset of the bumps.
+    #[inline(always)]
+    fn normal(&self, [u, v]: [f32; 2]) -> [f32; 3] {
+        normal_from_offset(Offset { u: u * self.slope_scale, v: v * self.slope_scale })
+    }
+
+    /// A row of round lobes over `relief`, whose texels are those of level 0: bumps do not vary within one.
+    fn round_row(&self, relief: &Relief, y: u32, out: &mut [OrientedLobe]) {
+        let (mut offsets, mut greens) = (vec![[0.0; 2]; out.len()], vec![0.0; out.len()]);
+        relief.offsets(y, &mut offsets);
+        self.base.greens(y, &mut greens);
+        map_row(
+            offsets.iter().zip(&greens).map(|(&[u, v], &green)| [u, v, green]),
+            out,
+            |[u, v, green]| {
+                let [x, y, z] = self.normal([u, v]);
+                [x, y, z, self.base.squared_alpha(green)]
+            },
+            |lobe, [x, y, z, squared_alpha]| {
+                lobe.normal = [x, y, z];
+                lobe.squared_alpha = SquaredAlpha(Symmetric2::diagonal(squared_alpha, squared_alpha));
+            },
+        );
+    }
+
     fn folded(&self, base: &Base<'_>, bumps: &Bumps<'_>, settings: &Settings) -> Vec<Level<OrientedLobe>> {
         let levels = bumps.sizes().into_iter().enumerate().skip(1);
         match settings.distribution {
@@ -223,46 +248,28 @@ impl Rows for Finest<'_> {
     }
 
     fn row(&self, y: u32, out: &mut [OrientedLobe]) {
-        let scale = self.slope_scale;
-        let normal = |[u, v]: [f32; 2]| normal_from_offset(Offset { u: u * scale, v: v * scale });
+        let relief = self.bumps.unchanged();
+        if let Some(relief) = relief.filter(|_| !self.base.is_elliptical()) {
+            return self.round_row(relief, y, out);
+        }
         let point = |offsets: &[[f32; 2]], out: &mut [OrientedLobe]| {
+            let normal = |offset| self.normal(offset);
             map_row(offsets.iter().copied(), out, normal, |lobe, normal| lobe.normal = normal);
         };
-        let mut offsets = vec![[0.0; 2]; out.len()];
-        // Bumps that are not resampled do not vary within a texel.
-        if let Some(relief) = self.bumps.unchanged() {
+        let (mut own, mut offsets) = (vec![BaseTexel::default(); out.len()], vec![[0.0; 2]; out.len()]);
+        self.base.row(y, &mut own);
+        if let Some(relief) = relief {
             relief.offsets(y, &mut offsets);
-            if !self.base.is_elliptical() {
-                let mut greens = vec![0.0; out.len()];
-                self.base.greens(y, &mut greens);
-                map_row(
-                    offsets.iter().zip(&greens).map(|(&[u, v], &green)| [u, v, green]),
-                    out,
-                    |[u, v, green]| {
-                        let [x, y, z] = normal([u, v]);
-                        [x, y, z, self.base.squared_alpha(green)]
-                    },
-                    |lobe, [x, y, z, squared_alpha]| {
-                        lobe.normal = [x, y, z];
-                        lobe.squared_alpha = SquaredAlpha(Symmetric2::diagonal(squared_alpha, squared_alpha));
-                    },
-                );
-                return;
-            }
-            let mut own = vec![BaseTexel::default(); out.len()];
-            self.base.row(y, &mut own);
             point(&offsets, out);
             out.iter_mut().zip(&own).for_each(|(lobe, texel)| lobe.squared_alpha = own_lobe(texel));
             return;
         }
-        let mut own = vec![BaseTexel::default(); out.len()];
-        self.base.row(y, &mut own);
         let mut bumps = vec![Moments::default(); out.len()];
         self.bumps.row(y, &mut bumps);
         offsets.iter_mut().zip(&bumps).for_each(|(offset, m)| *offset = [m.mean.u, m.mean.v]);
         point(&offsets, out);
         for ((lobe, texel), m) in out.iter_mut().zip(&own).zip(&bumps) {
-            lobe.squared_alpha = own_lobe(texel).fold(m.covariance.scaled([scale; 2]));
+            lobe.squared_alpha = own_lobe(texel).fold(m.covariance.scaled([self.slope_scale; 2]));
         }
     }
 }

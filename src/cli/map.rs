@@ -18,7 +18,7 @@ use crate::digest::digest;
 use crate::map::{
     DecodeError, DecodeOptions, HeightMap, Image, MapError, NormalLayout, NormalMap, decode, decode_colours,
 };
-use crate::texture::ktx2::{Provenance, SourceDigest};
+use crate::texture::ktx2::{Key, Provenance, SourceDigest};
 
 /// Bake one bare normal or height map into KTX2 files.
 ///
@@ -210,7 +210,7 @@ fn bake(args: &Args, settings: &Settings) -> Result<Written, MapCommandError> {
     if is_jpeg {
         baked.notes.push(notes::JPEG.to_owned());
     }
-    let mut files = Vec::new();
+    let mut places = Vec::new();
     for (index, texture) in baked.textures.iter().enumerate() {
         let path = if index == 0 { args.output.clone() } else { beside(&args.output, texture.content) };
         let inputs = [Some(&args.image), args.roughness.as_ref()].into_iter().flatten();
@@ -219,10 +219,11 @@ fn bake(args: &Args, settings: &Settings) -> Result<Written, MapCommandError> {
                 return Err(MapCommandError::OverSource { path });
             }
         }
-        files.push((path, texture_file(texture, args, &baked, &sources, settings)));
+        places.push((path, texture_keys(texture, args, &baked, &sources, settings)));
     }
     let mut written = Vec::new();
-    for (path, bytes) in files {
+    for (texture, (path, keys)) in baked.textures.iter_mut().zip(places) {
+        let bytes = texture.chain.take_ktx2(&keys);
         write_file(&path, &bytes)?;
         written.push((path, bytes.len() as u64));
     }
@@ -264,17 +265,17 @@ fn source_digest(path: &Path, bytes: &[u8]) -> SourceDigest {
     SourceDigest { uri, blake3: digest(bytes) }
 }
 
-fn texture_file(
+fn texture_keys(
     texture: &BareTexture,
     args: &Args,
     baked: &BareBake,
     sources: &[SourceDigest],
     settings: &Settings,
-) -> Vec<u8> {
+) -> Vec<Key> {
     let mut recorded = settings.to_json(baked.model);
     recorded["range"] = json!(texture.range);
     recorded["map"] = args.reading();
-    let keys = if settings.provenance {
+    if settings.provenance {
         Provenance {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             content: texture.content.name().to_owned(),
@@ -288,8 +289,7 @@ fn texture_file(
         .keys()
     } else {
         Vec::new()
-    };
-    texture.chain.to_ktx2(&keys)
+    }
 }
 
 /// `wool.ktx2` -> `wool.roughness.ktx2`.

@@ -39,6 +39,21 @@ fn normal_footprint(u: f64, deviations: [f64; 2], base: [f64; 3]) -> Footprint {
     Footprint::new(parts.collect()).unwrap()
 }
 
+/// Sums in vectors, of whole strips of points and of one that ends early.
+#[test]
+fn densities_are_those_of_all_lobes() {
+    for family in FAMILIES {
+        let footprint = footprint(&[[0.4, 0.0], [-0.3, 0.2], [3.0, -0.1]], [0.02, 0.01, 0.09]);
+        let reference = Reference::new(family, &footprint, 70);
+        assert_eq!(reference.densities().len(), 70);
+        for (h, found) in reference.points().iter().zip(reference.densities()) {
+            let of = |p: &Part| p.weight * Lobe::new(family, p.normal, p.base).density(*h);
+            let expected: f64 = footprint.parts().iter().map(of).sum();
+            assert!((found / expected - 1.0).abs() < 1e-12, "{family:?}: {found} for {expected}");
+        }
+    }
+}
+
 /// What the error rests on: it is only a distance because both densities integrate to 1.
 #[test]
 fn densities_integrate_to_one() {
