@@ -29,7 +29,7 @@ fn whole(bencher: Bencher, form: Form, model: Model) {
     let files = files();
     let document = Document::parse(&files[&PathBuf::from("asset.gltf")]).expect("a document");
     let read = |path: &std::path::Path| Ok(files[path].clone());
-    let source = Source { document: &document, stem: "asset", read: &read };
+    let source = Source { document: &document, stem: "asset", files: &read };
     let settings = Settings { form, model, ..Settings::default() };
     let texels = common::size() * common::size();
     bencher.counter(ItemsCount::new(texels)).bench(|| bake(black_box(&source), &settings, &|_| ()).map(drop));

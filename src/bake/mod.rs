@@ -39,6 +39,6 @@ pub use publish::{Places, PublishError, check_file, claim, hash_file, publish, r
 pub use pyramids::Range;
 pub use relief::Relief;
 pub use settings::{Form, Model, Profile, Settings};
-pub use source::{Source, SourceError};
+pub use source::{Files, Source, SourceError};
 pub use survey::{Survey, survey};
 pub use view::{Finest, View};

@@ -38,7 +38,7 @@ impl DocumentProvenance {
         let mut files = Vec::new();
         for path in container::files(source.document.json())? {
             if !is_told(&path)
-                && let Ok(bytes) = (source.read)(&path)
+                && let Ok(bytes) = source.files.read(&path)
             {
                 let names: Vec<_> = path.iter().map(OsStr::to_string_lossy).collect();
                 files.push(SourceDigest { uri: encode_path(&names.join("/")), blake3: digest(&bytes) });

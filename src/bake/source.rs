@@ -9,15 +9,41 @@ use crate::gltf::document::{Document, DocumentError};
 use crate::gltf::texture::ImageLocation;
 use crate::gltf::uri::{Uri, UriError};
 
-/// A document and how to read the files beside it.
+/// The files beside a document, by their paths relative to it. A function that reads them is enough.
+pub trait Files: Sync {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// Those of the file system.
+    fn read(&self, path: &Path) -> io::Result<Vec<u8>>;
+
+    /// The same for a caller who hashes what is read beside other work, and then tells [`Self::hashed`]: nothing is hashed twice.
+    ///
+    /// # Errors
+    /// Those of the file system.
+    fn read_to_hash(&self, path: &Path) -> io::Result<Vec<u8>> {
+        self.read(path)
+    }
+
+    /// Takes note of the BLAKE3, in hexadecimal, of what [`Self::read_to_hash`] read.
+    fn hashed(&self, _path: &Path, _blake3: &str) {}
+}
+
+impl<F: Fn(&Path) -> io::Result<Vec<u8>> + Sync> Files for F {
+    fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
+        self(path)
+    }
+}
+
+/// A document and the files beside it.
 #[derive(Clone, Copy)]
 pub struct Source<'a> {
     /// File name without extension; output files are named after it.
     pub stem: &'a str,
     /// The document.
     pub document: &'a Document,
-    /// Reads a file, given its path relative to the document.
-    pub read: &'a (dyn Fn(&Path) -> io::Result<Vec<u8>> + Sync),
+    /// The files.
+    pub files: &'a dyn Files,
 }
 
 /// Why bytes cannot be had.
@@ -63,9 +89,30 @@ const MAX_DATA_URI: usize = 2 << 30;
 impl Source<'_> {
     /// The bytes that `uri` names.
     pub fn uri(&self, uri: &str) -> Result<Vec<u8>, SourceError> {
+        self.uri_by(uri, |path| self.files.read(path))
+    }
+
+    fn uri_by(&self, uri: &str, read: impl Fn(&Path) -> io::Result<Vec<u8>>) -> Result<Vec<u8>, SourceError> {
         match Uri::parse(uri)? {
             Uri::Data(data) => Ok(data.decode(MAX_DATA_URI)?),
-            Uri::Path(path) => (self.read)(&path).map_err(|error| SourceError::Read { path, error }),
+            Uri::Path(path) => read(&path).map_err(|error| SourceError::Read { path, error }),
+        }
+    }
+
+    /// The bytes of an image file, for a caller who tells [`Self::hashed`] of them.
+    pub fn image_to_hash(&self, location: &ImageLocation) -> Result<Vec<u8>, SourceError> {
+        match location {
+            ImageLocation::Uri(uri) => self.uri_by(uri, |path| self.files.read_to_hash(path)),
+            ImageLocation::BufferView(_) => self.image(location),
+        }
+    }
+
+    /// Takes note of the BLAKE3, in hexadecimal, of what [`Self::image_to_hash`] read.
+    pub fn hashed(&self, location: &ImageLocation, blake3: &str) {
+        if let ImageLocation::Uri(uri) = location
+            && let Ok(Uri::Path(path)) = Uri::parse(uri)
+        {
+            self.files.hashed(&path, blake3);
         }
     }
 

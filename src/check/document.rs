@@ -62,7 +62,7 @@ pub fn check_document(
     let textures = Textures::of(&root, &mut findings);
     let uses = check_materials(&root, &value, &textures, &mut findings);
     textures.check_declarations(&root, &value, &mut findings);
-    let source = Source { stem: "", document: &document, read };
+    let source = Source { stem: "", document: &document, files: &read };
     check_buffers(&root, &source, &mut findings);
 
     let mut images = Images { name, source, root: &root, scope, contents: BTreeMap::new(), list: Vec::new() };

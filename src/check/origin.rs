@@ -46,7 +46,7 @@ impl<'a> Origin<'a> {
     fn bytes(&self, location: &ImageLocation) -> Result<Vec<u8>, String> {
         match (&self.document, location) {
             (Some(document), _) => {
-                Source { stem: "", document, read: self.read }.image(location).map_err(|e| e.to_string())
+                Source { stem: "", document, files: &self.read }.image(location).map_err(|e| e.to_string())
             }
             // `map` records names of files, not URIs; a folder before the name is not of its making.
             (None, ImageLocation::Uri(name)) => {

@@ -100,7 +100,7 @@ fn inspect(args: &Args) -> Result<(Facts, Vec<PathBuf>), InspectError> {
     }
     let document = Document::parse(&bytes)?;
     let folder = args.file.parent().unwrap_or(Path::new(""));
-    let source = Source { stem: "", document: &document, read: &|path| read_file(&folder.join(path)) };
+    let source = Source { stem: "", document: &document, files: &|path: &Path| read_file(&folder.join(path)) };
     let facts = inspect_document(&source)?;
     let mut written = Vec::new();
     if let Some(output) = &args.extract {

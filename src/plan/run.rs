@@ -10,7 +10,7 @@ use super::job::{Job, beside};
 use super::restore::{Found, Lookup, restore};
 use super::room::Room;
 use crate::bake::report::AssetReport;
-use crate::bake::{Baked, Places, Source, bake, publish, read_file};
+use crate::bake::{Baked, Files, Places, Source, bake, publish, read_file};
 use crate::cache::{CacheError, Entry, Warn};
 use crate::digest::digest;
 use crate::gltf::document::{Container, Document};
@@ -111,10 +111,9 @@ fn baked(job: &Job, room: &Room, advance: &dyn Fn(f32)) -> Result<Baked, RunErro
     let _seat = room.enter(job);
     let inputs = Inputs::new(job);
     let result: Result<_, RunError> = (|| {
-        let document = Document::parse(&inputs.read(&job.source).map_err(RunError::Read)?)?;
-        let read = |file: &Path| inputs.read(&beside(&job.source, file));
+        let document = Document::parse(&inputs.document().map_err(RunError::Read)?)?;
         let stem = job.stem();
-        Ok(bake(&Source { stem: &stem, document: &document, read: &read }, &settings, advance)?)
+        Ok(bake(&Source { stem: &stem, document: &document, files: &inputs }, &settings, advance)?)
     })();
     // Whatever else went wrong, half of a file that was being written explains it.
     match inputs.changed() {
@@ -131,6 +130,7 @@ fn name(job: &Job, baked: &Baked) -> PathBuf {
 
 /// The files of a job: what is read must be what was hashed.
 struct Inputs<'j> {
+    source: &'j Path,
     digests: BTreeMap<&'j Path, Option<&'j str>>,
     changed: Mutex<Option<PathBuf>>,
 }
@@ -138,26 +138,55 @@ struct Inputs<'j> {
 impl<'j> Inputs<'j> {
     fn new(job: &'j Job) -> Self {
         let digests = job.inputs.iter().map(|input| (input.path.as_path(), input.blake3.as_deref())).collect();
-        Self { digests, changed: Mutex::new(None) }
+        Self { source: &job.source, digests, changed: Mutex::new(None) }
     }
 
-    fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
-        let read = read_file(path);
-        let found = read.as_ref().ok().map(|bytes| digest(bytes));
+    /// The document.
+    fn document(&self) -> io::Result<Vec<u8>> {
+        self.checked(self.source)
+    }
+
+    /// What is at `path`, and it is known whether that changed.
+    fn checked(&self, path: &Path) -> io::Result<Vec<u8>> {
+        let bytes = self.unchecked(path)?;
+        self.check(path, Some(&digest(&bytes)));
+        Ok(bytes)
+    }
+
+    /// What is at `path`; where there is nothing, it is known whether that changed.
+    fn unchecked(&self, path: &Path) -> io::Result<Vec<u8>> {
+        read_file(path).inspect_err(|_| self.check(path, None))
+    }
+
+    fn check(&self, path: &Path, found: Option<&str>) {
         let planned = self.digests.get(path).copied().flatten();
         // What was there and is gone has changed, too; what was not there is missed by who needs it.
-        let is_as_planned = found.as_deref() == planned;
-        if !is_as_planned && let Ok(mut changed) = self.changed.lock() {
+        if found != planned
+            && let Ok(mut changed) = self.changed.lock()
+        {
             // Images are read side by side: of all that changed, the first by name is told.
             if changed.as_deref().is_none_or(|told| path < told) {
                 *changed = Some(path.to_owned());
             }
         }
-        read
     }
 
     fn changed(&self) -> Option<PathBuf> {
         self.changed.lock().ok().and_then(|changed| changed.clone())
+    }
+}
+
+impl Files for Inputs<'_> {
+    fn read(&self, file: &Path) -> io::Result<Vec<u8>> {
+        self.checked(&beside(self.source, file))
+    }
+
+    fn read_to_hash(&self, file: &Path) -> io::Result<Vec<u8>> {
+        self.unchecked(&beside(self.source, file))
+    }
+
+    fn hashed(&self, file: &Path, blake3: &str) {
+        self.check(&beside(self.source, file), Some(blake3));
     }
 }
 
@@ -169,10 +198,31 @@ mod tests {
     fn of_all_that_changed_the_first_by_name_is_told() {
         let paths = ["b.png", "a.png", "c.png"];
         let digests = paths.iter().map(|path| (Path::new(path), Some("of a file that is gone"))).collect();
-        let inputs = Inputs { digests, changed: Mutex::new(None) };
+        let inputs = Inputs { source: Path::new("asset.gltf"), digests, changed: Mutex::new(None) };
         for path in paths {
             assert!(inputs.read(Path::new(path)).is_err());
         }
         assert_eq!(inputs.changed(), Some("a.png".into()));
+    }
+
+    #[test]
+    fn what_its_reader_hashes_is_compared_too() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        std::fs::write(&path, "as planned").unwrap();
+        let planned = digest(b"as planned");
+        let source = folder.path().join("asset.gltf");
+        let inputs = || Inputs {
+            source: &source,
+            digests: [(path.as_path(), Some(planned.as_str()))].into(),
+            changed: Mutex::new(None),
+        };
+        for (hashed, changed) in [(&b"as planned"[..], None), (b"another", Some(path.clone()))] {
+            let inputs = inputs();
+            assert_eq!(inputs.read_to_hash(Path::new("a.png")).unwrap(), b"as planned");
+            assert_eq!(inputs.changed(), None);
+            inputs.hashed(Path::new("a.png"), &digest(hashed));
+            assert_eq!(inputs.changed(), changed);
+        }
     }
 }

@@ -44,8 +44,8 @@ impl<F: Copy, const N: usize> Numbers<F> for [F; N] {
     }
 }
 
-/// [`Merge::merge`] for texels side by side: that of lane i has the weights `weights[..][i]`, at most `MOST`, and the parts
-/// `part(.., i)`. `lanes` is room for their numbers, which is cleared once for all groups.
+/// [`Merge::merge`] for texels side by side, to `out`: that of lane i has the weights `weights[..][i]`, at most `MOST`, and the
+/// parts `part(.., i)`. `lanes` is room for numbers, which is cleared once for all groups.
 // Loops and not closures over arrays: what is not inlined into the caller has none of its vectors.
 #[inline(always)]
 pub(super) fn merge_lanes<S: Simd, T: Merge, const MOST: usize>(
@@ -53,7 +53,8 @@ pub(super) fn merge_lanes<S: Simd, T: Merge, const MOST: usize>(
     weights: &[[f32; LANES]],
     part: impl Fn(usize, usize) -> T,
     lanes: &mut [T::Numbers<[f32; LANES]>; MOST],
-) -> [T; LANES] {
+    out: &mut [T],
+) {
     let zero = Wide::splat(simd, 0.0);
     for tap in 0..weights.len() {
         for lane in 0..LANES {
@@ -72,18 +73,17 @@ pub(super) fn merge_lanes<S: Simd, T: Merge, const MOST: usize>(
         }
     }
     let merged = T::merged::<_, MOST>(&wide[..weights.len()], &parts[..weights.len()]);
-    let mut numbers = [T::Numbers::<f32>::all(0.0); LANES];
-    for (i, merged) in merged.as_ref().iter().enumerate() {
-        let lanes: [f32; LANES] = (*merged).into();
-        for lane in 0..LANES {
-            numbers[lane].as_mut()[i] = lanes[lane];
+    let room = &mut lanes[0];
+    for (room, merged) in room.as_mut().iter_mut().zip(merged.as_ref()) {
+        *room = (*merged).into();
+    }
+    for (lane, out) in out.iter_mut().enumerate() {
+        let mut numbers = T::Numbers::<f32>::all(0.0);
+        for (number, room) in numbers.as_mut().iter_mut().zip(room.as_ref()) {
+            *number = room[lane];
         }
+        *out = T::of(numbers);
     }
-    let mut texels = [T::default(); LANES];
-    for lane in 0..LANES {
-        texels[lane] = T::of(numbers[lane]);
-    }
-    texels
 }
 
 /// Mean and covariance of the offsets in the area of one texel.

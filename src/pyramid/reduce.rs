@@ -168,8 +168,7 @@ fn reduce_lanes<S: Simd, T: Merge, const MOST: usize>(
             *weights = std::array::from_fn(|lane| down.weights[index / taps] * across[lane].weights[index % taps]);
         }
         let part = |tap: usize, lane: usize| rows[tap / taps][across[lane].first as usize + tap % taps];
-        let merged = merge_lanes::<_, T, MOST>(simd, &weights[..down.count * taps], part, &mut lanes);
-        out.copy_from_slice(&merged[..out.len()]);
+        merge_lanes::<_, T, MOST>(simd, &weights[..down.count * taps], part, &mut lanes, out);
     }
 }
 

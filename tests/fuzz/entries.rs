@@ -26,7 +26,7 @@ pub fn document(bytes: &[u8]) {
     };
     let _ = check_document("fuzzed.gltf", bytes, &read, &Scope { is_deep: true, ..Scope::default() });
     let Ok(document) = Document::parse(bytes) else { return };
-    let source = Source { stem: "fuzzed", document: &document, read: &read };
+    let source = Source { stem: "fuzzed", document: &document, files: &read };
     let _ = inspect_document(&source);
     for (profile, model, glb) in
         [(Profile::Both, Model::Isotropic, false), (Profile::Portable, Model::Anisotropic, true)]

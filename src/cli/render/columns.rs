@@ -95,9 +95,9 @@ pub fn read_back(source: &Source<'_>, baked: &Baked, max_texels: u64) -> Result<
     let document = Document::parse(document)?;
     let read = |path: &Path| match files.iter().find(|file| file.path == path) {
         Some(file) => Ok(file.bytes.clone()),
-        None => (source.read)(path),
+        None => source.files.read(path),
     };
-    let source = Source { stem: source.stem, document: &document, read: &read };
+    let source = Source { stem: source.stem, document: &document, files: &read };
     let root: Value = document.json().value("")?.unwrap_or_default();
     let mut found = Vec::new();
     for material in materials(&root) {

@@ -92,7 +92,7 @@ impl Input {
         match self {
             Self::Asset { document, folder, stem } => {
                 let read = |path: &Path| read_file(&folder.join(path));
-                then(&Source { stem, document, read: &read })
+                then(&Source { stem, document, files: &read })
             }
             Self::Map { bytes, name, kind } => {
                 let stem = stem(Path::new(name));
@@ -123,7 +123,7 @@ impl Input {
                 let read = |path: &Path| {
                     if path == Path::new(name) { Ok(bytes.clone()) } else { Err(io::ErrorKind::NotFound.into()) }
                 };
-                then(&Source { stem: "", document: &document, read: &read })
+                then(&Source { stem: "", document: &document, files: &read })
             }
         }
     }
