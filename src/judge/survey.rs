@@ -27,8 +27,9 @@ pub struct Precision {
 }
 
 impl Precision {
-    /// For a default bake: mean errors per level within about 0.01 of the full judge (`examples/survey.rs`).
-    pub const QUICK: Self = Self { texels: 64, ground: 1 << 17, parts: 256, half_vectors: 8192 };
+    /// For a default bake: mean errors per level within about 0.01 of the full judge (`examples/survey.rs`: 0.0066, root mean square;
+    /// with twice the ground 0.0056, where the choice of texels makes 0.018 of either).
+    pub const QUICK: Self = Self { texels: 64, ground: 1 << 16, parts: 256, half_vectors: 8192 };
 
     fn samples(&self, texels: usize) -> usize {
         (self.half_vectors / texels.max(1)).clamp(1, 2048)

@@ -102,7 +102,7 @@ const PINNED: [u64; 8] = [
     0x9149_27dc_01ee_bcb7,
     0xb8f1_2353_ed11_99f3,
     0xbfe5_3e02_dd68_41f5,
-    0xa811_1e4e_89dc_5fbd,
+    0xecd2_9008_6052_9be4,
     0x43bf_7501_a4fb_1f6b,
     0xebc8_1ed0_b7ab_2817,
     0xb1d3_9176_0e06_eaee,
