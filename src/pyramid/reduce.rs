@@ -157,17 +157,23 @@ fn reduce_lanes<S: Simd, T: Merge, const MOST: usize>(
         true => &rows[tap * fine_width..][..fine_width],
         false => &[],
     });
+    let taps = Taps::new(fine_width as u32, 0).count;
+    let mut weights = [[0.0; LANES]; MOST];
     let mut lanes = [T::Numbers::<[f32; LANES]>::all([0.0; LANES]); MOST];
     for (group, out) in out.chunks_mut(LANES).enumerate() {
         // Beyond the last texel it is merged again.
-        let across: [Taps; LANES] =
-            std::array::from_fn(|lane| Taps::new(fine_width as u32, (group * LANES + lane.min(out.len() - 1)) as u32));
-        let taps = across[0].count;
-        let mut weights = [[0.0; LANES]; MOST];
-        for (index, weights) in weights.iter_mut().enumerate().take(down.count * taps) {
-            *weights = std::array::from_fn(|lane| down.weights[index / taps] * across[lane].weights[index % taps]);
+        let last = out.len() - 1;
+        let column = |lane: usize| group * LANES + lane.min(last);
+        // Of two taps both count for half, everywhere.
+        if group == 0 || taps > 2 {
+            for lane in 0..LANES {
+                let across = Taps::new(fine_width as u32, column(lane) as u32);
+                for (index, weights) in weights.iter_mut().enumerate().take(down.count * taps) {
+                    weights[lane] = down.weights[index / taps] * across.weights[index % taps];
+                }
+            }
         }
-        let part = |tap: usize, lane: usize| rows[tap / taps][across[lane].first as usize + tap % taps];
+        let part = |tap: usize, lane: usize| rows[tap / taps][2 * column(lane) + tap % taps];
         merge_lanes::<_, T, MOST>(simd, &weights[..down.count * taps], part, &mut lanes, out);
     }
 }

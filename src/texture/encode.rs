@@ -1,5 +1,6 @@
 //! From rows of values to the bytes of one level.
 
+use fearless_simd::Level;
 use half::f16;
 use rayon::prelude::*;
 
@@ -53,7 +54,7 @@ impl Texels<'_> {
     /// Opaque RGBA8: values are clamped to [0, 1] and rounded to the nearest step, to the even one of two.
     pub fn to_rgba8(&self) -> Vec<u8> {
         self.convert(4, |texels, out: &mut [u8]| {
-            dispatch!(fearless_simd::Level::new(), _simd => unorm8_row(texels, out));
+            dispatch!(Level::new(), _simd => unorm8_row(texels, out));
         })
     }
 
@@ -128,14 +129,21 @@ pub fn encode(texels: &Texels<'_>, format: Format, metric: Metric, effort: Effor
 
 /// Quantises and encodes row of blocks by row of blocks, so that a level is never held as RGBA8.
 fn encode_uastc(texels: &Texels<'_>, metric: Metric, effort: Effort) -> Vec<u8> {
-    let width = texels.width as usize;
+    let (instructions, width) = (Level::new(), texels.width as usize);
     let mut blocks = vec![0; Format::UastcRgb.level_bytes(texels.width, texels.height)];
-    blocks.par_chunks_mut(width.div_ceil(4) * uastc::BLOCK_BYTES).enumerate().for_each(|(block_row, out)| {
-        let first = 4 * block_row as u32;
-        let row = |y: u32, out: &mut [[f32; 4]]| (texels.row)(first + y, out);
-        let band = Texels { width: texels.width, height: (texels.height - first).min(4), row: &row };
-        out.copy_from_slice(&uastc::encode_level(&band.to_rgba8(), band.width, band.height, metric, effort));
-    });
+    blocks.par_chunks_mut(width.div_ceil(4) * uastc::BLOCK_BYTES).enumerate().for_each_init(
+        || (vec![[0.0; 4]; width], vec![0; 4 * 4 * width]),
+        |(values, rgba), (block_row, out)| {
+            let first = 4 * block_row as u32;
+            for (y, line) in rgba.chunks_exact_mut(4 * width).enumerate() {
+                // The last row is repeated.
+                (texels.row)((first + y as u32).min(texels.height - 1), values);
+                dispatch!(instructions, _simd => unorm8_row(values, line));
+            }
+            let lines = std::array::from_fn(|y| &rgba[4 * width * y..4 * width * (y + 1)]);
+            uastc::encode_lines(instructions, &lines, metric, effort, out);
+        },
+    );
     blocks
 }
 

@@ -100,15 +100,20 @@ fn encode_level_with(
     let row_bytes = width.div_ceil(4) * BLOCK_BYTES;
     let mut blocks = vec![0; row_bytes * height.div_ceil(4)];
     blocks.par_chunks_exact_mut(row_bytes).enumerate().for_each(|(row, out)| {
-        let lines: [&[u8]; 4] = std::array::from_fn(|y| {
+        let lines = std::array::from_fn(|y| {
             let at = (row * 4 + y).min(height - 1) * width * 4;
             &texels[at..at + width * 4]
         });
-        let blocks = out.as_chunks_mut::<BLOCK_BYTES>().0;
-        let texels = (0..blocks.len()).map(|column| gather(&lines, column * 4)).collect();
-        dispatch!(instructions, simd => encode_row(simd, texels, metric, effort, blocks));
+        encode_lines(instructions, &lines, metric, effort, out);
     });
     blocks
+}
+
+/// Encodes four lines of RGBA8 texels to the row of blocks `out`.
+pub(super) fn encode_lines(instructions: Level, lines: &[&[u8]; 4], metric: Metric, effort: Effort, out: &mut [u8]) {
+    let blocks = out.as_chunks_mut::<BLOCK_BYTES>().0;
+    let texels = (0..blocks.len()).map(|column| gather(lines, column * 4)).collect();
+    dispatch!(instructions, simd => encode_row(simd, texels, metric, effort, blocks));
 }
 
 /// The block at column `left` of four lines of texels, the last texel repeated.
