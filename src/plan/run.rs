@@ -192,6 +192,7 @@ impl Files for Inputs<'_> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::job::JobInput;
     use super::*;
 
     #[test]
@@ -223,6 +224,30 @@ mod tests {
             assert_eq!(inputs.changed(), None);
             inputs.hashed(Path::new("a.png"), &digest(hashed));
             assert_eq!(inputs.changed(), changed);
+        }
+    }
+
+    #[test]
+    fn files_that_change_after_planning_are_told() {
+        let folder = tempfile::tempdir().unwrap();
+        for file in std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/brushed")).unwrap() {
+            let file = file.unwrap();
+            std::fs::copy(file.path(), folder.path().join(file.file_name())).unwrap();
+        }
+        let source = folder.path().join("brushed.gltf");
+        let job = Job::new(&source, &folder.path().join("baked"), &serde_json::Map::new()).unwrap();
+        let bake = || baked(&job, &Room::new(1), &|_| ());
+        assert!(bake().is_ok());
+        assert_eq!(job.inputs.len(), 5);
+        for JobInput { path, .. } in &job.inputs {
+            let planned = std::fs::read(path).unwrap();
+            std::fs::write(path, [&planned[..], b"\n"].concat()).unwrap();
+            let told = bake().err();
+            assert!(
+                matches!(&told, Some(RunError::Changed { path: changed }) if changed == path),
+                "{path:?}: {told:?}"
+            );
+            std::fs::write(path, planned).unwrap();
         }
     }
 }
