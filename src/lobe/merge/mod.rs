@@ -20,9 +20,11 @@ use crate::pyramid::{MAX_PARTS, Merge};
 use crate::simd::Real;
 use crate::symmetric::Symmetric2;
 
-/// EM steps by the points, which bring rough lobes to within 0.003 of their width of where EM ends; with one step fewer they
-/// are three times as far (test `the_steps_suffice`).
-const STEPS: usize = 3;
+/// EM steps by the parts as wholes before the first by their points. Each has a twelfth of the arithmetic of one by the points
+/// and takes a fifth of its time: all of it waits for the step before.
+const ROUGH_STEPS: usize = 2;
+/// The same between the two by the points.
+const CORRECTED_STEPS: usize = 2;
 
 impl Merge for OrientedLobe {
     type Numbers<F: Copy> = [F; 6];
@@ -105,13 +107,40 @@ fn merged<F: Real, const MOST: usize>(weights: &[F], parts: &[Part<F>]) -> Part<
     let start = Start::<F, MOST>::of(weights, parts, about);
     let mut slopes = start.slopes;
     if !F::all(start.is_smooth) {
-        let mut room = [[[zero; 3]; POINTS]; MOST];
-        let points = half_vectors(&mut room, weights, parts, about);
-        let likeliest = (0..STEPS).fold(start.roughly(weights, parts), |slopes, _| slopes.step(sums(points, slopes)));
+        let mut room = [[[zero; 2]; POINTS]; MOST];
+        let points = half_vectors(&mut room, parts, about);
+        let likeliest = likeliest(&start, weights, parts, points);
         slopes = slopes.or(likeliest, start.is_smooth);
     }
     // Normals that cancel have no frame.
     parts[0].or(tilted(about, slopes), length.is_zero())
+}
+
+/// The lobe where EM ends, to within 0.003 of the width of rough lobes (test `the_steps_suffice`).
+///
+/// Two steps by the points go as far as four without the steps by the parts as wholes: those before start near the end, and
+/// those between go on with what they lacked when the first by the points was taken (defect correction: K. Böhmer, P. Hemker,
+/// H. Stetter, "The defect correction approach", 1984).
+#[inline(always)]
+fn likeliest<F: Real, const MOST: usize>(
+    start: &Start<F, MOST>,
+    weights: &[F],
+    parts: &[Part<F>],
+    points: &[[[F; 2]; POINTS]],
+) -> Slopes<F> {
+    let mut slopes = start.slopes;
+    for _ in 0..ROUGH_STEPS {
+        let next = start.roughly_next(slopes, weights, parts);
+        slopes = slopes.step(next, next);
+    }
+    let (rough, next) = (start.roughly_next(slopes, weights, parts), slopes.next(sums(weights, points, slopes)));
+    slopes = slopes.step(next, next);
+    for _ in 0..CORRECTED_STEPS {
+        let corrected = start.roughly_next(slopes, weights, parts).moved(rough, next);
+        slopes = slopes.step(corrected, slopes);
+    }
+    let next = slopes.next(sums(weights, points, slopes));
+    slopes.step(next, next)
 }
 
 /// `sum` + `weight` * `vector`.

@@ -16,8 +16,6 @@ const SPOKES: usize = 4;
 /// Radii, in alphas, within which 1/6, 1/2 and 5/6 of a GGX lobe lie (r^2 = p / (1 - p)). Any such symmetric choice
 /// gives back the lobe itself when it is merged alone.
 const RADII: [f32; 3] = [0.447_213_6, 1.0, 2.236_068];
-/// Sums are kept for every eighth point and then added, which rounds less than one sum does.
-const SUMS: usize = 8;
 
 /// Unit directions times radii, turned a little from part to part so that no direction is preferred.
 static PATTERNS: LazyLock<[[[f32; 2]; POINTS]; MAX_PARTS]> = LazyLock::new(|| {
@@ -32,18 +30,17 @@ static PATTERNS: LazyLock<[[[f32; 2]; POINTS]; MAX_PARTS]> = LazyLock::new(|| {
     })
 });
 
-/// Slopes of the half-vectors of `parts` about the mean normal, each with twice its share, in `room`.
+/// Slopes of the half-vectors of each of `parts` about the mean normal, in `room`.
 #[inline(always)]
 pub fn half_vectors<'r, F: Real>(
-    room: &'r mut [[[F; 3]; POINTS]],
-    weights: &[F],
+    room: &'r mut [[[F; 2]; POINTS]],
     parts: &[Part<F>],
     about: [[F; 3]; 3],
-) -> &'r [[F; 3]] {
-    let zero = weights[0].like(0.0);
+) -> &'r [[[F; 2]; POINTS]] {
+    let zero = parts[0].a.uu.like(0.0);
     let (one, least, least_cosine) = (zero.like(1.0), zero.like(MIN_SQUARED_ALPHA), zero.like(LEAST_COSINE));
     let patterns: &[[[f32; 2]; POINTS]; MAX_PARTS] = &PATTERNS;
-    for (((w, part), pattern), points) in weights.iter().zip(parts).zip(patterns).zip(room.iter_mut()) {
+    for ((part, pattern), points) in parts.iter().zip(patterns).zip(room.iter_mut()) {
         // The part's axes, scaled by its lobe (A = L L^T, L lower triangular), in the common frame.
         let [t, b, n] = frame(part.normal);
         let Matrix { uu, uv, vv } = part.a;
@@ -57,7 +54,6 @@ pub fn half_vectors<'r, F: Real>(
             across[i] = l22 * across_i;
             up[i] = dot(n, about[i]);
         }
-        let share = *w / zero.like(POINTS as f32) * zero.like(2.0);
         for (&[cos, sin], point) in pattern.iter().zip(points) {
             let (cos, sin) = (zero.like(cos), zero.like(sin));
             let mut h = up;
@@ -65,34 +61,36 @@ pub fn half_vectors<'r, F: Real>(
                 h[i] = cos * along[i] + sin * across[i] + up[i];
             }
             let scale = one / h[2].max(least_cosine);
-            *point = [h[0] * scale, h[1] * scale, share];
+            *point = [h[0] * scale, h[1] * scale];
         }
     }
-    room[..parts.len()].as_flattened()
+    &room[..parts.len()]
 }
 
-/// Sums over `points` of w, w x, w y, w x^2, w x y and w y^2 about the mean, with w the EM weights.
+/// Sums over `points`, those of a part having its weight, of w, w x, w y, w x^2, w x y and w y^2 about the mean, with w the EM
+/// weights.
 #[inline(always)]
-pub fn sums<F: Real>(points: &[[F; 3]], Slopes { mean, a }: Slopes<F>) -> [F; 6] {
+pub fn sums<F: Real>(weights: &[F], points: &[[[F; 2]; POINTS]], Slopes { mean, a }: Slopes<F>) -> [F; 6] {
     let zero = mean[0].like(0.0);
-    let one = zero.like(1.0);
+    let (one, twice_share) = (zero.like(1.0), zero.like(2.0 / POINTS as f32));
     let inverse = a.inverse();
     let twice_uv = inverse.uv + inverse.uv;
     let mut sums = [zero; 6];
-    for first in 0..SUMS {
-        let mut every = [zero; 6];
-        for &[x, y, share] in points[first..].iter().step_by(SUMS) {
+    for (weight, points) in weights.iter().zip(points) {
+        let mut own = [zero; 6];
+        for &[x, y] in points {
             let (x, y) = (x - mean[0], y - mean[1]);
             let q = x * (inverse.uu * x + twice_uv * y) + inverse.vv * y * y;
-            let w = share / (one + q);
+            let w = one / (one + q);
             let (wx, wy) = (w * x, w * y);
             let terms = [w, wx, wy, wx * x, wx * y, wy * y];
             for i in 0..6 {
-                every[i] = every[i] + terms[i];
+                own[i] = own[i] + terms[i];
             }
         }
+        let share = *weight * twice_share;
         for i in 0..6 {
-            sums[i] = sums[i] + every[i];
+            sums[i] = sums[i] + share * own[i];
         }
     }
     sums

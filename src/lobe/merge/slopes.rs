@@ -33,8 +33,11 @@ impl<F: Real> Matrix<F> {
         let zero = self.uu.like(0.0);
         let (one, least) = (zero.like(1.0), zero.like(MIN_SQUARED_ALPHA));
         let uu = self.uu.max(least);
-        let vv = self.vv.max(self.uv * self.uv / uu + least * (one + self.vv));
-        let scale = one / Self { uu, vv, ..self }.determinant();
+        let shortest = least * (one + self.vv);
+        let vv = self.vv.max(self.uv * self.uv / uu + shortest);
+        // Not of `vv`, for whose division it would wait.
+        let determinant = Self { uu, ..self }.determinant().max(uu * shortest);
+        let scale = one / determinant;
         Self { uu: vv * scale, uv: zero - self.uv * scale, vv: uu * scale }
     }
 
@@ -55,17 +58,40 @@ pub struct Slopes<F> {
 impl<F: Real> Slopes<F> {
     #[inline(always)]
     pub fn or(self, other: Self, mask: F::Mask) -> Self {
-        let mean = [self.mean[0].or(other.mean[0], mask), self.mean[1].or(other.mean[1], mask)];
-        let (own, other) = (self.a, other.a);
-        let a = Matrix { uu: own.uu.or(other.uu, mask), uv: own.uv.or(other.uv, mask), vv: own.vv.or(other.vv, mask) };
-        Self { mean, a }
+        self.with(
+            other,
+            #[inline(always)]
+            |own, other| own.or(other, mask),
+        )
     }
 
-    /// An EM step from here, given the sums of w, w x, w y, w x^2, w x y and w y^2 about the mean; [`STRIDE`] times as far
-    /// where that leaves at least a tenth of the determinant.
+    /// Each number and that of `other`, made one by `of`.
     #[inline(always)]
-    pub fn step(self, [weight, x, y, xx, xy, yy]: [F; 6]) -> Self {
-        let (share, two, stride) = (weight.like(1.0) / weight, weight.like(2.0), weight.like(STRIDE));
+    fn with(self, other: Self, of: impl Fn(F, F) -> F) -> Self {
+        let mean = [of(self.mean[0], other.mean[0]), of(self.mean[1], other.mean[1])];
+        let (own, other) = (self.a, other.a);
+        Self { mean, a: Matrix { uu: of(own.uu, other.uu), uv: of(own.uv, other.uv), vv: of(own.vv, other.vv) } }
+    }
+
+    /// Each number plus what `after` has more of it than `before`.
+    #[inline(always)]
+    pub fn moved(self, before: Self, after: Self) -> Self {
+        let more = after.with(
+            before,
+            #[inline(always)]
+            |after, before| after - before,
+        );
+        self.with(
+            more,
+            #[inline(always)]
+            |own, more| own + more,
+        )
+    }
+
+    /// The lobe after this one in EM, given the sums of w, w x, w y, w x^2, w x y and w y^2 about the mean.
+    #[inline(always)]
+    pub fn next(self, [weight, x, y, xx, xy, yy]: [F; 6]) -> Self {
+        let (share, two) = (weight.like(1.0) / weight, weight.like(2.0));
         let (dx, dy) = (x * share, y * share);
         let a = Matrix {
             uu: two * (xx * share - dx * dx),
@@ -73,11 +99,22 @@ impl<F: Real> Slopes<F> {
             vv: two * (yy * share - dy * dy),
         };
         let [u, v] = self.mean;
-        let plain = Self { mean: [u + dx, v + dy], a };
-        let along = |from: F, to: F| from + stride * (to - from);
-        let far = Matrix { uu: along(self.a.uu, a.uu), uv: along(self.a.uv, a.uv), vv: along(self.a.vv, a.vv) };
-        let least = weight.like(0.1) * a.determinant();
-        let overshoots = far.determinant().at_most(least) | far.uu.at_most(weight.like(0.0));
-        plain.or(Self { mean: [u + stride * dx, v + stride * dy], a: far }, overshoots)
+        Self { mean: [u + dx, v + dy], a }
+    }
+
+    /// A step towards the `next` lobe, [`STRIDE`] times as far, where that leaves at least a tenth of the determinant of
+    /// `otherwise`; else to this.
+    #[inline(always)]
+    pub fn step(self, next: Self, otherwise: Self) -> Self {
+        let zero = self.mean[0].like(0.0);
+        let stride = zero.like(STRIDE);
+        let far = self.with(
+            next,
+            #[inline(always)]
+            |from, to| from + stride * (to - from),
+        );
+        let least = zero.like(0.1) * otherwise.a.determinant();
+        let overshoots = far.a.determinant().at_most(least) | far.a.uu.at_most(zero);
+        otherwise.or(far, overshoots)
     }
 }

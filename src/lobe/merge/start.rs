@@ -1,13 +1,10 @@
-//! Where EM starts: what moments tell, and what a few steps by the parts as wholes do.
+//! Where EM starts: what moments tell, and what steps by the parts as wholes do.
 
 use super::slopes::{Matrix, Slopes};
 use super::{Part, add};
 use crate::lobe::oriented::{LEAST_COSINE, dot};
 use crate::simd::Real;
 
-/// EM steps by the parts as wholes, each a twelfth of the work of one by their points: without them the steps by points end
-/// three times as far from where EM does (test `the_steps_suffice`).
-const ROUGH_STEPS: usize = 3;
 /// Spread of the normals over the lobe, as squared slopes, below which widening is linear in it and its shape plays no
 /// part: A + 2 K, within 1 % of A.
 const SMOOTH: f32 = 0.01;
@@ -56,27 +53,23 @@ impl<F: Real, const MOST: usize> Start<F, MOST> {
         Self { parts: slopes, slopes: Slopes { mean, a: Matrix { uu, uv, vv } }, is_smooth }
     }
 
-    /// Near the likeliest lobe: EM with a point for each part, as far off as its centre and half its A are, which is
+    /// The lobe after `slopes` in EM with a point for each part, as far off as its centre and half its A are, which is
     /// E[w x x^T] / E[w] of a lobe.
     #[inline(always)]
-    pub fn roughly(&self, weights: &[F], parts: &[Part<F>]) -> Slopes<F> {
+    pub fn roughly_next(&self, slopes: Slopes<F>, weights: &[F], parts: &[Part<F>]) -> Slopes<F> {
         let zero = weights[0].like(0.0);
         let (one, half) = (zero.like(1.0), zero.like(0.5));
-        let mut slopes = self.slopes;
-        for _ in 0..ROUGH_STEPS {
-            let (inverse, mut sums) = (slopes.a.inverse(), [zero; 6]);
-            for ((weight, part), [x, y]) in weights.iter().zip(parts).zip(self.parts) {
-                let (x, y) = (x - slopes.mean[0], y - slopes.mean[1]);
-                let (xx, xy, yy) = (x * x + half * part.a.uu, x * y + half * part.a.uv, y * y + half * part.a.vv);
-                let q = inverse.uu * xx + (inverse.uv + inverse.uv) * xy + inverse.vv * yy;
-                let w = *weight / (one + q);
-                let terms = [w, w * x, w * y, w * xx, w * xy, w * yy];
-                for i in 0..6 {
-                    sums[i] = sums[i] + terms[i];
-                }
+        let (inverse, mut sums) = (slopes.a.inverse(), [zero; 6]);
+        for ((weight, part), [x, y]) in weights.iter().zip(parts).zip(self.parts) {
+            let (x, y) = (x - slopes.mean[0], y - slopes.mean[1]);
+            let (xx, xy, yy) = (x * x + half * part.a.uu, x * y + half * part.a.uv, y * y + half * part.a.vv);
+            let q = inverse.uu * xx + (inverse.uv + inverse.uv) * xy + inverse.vv * yy;
+            let w = *weight / (one + q);
+            let terms = [w, w * x, w * y, w * xx, w * xy, w * yy];
+            for i in 0..6 {
+                sums[i] = sums[i] + terms[i];
             }
-            slopes = slopes.step(sums);
         }
-        slopes
+        slopes.next(sums)
     }
 }

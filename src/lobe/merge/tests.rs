@@ -35,10 +35,18 @@ fn equal_lobes_merge_to_themselves() {
     let part = lobe([0.5, 0.2], [0.09, 0.02, 0.04]);
     let about = frame(part.normal);
     let wide = Slopes { mean: [0.0; 2], a: Matrix { uu: 0.2, uv: 0.0, vv: 0.2 } };
-    let mut room = [[[0.0; 3]; POINTS]; 4];
-    let points = half_vectors(&mut room, &[0.25; 4], &[Part::of(part.numbers()); 4], about);
-    let slopes = (0..STEPS).fold(wide, |slopes, _| slopes.step(sums(points, slopes)));
+    let mut room = [[[0.0; 2]; POINTS]; 4];
+    let points = half_vectors(&mut room, &[Part::of(part.numbers()); 4], about);
+    let slopes = by_points(points, wide, 3);
     assert_alike(OrientedLobe::of(tilted(about, slopes).numbers()), part, 0.01);
+}
+
+/// `steps` of EM by the points of four parts.
+fn by_points(points: &[[[f32; 2]; POINTS]], from: Slopes<f32>, steps: usize) -> Slopes<f32> {
+    (0..steps).fold(from, |slopes, _| {
+        let next = slopes.next(sums(&[0.25; 4], points, slopes));
+        slopes.step(next, next)
+    })
 }
 
 /// Forty more steps hardly move the lobe.
@@ -48,30 +56,33 @@ fn the_steps_suffice() {
     let number = |seed: u32| {
         (seed.wrapping_mul(0x9e37_79b9) ^ (seed >> 3)).wrapping_mul(0x85eb_ca6b) as f32 / 4_294_967_808.0 - 0.5
     };
-    let (mut sum, mut without, mut fewer) = (0.0, 0.0, 0.0);
+    let (mut sum, mut four, mut uncorrected) = (0.0, 0.0, 0.0);
     for seed in 0..400 {
         let parts = [0, 1, 2, 3].map(|i| lobe([0, 1].map(|j| number(8 * seed + 2 * i + j)), [0.04, 0.01, 0.02]));
         let parts = parts.map(|part| Part::of(part.numbers()));
         let about = frame([0.0, 0.0, 1.0]);
-        let mut room = [[[0.0; 3]; POINTS]; 4];
-        let points = half_vectors(&mut room, &shares, &parts, about);
-        let after = |steps, from| (0..steps).fold(from, |slopes: Slopes<f32>, _| slopes.step(sums(points, slopes)));
+        let mut room = [[[0.0; 2]; POINTS]; 4];
+        let points = half_vectors(&mut room, &parts, about);
         let start = Start::<_, 4>::of(&shares, &parts, about);
-        let rough = start.roughly(&shares, &parts);
-        let end = after(40, rough);
+        let ours = likeliest(&start, &shares, &parts, points);
+        let end = by_points(points, ours, 40);
         let trace = end.a.uu + end.a.vv;
         let apart = |lobe: Slopes<f32>| {
             let [u, v] = [lobe.mean[0] - end.mean[0], lobe.mean[1] - end.mean[1]];
             let [uu, uv, vv] = [lobe.a.uu - end.a.uu, lobe.a.uv - end.a.uv, lobe.a.vv - end.a.vv];
             ((u * u + v * v) / trace).sqrt() + (uu * uu + uv * uv + vv * vv).sqrt() / trace
         };
-        sum += apart(after(STEPS, rough)) / 400.0;
-        without += apart(after(STEPS, start.slopes)) / 400.0;
-        fewer += apart(after(STEPS - 1, rough)) / 400.0;
+        sum += apart(ours) / 400.0;
+        four += apart(by_points(points, start.slopes, 4)) / 400.0;
+        let rough = (0..ROUGH_STEPS).fold(start.slopes, |slopes, _| {
+            let next = start.roughly_next(slopes, &shares, &parts);
+            slopes.step(next, next)
+        });
+        uncorrected += apart(by_points(points, rough, 2)) / 400.0;
     }
     assert!(sum < 0.003, "{sum}");
-    // Neither kind of step is there for nothing.
-    assert!(without.min(fewer) > 2.0 * sum, "{sum}, without rough steps {without}, with a fine one less {fewer}");
+    // Neither kind of step by the parts as wholes is there for nothing.
+    assert!(four > sum && uncorrected > 3.0 * sum, "{sum}, four by points {four}, uncorrected {uncorrected}");
 }
 
 /// Bumps far smaller than the lobe add their covariance, twice.
