@@ -192,7 +192,6 @@ impl Files for Inputs<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::job::JobInput;
     use super::*;
 
     #[test]
@@ -239,7 +238,8 @@ mod tests {
         let bake = || baked(&job, &Room::new(1), &|_| ());
         assert!(bake().is_ok());
         assert_eq!(job.inputs.len(), 5);
-        for JobInput { path, .. } in &job.inputs {
+        for input in &job.inputs {
+            let path = &input.path;
             let planned = std::fs::read(path).unwrap();
             std::fs::write(path, [&planned[..], b"\n"].concat()).unwrap();
             let told = bake().err();

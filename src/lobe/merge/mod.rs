@@ -20,11 +20,9 @@ use crate::pyramid::{MAX_PARTS, Merge};
 use crate::simd::Real;
 use crate::symmetric::Symmetric2;
 
-/// EM steps by the parts as wholes before the first by their points. Each has a twelfth of the arithmetic of one by the points
-/// and takes a fifth of its time: all of it waits for the step before.
-const ROUGH_STEPS: usize = 2;
-/// The same between the two by the points.
-const CORRECTED_STEPS: usize = 2;
+/// EM steps by the parts as wholes: before the first of the two by their points, and between these. Each has a twelfth of the
+/// arithmetic of one by the points, though more than that of its time: all of it waits for the step before.
+const WHOLE_STEPS: [usize; 2] = [2, 2];
 
 impl Merge for OrientedLobe {
     type Numbers<F: Copy> = [F; 6];
@@ -109,14 +107,14 @@ fn merged<F: Real, const MOST: usize>(weights: &[F], parts: &[Part<F>]) -> Part<
     if !F::all(start.is_smooth) {
         let mut room = [[[zero; 2]; POINTS]; MOST];
         let points = half_vectors(&mut room, parts, about);
-        let likeliest = likeliest(&start, weights, parts, points);
+        let likeliest = likeliest(&start, weights, parts, points, WHOLE_STEPS);
         slopes = slopes.or(likeliest, start.is_smooth);
     }
     // Normals that cancel have no frame.
     parts[0].or(tilted(about, slopes), length.is_zero())
 }
 
-/// The lobe where EM ends, to within 0.003 of the width of rough lobes (test `the_steps_suffice`).
+/// The lobe where EM ends, with [`WHOLE_STEPS`] to within 0.003 of the width of rough lobes (test `the_steps_suffice`).
 ///
 /// Two steps by the points go as far as four without the steps by the parts as wholes: those before start near the end, and
 /// those between go on with what they lacked when the first by the points was taken (defect correction: K. Böhmer, P. Hemker,
@@ -127,15 +125,16 @@ fn likeliest<F: Real, const MOST: usize>(
     weights: &[F],
     parts: &[Part<F>],
     points: &[[[F; 2]; POINTS]],
+    [before, between]: [usize; 2],
 ) -> Slopes<F> {
     let mut slopes = start.slopes;
-    for _ in 0..ROUGH_STEPS {
+    for _ in 0..before {
         let next = start.roughly_next(slopes, weights, parts);
         slopes = slopes.step(next, next);
     }
     let (rough, next) = (start.roughly_next(slopes, weights, parts), slopes.next(sums(weights, points, slopes)));
     slopes = slopes.step(next, next);
-    for _ in 0..CORRECTED_STEPS {
+    for _ in 0..between {
         let corrected = start.roughly_next(slopes, weights, parts).moved(rough, next);
         slopes = slopes.step(corrected, slopes);
     }
