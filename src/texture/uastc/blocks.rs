@@ -72,6 +72,16 @@ impl<S: Simd> Blocks<S> {
         }
     }
 
+    /// The nearest level to a whole `level` that endpoints of the blocks' modes may have.
+    #[inline(always)]
+    pub fn nearest(&self, simd: S, level: Wide<S>) -> Wide<S> {
+        let mut levels: [f32; LANES] = level.into();
+        for (level, mode) in levels.iter_mut().zip(self.modes) {
+            *level = f32::from(mode.range.level[*level as usize & 255]);
+        }
+        Wide::simd_from(simd, levels)
+    }
+
     /// From single blocks.
     #[inline(always)]
     pub fn load(simd: S, blocks: [&Block; LANES]) -> Self {

@@ -118,10 +118,15 @@ pub(super) fn encode_lines(instructions: Level, lines: &[&[u8]; 4], metric: Metr
 
 /// The block at column `left` of four lines of texels, the last texel repeated.
 fn gather(lines: &[&[u8]; 4], left: usize) -> Texels {
-    std::array::from_fn(|i| {
-        let (line, _) = lines[i / 4].as_chunks::<4>();
-        line[(left + i % 4).min(line.len() - 1)]
-    })
+    let mut texels = Texels::default();
+    for (row, line) in texels.as_chunks_mut::<4>().0.iter_mut().zip(lines) {
+        let (line, _) = line.as_chunks::<4>();
+        match line.get(left..).and_then(<[_]>::first_chunk) {
+            Some(four) => *row = *four,
+            None => *row = std::array::from_fn(|x| line[(left + x).min(line.len() - 1)]),
+        }
+    }
+    texels
 }
 
 /// Encodes a row of blocks. The search is compiled for every instruction set; the order of its operations, and so the

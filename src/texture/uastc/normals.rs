@@ -14,16 +14,16 @@ use super::partition::likely_patterns;
 use super::tables::{MODE_0, MODE_1, MODE_2, MODE_3, MODE_4, MODE_5, MODE_6, MODE_18};
 use crate::simd::{Real, Wide};
 
-/// Quickly found blocks, fitted to x and y.
+/// Below this squared error of x and y (one step of both in each texel is 32) a second subset hardly ever wins.
+pub(super) const GOOD: f32 = 60.0;
+
+/// Quickly found blocks of one subset, fitted to x and y.
 #[inline(always)]
-pub(super) fn fast<S: Simd>(simd: S, texels: &[Grid<S>; 3]) -> Blocks<S> {
+pub(super) fn fast_lines<S: Simd>(simd: S, xy: &[Grid<S>; 2]) -> Blocks<S> {
     /// Estimates are right within a factor of 2 for most blocks.
     const DOUBT: f32 = 2.0;
-    /// Below this squared error of x and y (one step of both in each texel is 32) a second subset hardly ever wins.
-    const GOOD: f32 = 60.0;
 
-    let xy = [texels[0], texels[1]];
-    let all = moments(simd, &xy, None);
+    let all = moments(simd, xy, None);
     let axis = principal_axis(simd, &all.scatter);
     let along = scatter_along(simd, &all.scatter, &axis);
     let off = trace(&all.scatter) - along;
@@ -33,20 +33,10 @@ pub(super) fn fast<S: Simd>(simd: S, texels: &[Grid<S>; 3]) -> Blocks<S> {
     let is_plane_likely = planes_estimate.simd_lt(line_estimate * DOUBT);
     if is_plane_likely.any_true() {
         let selector = Wide::splat(simd, 0.0);
-        winner.offer(&two_planes::<_, 2, 2>(simd, &xy, &all, selector, &[1.0; 2], &MODE_6, 1), is_plane_likely);
+        winner.offer(&two_planes::<_, 2, 2>(simd, xy, &all, selector, &[1.0; 2], &MODE_6, 1), is_plane_likely);
     }
     let is_line_likely = line_estimate.simd_lt(planes_estimate * DOUBT);
-    winner.offer_line(simd, &xy, &all, &axis, &[1.0; 2], 1, is_line_likely);
-    if winner.error.simd_gt(GOOD).any_true() {
-        let [pattern] = likely_patterns(simd, &xy, &all, &axis);
-        let split = Split::in_two(simd, &xy, pattern);
-        let (off, along) = split.scatter(simd);
-        let is_likely = winner.error.simd_gt(GOOD) & (off + along / 12.0).simd_lt(winner.error * 1.4);
-        if is_likely.any_true() {
-            // The finer weights of mode 2 would gain 0.5 % of the angle and take 12 % of the time more.
-            winner.offer(&split_lines::<_, 2, 2, 2>(simd, &xy, &split, &[1.0; 2], &MODE_4, 1), is_likely);
-        }
-    }
+    winner.offer_line(simd, xy, &all, &axis, &[1.0; 2], 1, is_line_likely);
     winner
 }
 

@@ -4,7 +4,7 @@
 //! packing". Fields follow each other from bit 0 of byte 0 upwards.
 
 use super::hints::Hints;
-use super::tables::{Mode, PATTERNS, Range, SOLID_CODE, THIRDS};
+use super::tables::{Layout, MODE_0, MODE_4, MODE_5, MODE_6, MODE_18, Mode, PATTERNS, SOLID_CODE, THIRDS, groups};
 
 /// A block of any mode but the solid one.
 #[derive(Clone)]
@@ -52,21 +52,25 @@ impl Block {
     /// weights of that subset and plane are mirrored and their endpoints exchanged. The weight
     /// ramps are symmetric, so the colours stay the same.
     #[inline(always)]
-    fn mirror_anchors(&mut self) {
-        let top = (1u8 << self.mode.weight_bits) - 1;
-        for plane in 0..self.mode.planes {
+    fn mirror_anchors(&mut self, Layout { planes, subsets, weight_bits, .. }: Layout) {
+        let top = (1u8 << weight_bits) - 1;
+        for plane in 0..planes {
             // Sixteen bits for each channel.
             let alone = 0xffff << (16 * self.selector);
-            let channels = match (self.mode.planes, plane) {
+            let channels = match (planes, plane) {
                 (1, _) => u64::MAX,
                 (_, 0) => !alone,
                 _ => alone,
             };
-            for subset in 0..self.mode.subsets {
+            for subset in 0..subsets {
+                let (members, anchor) = match subsets {
+                    1 => (u128::MAX, 0),
+                    _ => (bytes_of(self.members(subset)), self.anchor(subset) as usize & 15),
+                };
                 // Masks and no branches: half of all anchors are above the middle.
-                let is_high = self.weights[plane][self.anchor(subset) as usize & 15] > top / 2;
+                let is_high = self.weights[plane][anchor] > top / 2;
                 let weights = u128::from_le_bytes(self.weights[plane]);
-                let members = bytes_of(self.members(subset)) & u128::from_le_bytes([top; 16]);
+                let members = members & u128::from_le_bytes([top; 16]);
                 self.weights[plane] = (weights ^ members & u128::from(is_high).wrapping_neg()).to_le_bytes();
                 let ends = &mut self.endpoints[subset];
                 let pairs = ends.as_flattened().iter().rev().fold(0u64, |pairs, &end| pairs << 8 | u64::from(end));
@@ -79,33 +83,48 @@ impl Block {
 
     /// The sixteen bytes.
     #[inline(always)]
-    pub fn pack(mut self, hints: &Hints) -> [u8; 16] {
-        self.mirror_anchors();
+    pub fn pack(self, hints: &Hints) -> [u8; 16] {
+        let mode = self.mode;
+        // Code without loops for those that quick searches choose most.
+        match mode.number {
+            0 => self.pack_in(const { MODE_0.layout() }, hints),
+            4 => self.pack_in(const { MODE_4.layout() }, hints),
+            5 => self.pack_in(const { MODE_5.layout() }, hints),
+            6 => self.pack_in(const { MODE_6.layout() }, hints),
+            18 => self.pack_in(const { MODE_18.layout() }, hints),
+            _ => self.pack_in(mode.layout(), hints),
+        }
+    }
+
+    /// The same in the layout of the mode.
+    #[inline(always)]
+    fn pack_in(mut self, layout: Layout, hints: &Hints) -> [u8; 16] {
+        self.mirror_anchors(layout);
         let mode = self.mode;
         let mut out = Bits::default();
         out.push(mode.code.0.into(), mode.code.1.into());
         hints.write(mode, &mut out);
-        match mode.subsets {
+        match layout.subsets {
             1 => {}
             2 => out.push(self.pattern as u64, 5),
             _ => out.push(self.pattern as u64, 4),
         }
-        if mode.planes == 2 {
+        if layout.planes == 2 {
             out.push(self.selector as u64, 2);
         }
-        self.write_endpoints(&mut out);
-        self.write_weights(&mut out);
+        self.write_endpoints(layout, &mut out);
+        self.write_weights(layout, &mut out);
         out.bits.to_le_bytes()
     }
 
     #[inline(always)]
-    fn write_endpoints(&self, out: &mut Bits) {
-        let Range { bits, base, code, .. } = self.mode.range;
-        let (group, lengths) = self.mode.range.groups();
+    fn write_endpoints(&self, Layout { channels, subsets, bits, base, .. }: Layout, out: &mut Bits) {
+        let code = &self.mode.range.code;
+        let (group, lengths) = groups(base);
         let mut codes = [0; 18];
         let mut count = 0;
-        for subset in &self.endpoints[..self.mode.subsets] {
-            for &level in subset[..self.mode.channels].as_flattened() {
+        for subset in &self.endpoints[..subsets] {
+            for &level in subset[..channels].as_flattened() {
                 codes[count] = u64::from(code[usize::from(level)]);
                 count += 1;
             }
@@ -113,7 +132,7 @@ impl Block {
         let codes = &codes[..count];
         for group in codes.chunks(group) {
             let upper = group.iter().rev();
-            let number = upper.fold(0, |sum, code| sum * u64::from(*base) + (code >> bits));
+            let number = upper.fold(0, |sum, code| sum * u64::from(base) + (code >> bits));
             out.push(number, lengths[group.len()]);
         }
         // By halves, which fit a word: eight endpoints of eight bits at most, or nine of two.
@@ -125,11 +144,10 @@ impl Block {
     }
 
     #[inline(always)]
-    fn write_weights(&self, out: &mut Bits) {
-        let bits = self.mode.weight_bits;
+    fn write_weights(&self, Layout { planes, subsets, weight_bits: bits, .. }: Layout, out: &mut Bits) {
         let mut weights = self.weights[0];
         let mut width = bits;
-        if self.mode.planes == 2 {
+        if planes == 2 {
             for (weight, second) in weights.iter_mut().zip(self.weights[1]) {
                 *weight |= second << bits;
             }
@@ -139,15 +157,17 @@ impl Block {
         let half = 8 * width;
         let mut all = u128::from(close_up(low, width)) | u128::from(close_up(high, width)) << half;
         // The top bit of an anchor goes, later ones first.
-        if self.mode.planes == 2 {
+        if planes == 2 {
             all = without_bit(all, 2 * bits - 1);
         }
         let mut anchors = [0; 3];
-        let anchors = &mut anchors[..self.mode.subsets];
-        for (subset, anchor) in anchors.iter_mut().enumerate() {
-            *anchor = self.anchor(subset);
+        let anchors = &mut anchors[..subsets];
+        if subsets > 1 {
+            for (subset, anchor) in anchors.iter_mut().enumerate() {
+                *anchor = self.anchor(subset);
+            }
+            anchors.sort_unstable();
         }
-        anchors.sort_unstable();
         for anchor in anchors.iter().rev() {
             all = without_bit(all, anchor * bits + bits - 1);
         }

@@ -53,7 +53,7 @@ impl<S: Simd> Blocks<S> {
 
     /// [`Blocks::offer`] of two subsets in the likeliest pattern.
     #[inline(always)]
-    pub fn offer_subsets(&mut self, simd: S, texels: &[Grid<S>; 3], scale: &[f32; 3]) {
+    pub fn offer_subsets<const N: usize>(&mut self, simd: S, texels: &[Grid<S>; N], scale: &[f32; N]) {
         let all = moments(simd, texels, None);
         let axis = principal_axis(simd, &all.scatter);
         let [pattern] = likely_patterns(simd, texels, &all, &axis);
@@ -61,7 +61,8 @@ impl<S: Simd> Blocks<S> {
         let (off, along) = split.scatter(simd);
         let is_likely = (off + along / 12.0).simd_lt(self.error * 1.4);
         if is_likely.any_true() {
-            self.offer(&split_lines::<_, 3, 2, 2>(simd, texels, &split, scale, &MODE_4, QUICK_ROUNDS), is_likely);
+            // The finer weights of mode 2 would gain 0.5 % of the angle of normals and take 12 % of the time more.
+            self.offer(&split_lines::<_, N, 2, 2>(simd, texels, &split, scale, &MODE_4, QUICK_ROUNDS), is_likely);
         }
     }
 
@@ -215,6 +216,25 @@ pub(super) fn fast_lines<S: Simd>(
     let is_line_likely = line_estimate.simd_lt(planes_estimate * DOUBT);
     winner.offer_line(simd, texels, &all, &axis, scale, QUICK_ROUNDS, is_line_likely);
     (winner, [planes_estimate.simd_lt(line_estimate * DOUBT), is_grey(texels, scale)])
+}
+
+/// Lines through opaque texels of which only the green varies: those of [`fast_lines`], at a third of the cost. A roughness
+/// texture of a material with one metalness and no occlusion is made of them.
+#[inline(always)]
+pub(super) fn fast_greens<S: Simd>(simd: S, [reds, greens, blues]: &[Grid<S>; 3], scale: &[f32; 3]) -> Blocks<S> {
+    let greens = [*greens];
+    let all = moments(simd, &greens, None);
+    let mut winner = Blocks::none(simd);
+    winner.offer_line(simd, &greens, &all, &[Wide::splat(simd, 1.0)], &[scale[1]], QUICK_ROUNDS, every(simd));
+    let [green, ..] = winner.endpoints[0];
+    let [red, blue] =
+        [winner.nearest(simd, reds[0] * (1.0 / scale[0])), winner.nearest(simd, blues[0] * (1.0 / scale[2]))];
+    for (c, level, texels) in [(0, red, reds), (2, blue, blues)] {
+        let off = level * scale[c] - texels[0];
+        winner.error += off * off * 16.0;
+    }
+    winner.endpoints[0][..3].copy_from_slice(&[[red; 2], green, [blue; 2]]);
+    winner
 }
 
 /// The channel that is best given a plane of its own, and the squared error to expect then.

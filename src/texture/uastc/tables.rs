@@ -27,7 +27,30 @@ pub(super) struct Mode {
     pub full_hints: bool,
 }
 
+/// How a block of a mode is laid out, in numbers alone, which a compiler can reckon with.
+#[derive(Clone, Copy)]
+pub(super) struct Layout {
+    /// As [`Mode::channels`].
+    pub channels: usize,
+    /// As [`Mode::subsets`].
+    pub subsets: usize,
+    /// As [`Mode::planes`].
+    pub planes: usize,
+    /// As [`Mode::weight_bits`].
+    pub weight_bits: u32,
+    /// As [`Range::bits`] of the endpoints.
+    pub bits: u32,
+    /// As [`Range::base`] of the endpoints.
+    pub base: u32,
+}
+
 impl Mode {
+    /// The layout of its blocks.
+    pub const fn layout(&self) -> Layout {
+        let Self { channels, subsets, planes, weight_bits, range: Range { bits, base, .. }, .. } = *self;
+        Layout { channels, subsets, planes, weight_bits, bits: *bits, base: *base }
+    }
+
     /// Whether blocks carry alpha.
     pub fn has_alpha(&self) -> bool {
         self.channels != 3
@@ -133,20 +156,21 @@ impl Range {
         range
     }
 
-    /// Codes whose trits or quints share a number of base 3 or 5, and the bits of that number by how many of them there are:
-    /// trits by fives in 8 bits, quints by threes in 7; a last, incomplete group takes the bits that its largest value needs.
-    pub fn groups(&self) -> (usize, &'static [u32]) {
-        match self.base {
-            3 => (5, &[0, 2, 4, 5, 7, 8]),
-            5 => (3, &[0, 3, 5, 7]),
-            // Neither: one group of nothing.
-            _ => (18, &[0; 19]),
-        }
-    }
-
     /// The level that `code` stands for.
     pub fn level_of(&self, code: u32) -> u8 {
         unquantize(code, self.bits, self.base) as u8
+    }
+}
+
+/// Codes whose trits or quints share a number of base 3 or 5, and the bits of that number by how many of them there are:
+/// trits by fives in 8 bits, quints by threes in 7; a last, incomplete group takes the bits that its largest value needs.
+#[inline(always)]
+pub(super) fn groups(base: u32) -> (usize, &'static [u32]) {
+    match base {
+        3 => (5, &[0, 2, 4, 5, 7, 8]),
+        5 => (3, &[0, 3, 5, 7]),
+        // Neither: one group of nothing.
+        _ => (18, &[0; 19]),
     }
 }
 

@@ -99,12 +99,12 @@ fn bytes_are_pinned() {
 }
 
 const PINNED: [u64; 8] = [
-    0x9149_27dc_01ee_bcb7,
-    0xb8f1_2353_ed11_99f3,
-    0xbfe5_3e02_dd68_41f5,
-    0xecd2_9008_6052_9be4,
-    0x43bf_7501_a4fb_1f6b,
-    0xebc8_1ed0_b7ab_2817,
-    0xb1d3_9176_0e06_eaee,
-    0x6da6_4488_fe96_3d92,
+    0x76bf_93c3_48e2_8199,
+    0xb41c_734c_4384_323d,
+    0x1c38_3094_07ef_b2e7,
+    0x03e4_961d_f67b_f0e2,
+    0x75ac_9061_2cf2_219c,
+    0x4478_6bc1_7979_a054,
+    0xdf63_f747_5b0b_6e19,
+    0xe5fe_d923_d7e4_372d,
 ];
