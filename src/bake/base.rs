@@ -1,7 +1,5 @@
 //! The material's own roughness: what its textures and factors say before any bump is lost.
 
-use rayon::prelude::*;
-
 use crate::bump::Wrap;
 use crate::lobe::{Anisotropy, Roughness, SquaredAlpha};
 use crate::map::Rgba;
@@ -96,17 +94,9 @@ impl BaseRows<'_> {
         SquaredAlpha::isotropic(self.roughness(green).into()).0.uu
     }
 
-    /// Whether red and blue of the roughness texture are the same everywhere.
-    pub fn is_plain(&self) -> bool {
-        let Some(rows) = &self.roughness else { return true };
-        let row = |y: u32| {
-            let mut row = vec![[0.0; 4]; self.width as usize];
-            rows.row(y, &mut row);
-            row
-        };
-        let sides = |texel: &[f32; 4]| [texel[0], texel[2]];
-        let first = row(0).first().map(sides);
-        (0..self.height).into_par_iter().all(|y| row(y).iter().all(|texel| Some(sides(texel)) == first))
+    /// Red and blue of the roughness texture, where they are the same everywhere.
+    fn common_sides(&self) -> Option<[f32; 2]> {
+        self.roughness.as_ref().map_or(Some([1.0; 2]), |rows| rows.source().common_sides())
     }
 }
 
@@ -178,10 +168,37 @@ impl Rows for RoundRows<'_, '_> {
     }
 }
 
+/// The rows of a material whose lobes are round, without red and blue: squared alphas.
+struct PlainRows<'r, 'a>(&'r BaseRows<'a>);
+
+impl Rows for PlainRows<'_, '_> {
+    type Texel = [f32; 1];
+
+    fn width(&self) -> u32 {
+        self.0.width
+    }
+
+    fn height(&self) -> u32 {
+        self.0.height
+    }
+
+    fn row(&self, y: u32, out: &mut [[f32; 1]]) {
+        self.0.greens(y, out.as_flattened_mut());
+        out.iter_mut().for_each(|[texel]| *texel = self.0.squared_alpha(*texel));
+    }
+}
+
 /// Levels 1 and coarser of a material's own lobe.
 pub enum BaseLevels {
     /// Without textures all texels are the same.
     Same,
+    /// Round lobes beside one red and blue.
+    Plain {
+        /// Their squared alphas.
+        coarser: Coarser<[f32; 1]>,
+        /// Red and blue.
+        sides: [f32; 2],
+    },
     /// Round lobes, of three numbers instead of five.
     Round(Coarser<RoundTexel>),
     /// Lobes that are ellipses.
@@ -191,10 +208,14 @@ pub enum BaseLevels {
 impl BaseLevels {
     /// Those over `rows`.
     pub fn new(rows: &BaseRows<'_>) -> Self {
-        match (rows.roughness.is_some() || rows.direction.is_some(), rows.is_elliptical()) {
-            (false, _) => Self::Same,
-            (true, false) => Self::Round(Coarser::new(&RoundRows(rows))),
-            (true, true) => Self::Elliptical(Coarser::new(rows)),
+        if rows.roughness.is_none() && rows.direction.is_none() {
+            Self::Same
+        } else if rows.is_elliptical() {
+            Self::Elliptical(Coarser::new(rows))
+        } else if let Some(sides) = rows.common_sides() {
+            Self::Plain { coarser: Coarser::new(&PlainRows(rows)), sides }
+        } else {
+            Self::Round(Coarser::new(&RoundRows(rows)))
         }
     }
 }
@@ -222,6 +243,15 @@ impl<'a> Base<'a> {
         &self.rows
     }
 
+    /// Whether red and blue of the roughness texture are the same everywhere.
+    pub fn is_plain(&self) -> bool {
+        match self.coarser {
+            BaseLevels::Same | BaseLevels::Plain { .. } => true,
+            BaseLevels::Round(_) => false,
+            BaseLevels::Elliptical(_) => self.rows.common_sides().is_some(),
+        }
+    }
+
     /// Sizes of all levels, level 0 first.
     pub fn sizes(&self) -> Vec<(u32, u32)> {
         level_sizes(self.rows.width, self.rows.height)
@@ -231,13 +261,35 @@ impl<'a> Base<'a> {
     pub fn row(&self, level: usize, y: u32, out: &mut [BaseTexel]) {
         match &self.coarser {
             BaseLevels::Same => self.rows.row(0, out),
-            BaseLevels::Round(_) if level == 0 => self.rows.row(y, out),
+            BaseLevels::Plain { .. } | BaseLevels::Round(_) if level == 0 => self.rows.row(y, out),
+            BaseLevels::Plain { coarser, sides: [red, blue] } => {
+                coarser.with_row(&PlainRows(&self.rows), level, y, |row| {
+                    out.iter_mut().zip(row).for_each(|(texel, [alpha])| *texel = whole_texel([*alpha, *red, *blue]));
+                });
+            }
             BaseLevels::Round(coarser) => {
                 coarser.with_row(&RoundRows(&self.rows), level, y, |row| {
                     out.iter_mut().zip(row).for_each(|(texel, round)| *texel = whole_texel(*round));
                 });
             }
             BaseLevels::Elliptical(coarser) => coarser.row(&self.rows, level, y, out),
+        }
+    }
+
+    /// Writes the red and blue of row `y` of `level` to `out`.
+    pub fn sides(&self, level: usize, y: u32, out: &mut [[f32; 2]]) {
+        match &self.coarser {
+            BaseLevels::Plain { sides, .. } => out.fill(*sides),
+            BaseLevels::Round(_) | BaseLevels::Elliptical(_) if level == 0 => {
+                let mut surface = vec![[0.0; 4]; out.len()];
+                self.rows.surface(y, &mut surface);
+                out.iter_mut().zip(surface).for_each(|(sides, [red, _, blue, _])| *sides = [red, blue]);
+            }
+            _ => {
+                let mut texels = vec![BaseTexel::default(); out.len()];
+                self.row(level, y, &mut texels);
+                out.iter_mut().zip(texels).for_each(|(sides, [.., red, blue])| *sides = [red, blue]);
+            }
         }
     }
 
@@ -254,4 +306,69 @@ fn rotated([x, y]: [f32; 2], [cos, sin]: [f32; 2]) -> [f32; 2] {
     let length = (x * x + y * y).sqrt();
     let (x, y) = if length > 0.0 { (x / length, y / length) } else { (1.0, 0.0) };
     [x * cos - y * sin, x * sin + y * cos]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::{Image, Samples};
+
+    /// Of `channels` channels whose red and blue are the same everywhere, but for the last texel's red, if `is_plain` is false.
+    fn surface(width: u32, height: u32, channels: u32, is_plain: bool) -> Image {
+        let texel = |i: u32| [51, (i * 37 % 251) as u8, 102, 9];
+        let mut bytes: Vec<u8> =
+            (0..width * height).flat_map(|i| texel(i).into_iter().take(channels as usize)).collect();
+        if !is_plain {
+            let last = bytes.len() - channels as usize;
+            bytes[last] = 52;
+        }
+        Image { width, height, channels, samples: Samples::U8(bytes) }
+    }
+
+    #[test]
+    fn one_red_and_blue_make_no_other_lobes() {
+        for (image, size) in
+            [(surface(16, 8, 3, true), (16, 8)), (surface(7, 5, 4, true), (7, 5)), (surface(4, 4, 3, true), (16, 8))]
+        {
+            let rows = || BaseRows::new(size.0, size.1, Some(Rgba(&image)), 0.7, None, [Wrap::Repeat; 2]);
+            let plain = Base::new(rows());
+            assert!(matches!(plain.coarser, BaseLevels::Plain { sides: [0.2, 0.4], .. }) && plain.is_plain());
+            let round = Base::with_levels(rows(), BaseLevels::Round(Coarser::new(&RoundRows(&rows()))));
+            for (level, (width, height)) in plain.sizes().into_iter().enumerate() {
+                for y in 0..height {
+                    let texels = [&plain, &round].map(|base| {
+                        let mut texels = vec![BaseTexel::default(); width as usize];
+                        base.row(level, y, &mut texels);
+                        texels
+                    });
+                    let sides = [&plain, &round].map(|base| {
+                        let mut sides = vec![[0.0; 2]; width as usize];
+                        base.sides(level, y, &mut sides);
+                        sides
+                    });
+                    for x in 0..width as usize {
+                        let [a, b] = [texels[0][x], texels[1][x]];
+                        assert_eq!(a[..3], b[..3], "level {level}, texel {x}, {y}");
+                        let is_near = |(a, b): (&f32, &f32)| (a - b).abs() < 1e-6;
+                        assert!(a.iter().zip(&b).all(is_near) && sides[0][x].iter().zip(&sides[1][x]).all(is_near));
+                        assert!(sides[1][x].iter().zip(&b[3..]).all(is_near));
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn another_red_anywhere_is_not_plain() {
+        let image = surface(16, 8, 3, false);
+        let base = Base::new(BaseRows::new(16, 8, Some(Rgba(&image)), 1.0, None, [Wrap::Repeat; 2]));
+        assert!(matches!(base.coarser, BaseLevels::Round(_)) && !base.is_plain());
+        let ellipse = || Some(BaseAnisotropy { texture: None, strength: 0.5, rotation: [1.0, 0.0] });
+        for is_plain in [true, false] {
+            let image = surface(16, 8, 3, is_plain);
+            let rows = BaseRows::new(16, 8, Some(Rgba(&image)), 1.0, ellipse(), [Wrap::Repeat; 2]);
+            assert_eq!(Base::new(rows).is_plain(), is_plain);
+        }
+        assert!(Base::new(BaseRows::new(4, 4, None, 1.0, None, [Wrap::Repeat; 2])).is_plain());
+    }
 }

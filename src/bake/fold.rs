@@ -31,9 +31,10 @@ pub struct Folded {
     pub anisotropy: Option<Chain>,
 }
 
-/// Rows of a level that notes are made from: all of a small one. They tell of what many texels do.
+/// Rows of a level that notes are made from: all of a small one. They tell of what many texels do. Their number is odd, so that
+/// they meet all of what repeats by powers of two.
 fn looked_at(height: u32) -> impl IndexedParallelIterator<Item = u32> {
-    let count = height.min(256);
+    let count = height.min(65);
     (0..count).into_par_iter().map(move |i| (u64::from(i) * u64::from(height) / u64::from(count)) as u32)
 }
 
@@ -78,11 +79,8 @@ impl<'a> Fold<'a> {
         };
         let levels = self.sizes().into_iter().enumerate();
         let in_level = |(level, (width, height)): (usize, (u32, u32))| -> u64 {
-            let in_row = |y| {
-                let mut count = 0;
-                self.row(level, y, width as usize, |_, _, full, _| count += u64::from(is_too_wide(full)));
-                count
-            };
+            let in_row =
+                |y| self.alphas(level, y, width as usize).into_iter().filter(|lobe| is_too_wide(*lobe)).count() as u64;
             let rows = looked_at(height);
             let read = rows.len() as u64;
             rows.map(in_row).sum::<u64>() * u64::from(height) / read
@@ -94,14 +92,11 @@ impl<'a> Fold<'a> {
     pub fn noise_loss(&self, noise: Symmetric2) -> f32 {
         let Some(&(width, height)) = self.sizes().get(1) else { return 0.0 };
         let noise = noise.scaled([self.lobes.slope_scale(); 2]);
-        let in_row = |y| {
-            let mut sum = 0.0;
-            self.row(1, y, width as usize, |_, _, full, _| {
-                let noisier = full.fold(noise);
-                sum += f64::from(isotropic_distance(full.closest_isotropic(), noisier.closest_isotropic()));
-            });
-            sum
+        let moved = |full: SquaredAlpha| {
+            let noisier = full.fold(noise);
+            f64::from(isotropic_distance(full.closest_isotropic(), noisier.closest_isotropic()))
         };
+        let in_row = |y| self.alphas(1, y, width as usize).into_iter().map(moved).sum::<f64>();
         let rows: Vec<f64> = looked_at(height).map(in_row).collect();
         (rows.iter().sum::<f64>() / (f64::from(width) * rows.len() as f64)) as f32
     }
@@ -119,7 +114,7 @@ impl<'a> Fold<'a> {
         for (level, (width, height)) in self.sizes().into_iter().enumerate().skip(2) {
             let directions = |y: u32, out: &mut Vec<[f32; 2]>| {
                 out.clear();
-                self.row(level, y, width as usize, |_, _, full, _| out.push(direction(full)));
+                out.extend(self.alphas(level, y, width as usize).into_iter().map(direction));
             };
             let in_row = |(row, below): &mut (Vec<[f32; 2]>, Vec<[f32; 2]>), y: u32| {
                 directions(y, row);
@@ -162,8 +157,9 @@ impl<'a> Fold<'a> {
             if self.lobes.are_own(level) && !self.is_elliptical {
                 return self.base.finest().round_row(y, out);
             }
-            let (base, full) = self.rows(level, y, out.len());
-            let texels = base.iter().zip(&full).map(|(base, SquaredAlpha(a))| [base[3], base[4], a.uu, a.uv, a.vv]);
+            let (mut sides, full) = (vec![[0.0; 2]; out.len()], self.alphas(level, y, out.len()));
+            self.base.sides(level, y, &mut sides);
+            let texels = sides.iter().zip(&full).map(|([red, blue], SquaredAlpha(a))| [*red, *blue, a.uu, a.uv, a.vv]);
             let lobe = |uu, uv, vv| SquaredAlpha(Symmetric2::new(uu, uv, vv));
             let store = |texel: &mut [f32; 4], [red, green, blue]: [f32; 3]| *texel = [red, green, blue, 1.0];
             // Roots side by side: one by one they take as long as all the rest.
@@ -184,9 +180,8 @@ impl<'a> Fold<'a> {
     pub fn anisotropy_rows(&self) -> impl Fn(usize, u32, &mut [[f32; 4]]) + Sync {
         let axis = self.reference();
         move |level, y, out| {
-            let (_, full) = self.rows(level, y, out.len());
             map_row(
-                full.iter().map(|SquaredAlpha(a)| [a.uu, a.uv, a.vv]),
+                self.alphas(level, y, out.len()).iter().map(|SquaredAlpha(a)| [a.uu, a.uv, a.vv]),
                 out,
                 |[uu, uv, vv]| {
                     let full = SquaredAlpha(Symmetric2::new(uu, uv, vv));
@@ -201,39 +196,31 @@ impl<'a> Fold<'a> {
     /// Rows of squared alphas, uu, uv, vv: of the material's own lobe, or, with the bumps `folded` in, of any size.
     pub fn lobe_rows(&self, folded: bool) -> impl Fn(usize, u32, &mut [[f32; 4]]) + Sync {
         move |level, y, out| {
-            self.row(level, y, out.len(), |x, bare, full, _| {
-                let a = if folded { full } else { bare }.0;
-                out[x] = [a.uu, a.uv, a.vv, 0.0];
-            });
+            let lobes = if folded { self.alphas(level, y, out.len()) } else { self.own_alphas(level, y, out.len()) };
+            out.iter_mut().zip(lobes).for_each(|(texel, SquaredAlpha(a))| *texel = [a.uu, a.uv, a.vv, 0.0]);
         }
     }
 
     /// Whether red and blue of the material's own roughness texture are the same everywhere, so that a smaller texture
     /// loses nothing of them.
     pub fn is_plain(&self) -> bool {
-        self.base.finest().is_plain()
+        self.base.is_plain()
     }
 
-    /// Calls `visit(x, bare lobe, folded lobe, [red, blue])` for each texel of a row.
-    fn row(
-        &self,
-        level: usize,
-        y: u32,
-        width: usize,
-        mut visit: impl FnMut(usize, SquaredAlpha, SquaredAlpha, [f32; 2]),
-    ) {
-        let (base, alphas) = self.rows(level, y, width);
-        for (x, (texel, alpha)) in base.iter().zip(&alphas).enumerate() {
-            visit(x, own_lobe(texel), *alpha, [texel[3], texel[4]]);
+    /// The folded lobes of a row.
+    fn alphas(&self, level: usize, y: u32, width: usize) -> Vec<SquaredAlpha> {
+        if self.lobes.are_own(level) {
+            return self.own_alphas(level, y, width);
         }
+        let mut alphas = vec![SquaredAlpha::default(); width];
+        self.lobes.squared_alphas(level, y, &mut alphas);
+        alphas
     }
 
-    /// The material's own texels of a row, and the folded lobes.
-    fn rows(&self, level: usize, y: u32, width: usize) -> (Vec<BaseTexel>, Vec<SquaredAlpha>) {
-        let mut base = vec![BaseTexel::default(); width];
-        let mut alphas = vec![SquaredAlpha::default(); width];
-        self.base.row(level, y, &mut base);
-        self.lobes.squared_alphas(&base, level, y, &mut alphas);
-        (base, alphas)
+    /// The material's own lobes of a row.
+    fn own_alphas(&self, level: usize, y: u32, width: usize) -> Vec<SquaredAlpha> {
+        let mut own = vec![BaseTexel::default(); width];
+        self.base.row(level, y, &mut own);
+        own.iter().map(own_lobe).collect()
     }
 }

@@ -55,12 +55,8 @@ impl<'a> Lobes<'a> {
         self.coarser.row(&self.finest, level, y, out);
     }
 
-    /// Their squared alphas alone, where the material's own lobes of that row are known: `own`.
-    pub fn squared_alphas(&self, own: &[BaseTexel], level: usize, y: u32, out: &mut [SquaredAlpha]) {
-        if self.are_own(level) {
-            out.iter_mut().zip(own).for_each(|(a, texel)| *a = own_lobe(texel));
-            return;
-        }
+    /// Their squared alphas alone.
+    pub fn squared_alphas(&self, level: usize, y: u32, out: &mut [SquaredAlpha]) {
         self.coarser.with_row(&self.finest, level, y, |lobes| {
             out.iter_mut().zip(lobes).for_each(|(a, lobe)| *a = lobe.squared_alpha);
         });
@@ -171,17 +167,17 @@ impl Finest<'_> {
 
     /// A row of round lobes over `relief`, whose texels are those of level 0: bumps do not vary within one.
     fn round_row(&self, relief: &Relief, y: u32, out: &mut [OrientedLobe]) {
-        let (mut offsets, mut greens) = (vec![[0.0; 2]; out.len()], vec![0.0; out.len()]);
-        relief.offsets(y, &mut offsets);
+        let mut greens = vec![0.0; out.len()];
         self.base.greens(y, &mut greens);
-        map_row(
-            offsets.iter().zip(&greens).map(|(&[u, v], &green)| [u, v, green]),
+        relief.map_offsets(
+            y,
+            greens.iter().copied(),
             out,
-            |[u, v, green]| {
+            |Offset { u, v }, green, mark| {
                 let [x, y, z] = self.normal([u, v]);
-                [x, y, z, self.base.squared_alpha(green)]
+                [x, y, z, self.base.squared_alpha(green), mark]
             },
-            |lobe, [x, y, z, squared_alpha]| {
+            |lobe, [x, y, z, squared_alpha, _]| {
                 lobe.normal = [x, y, z];
                 lobe.squared_alpha = SquaredAlpha(Symmetric2::diagonal(squared_alpha, squared_alpha));
             },

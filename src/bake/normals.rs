@@ -1,5 +1,7 @@
 //! Normal mips: at every level the unit normals of where the texels point.
 
+use std::iter::repeat;
+
 use rayon::prelude::*;
 
 use super::bumps::Bumps;
@@ -81,21 +83,25 @@ impl<'a> Normals<'a> {
     /// The normal texture: x, y, z in [0, 1] with 1/2 for 0. Unit length at every level, since engines that rebuild z and
     /// engines that read it must agree.
     pub fn row(&self, level: usize, y: u32, out: &mut [[f32; 4]]) {
+        let texel = |offset: Offset| {
+            let [x, y, z] = normal_from_offset(offset);
+            [0.5 * x + 0.5, 0.5 * y + 0.5, 0.5 * z + 0.5]
+        };
+        if let Some(relief) = self.finest.unchanged().filter(|_| level == 0) {
+            let of = |offset: Offset, _, mark| {
+                let [x, y, z] = texel(offset);
+                [x, y, z, mark]
+            };
+            return relief.map_offsets(y, repeat(0.0), out, of, |value, [x, y, z, _]| *value = [x, y, z, 1.0]);
+        }
         let mut offsets = vec![[0.0; 2]; out.len()];
         match &self.coarser {
             Offsets::Lobes(lobes) if level > 0 => lobes.offsets(level, y, &mut offsets),
             Offsets::Lobes(_) => Means(self.finest).row(y, &mut offsets),
             Offsets::Coarser(means) => means.row(&Means(self.finest), level, y, &mut offsets),
         }
-        map_row(
-            offsets.into_iter(),
-            out,
-            |[u, v]| {
-                let [x, y, z] = normal_from_offset(Offset { u, v });
-                [0.5 * x + 0.5, 0.5 * y + 0.5, 0.5 * z + 0.5]
-            },
-            |value, [x, y, z]| *value = [x, y, z, 1.0],
-        );
+        let of = |[u, v]: [f32; 2]| texel(Offset { u, v });
+        map_row(offsets.into_iter(), out, of, |value, [x, y, z]| *value = [x, y, z, 1.0]);
     }
 
     /// The texture, encoded.

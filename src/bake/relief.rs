@@ -1,9 +1,10 @@
 //! The bumps of a material: a normal map or a height map, read as rows of moments.
 
-use crate::bump::{FrameTransform, HeightOffsets, NormalOffsets, Outliers, Wrap};
+use crate::bump::{FrameTransform, HeightOffsets, NormalOffsets, Offset, Outliers, Wrap};
 use crate::gltf::turn::TurnMap;
 use crate::map::{HeightMap, NormalMap};
 use crate::pyramid::{Moments, Rows};
+use crate::simd::map_row;
 use crate::symmetric::Symmetric2;
 
 /// A decoded normal or height map.
@@ -38,6 +39,29 @@ impl Relief {
                 HeightOffsets::new(map, *slope_per_step, *wrap).offsets(y, out);
             }
         }
+    }
+
+    /// Stores in each of `out` what `of` makes of the texel's offset in row `y`, the number `beside` it and a mark, which is to be
+    /// the last number that it makes: in one pass over the row, without branches.
+    pub fn map_offsets<T, const M: usize>(
+        &self,
+        y: u32,
+        beside: impl Iterator<Item = f32> + Clone,
+        out: &mut [T],
+        of: impl Fn(Offset, f32, f32) -> [f32; M],
+        store: impl Fn(&mut T, [f32; M]),
+    ) {
+        if let Self::Normals(map) = self {
+            return NormalOffsets::new(map).each(y, beside, out, of, store);
+        }
+        let mut offsets = vec![[0.0; 2]; out.len()];
+        self.offsets(y, &mut offsets);
+        map_row(
+            offsets.iter().zip(beside).map(|(&[u, v], beside)| [u, v, beside]),
+            out,
+            |[u, v, beside]| of(Offset { u, v }, beside, 0.0),
+            store,
+        );
     }
 
     /// Texels whose slope is not what the map says.

@@ -1,5 +1,7 @@
 //! Offsets from tangent-space normals, and back.
 
+use std::iter::repeat;
+
 use rayon::prelude::*;
 
 use super::{MAX_SLOPE, Offset, Outliers};
@@ -83,29 +85,35 @@ impl<'a> NormalOffsets<'a> {
 
     /// Writes f_u and f_v of row `y` to `out`.
     pub fn offsets(&self, y: u32, out: &mut [[f32; 2]]) {
-        self.each(y, out, |texel, Offset { u, v }| *texel = [u, v]);
+        let of = |Offset { u, v }: Offset, _, mark| [u, v, mark];
+        self.each(y, repeat(0.0), out, of, |texel, [u, v, _]| *texel = [u, v]);
     }
 
-    #[inline]
-    fn each<T>(&self, y: u32, out: &mut [T], store: impl Fn(&mut T, Offset)) {
+    /// Stores in each of `out` what `of` makes of the texel's offset in row `y`, the number `beside` it and a mark, which is to be
+    /// the last number that it makes. As in [`map_row`], it should not branch.
+    pub(crate) fn each<T, const M: usize>(
+        &self,
+        y: u32,
+        beside: impl Iterator<Item = f32> + Clone,
+        out: &mut [T],
+        of: impl Fn(Offset, f32, f32) -> [f32; M],
+        store: impl Fn(&mut T, [f32; M]),
+    ) {
         let mut normals = vec![[0.0; 3]; out.len()];
         self.map.row(y, &mut normals);
         let mut steep = 0.0;
         map_row(
-            normals.iter().copied(),
+            normals.iter().zip(beside.clone()).map(|(&[x, y, z], beside)| [x, y, z, beside]),
             out,
-            |normal| {
-                let Offset { u, v } = slopes(normal);
-                [u, v, f32::from(u8::from(is_steep(normal)))]
-            },
-            |texel, [u, v, is_steep]| {
-                store(texel, Offset { u, v });
-                steep += is_steep;
+            |[x, y, z, beside]| of(slopes([x, y, z]), beside, f32::from(u8::from(is_steep([x, y, z])))),
+            |texel, made| {
+                steep += made[M - 1];
+                store(texel, made);
             },
         );
         if steep > 0.0 {
-            let steep = out.iter_mut().zip(normals).filter(|(_, normal)| is_steep(*normal));
-            steep.for_each(|(texel, normal)| store(texel, offset_from_normal(normal)));
+            let texels = out.iter_mut().zip(normals).zip(beside).filter(|((_, normal), _)| is_steep(*normal));
+            texels.for_each(|((texel, normal), beside)| store(texel, of(offset_from_normal(normal), beside, 0.0)));
         }
     }
 }
@@ -122,7 +130,8 @@ impl Rows for NormalOffsets<'_> {
     }
 
     fn row(&self, y: u32, out: &mut [Moments]) {
-        self.each(y, out, |texel, offset| *texel = Moments::flat(offset));
+        let of = |Offset { u, v }: Offset, _, mark| [u, v, mark];
+        self.each(y, repeat(0.0), out, of, |texel, [u, v, _]| *texel = Moments::flat(Offset { u, v }));
     }
 }
 
@@ -157,6 +166,21 @@ mod tests {
         let mut row = [Moments::default(); 5];
         NormalOffsets::new(&map).row(0, &mut row);
         assert_eq!(row, normals.map(|normal| Moments::flat(offset_from_normal(normal))));
+    }
+
+    #[test]
+    fn numbers_stay_beside_their_texels_where_some_are_steep() {
+        let normal = |i: u32| if i % 50 == 49 { [1.0, 0.0, 0.01] } else { [0.01 * i as f32, -0.1, 1.0] };
+        let samples = Samples::F32((0..150).flat_map(normal).collect());
+        let image = Image { width: 150, height: 1, channels: 3, samples };
+        let map = NormalMap::new(image, NormalLayout::Xyz, false).unwrap();
+        let mut row = [[0.0; 2]; 150];
+        let beside = (0..150).map(|i| i as f32);
+        let of = |Offset { u, .. }: Offset, beside, mark| [u, beside, mark];
+        NormalOffsets::new(&map).each(0, beside, &mut row, of, |texel, [u, beside, _]| *texel = [u, beside]);
+        for (i, texel) in (0..).zip(row) {
+            assert_eq!(texel, [offset_from_normal(normal(i)).u, i as f32]);
+        }
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! Images as rows of RGBA values, as a shader reads them.
 
+use rayon::prelude::*;
+
 use super::{DecodeError, DecodeOptions, Format, Image, Samples, decode};
 use crate::pyramid::Rows;
 
@@ -63,20 +65,55 @@ impl Rgba<'_> {
     /// Writes the green of row `y` to `out`.
     pub fn greens(&self, y: u32, out: &mut [f32]) {
         let channels = self.0.channels as usize;
-        let start = y as usize * out.len() * channels + usize::from(channels > 1);
+        let start = y as usize * out.len() * channels;
         match &self.0.samples {
-            Samples::U8(all) => every(&all[start..], channels, out, |v| UNORM8[usize::from(v)]),
-            Samples::U16(all) => every(&all[start..], channels, out, |v| f32::from(v) / 65535.0),
-            Samples::F32(all) => every(&all[start..], channels, out, |v| v),
+            Samples::U8(all) => greens(&all[start..], channels, out, |v| UNORM8[usize::from(v)]),
+            Samples::U16(all) => greens(&all[start..], channels, out, |v| f32::from(v) / 65535.0),
+            Samples::F32(all) => greens(&all[start..], channels, out, |v| v),
         }
+    }
+
+    /// Red and blue, where they are the same in all texels.
+    pub fn common_sides(&self) -> Option<[f32; 2]> {
+        let channels = self.0.channels as usize;
+        let are_same = match &self.0.samples {
+            Samples::U8(all) => have_same_sides(all, channels),
+            Samples::U16(all) => have_same_sides(all, channels),
+            Samples::F32(all) => have_same_sides(all, channels),
+        };
+        let mut first = [[0.0; 4]];
+        self.row(0, &mut first);
+        let [[red, _, blue, _]] = first;
+        are_same.then_some([red, blue])
     }
 }
 
-/// Writes every `step`th of `samples`, from the first on.
-fn every<T: Copy>(samples: &[T], step: usize, out: &mut [f32], value: impl Fn(T) -> f32) {
-    for (out, sample) in out.iter_mut().zip(samples.iter().step_by(step)) {
-        *out = value(*sample);
+/// Writes the greens of texels, or what is grey, to `out`.
+fn greens<T: Copy>(samples: &[T], channels: usize, out: &mut [f32], value: impl Fn(T) -> f32) {
+    match channels {
+        1 => each(samples, out, |&[grey]| value(grey)),
+        2 => each(samples, out, |&[_, green]| value(green)),
+        3 => each(samples, out, |&[_, green, _]| value(green)),
+        _ => each(samples, out, |&[_, green, _, _]| value(green)),
     }
+}
+
+/// Whether the first and, where there is one, the third of the channels are the same in all texels.
+fn have_same_sides<T: Copy + PartialEq + Sync>(samples: &[T], channels: usize) -> bool {
+    let [red, blue] = [samples[0], samples[if channels > 2 { 2 } else { 0 }]];
+    let of_some = |texels: &[T]| match channels {
+        1 => all(texels, |&[grey]| grey == red),
+        2 => all(texels, |&[r, _]| r == red),
+        3 => all(texels, |&[r, _, b]| (r == red) & (b == blue)),
+        _ => all(texels, |&[r, _, b, _]| (r == red) & (b == blue)),
+    };
+    samples.par_chunks(channels << 12).all(of_some)
+}
+
+/// Whether `is_so` of every texel of N samples.
+fn all<T, const N: usize>(samples: &[T], is_so: impl Fn(&[T; N]) -> bool) -> bool {
+    // To the end in any case, as vectors do.
+    samples.as_chunks::<N>().0.iter().fold(true, |all, texel| all & is_so(texel))
 }
 
 fn expand<T: Copy>(samples: &[T], channels: usize, out: &mut [[f32; 4]], value: impl Fn(T) -> f32) {
@@ -89,11 +126,7 @@ fn expand<T: Copy>(samples: &[T], channels: usize, out: &mut [[f32; 4]], value: 
 }
 
 /// Writes what `of` makes of each texel of N samples.
-pub(super) fn each<T, const N: usize, const M: usize>(
-    samples: &[T],
-    out: &mut [[f32; M]],
-    of: impl Fn(&[T; N]) -> [f32; M],
-) {
+pub(super) fn each<T, O, const N: usize>(samples: &[T], out: &mut [O], of: impl Fn(&[T; N]) -> O) {
     for (out, texel) in out.iter_mut().zip(samples.as_chunks::<N>().0) {
         *out = of(texel);
     }
@@ -133,6 +166,25 @@ mod tests {
                     Rgba(&image).greens(y, &mut greens);
                     assert_eq!(greens, texels.map(|texel| texel[1]), "{channels} channels");
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn sides_are_common_where_all_texels_have_them() {
+        for channels in 1..=4 {
+            let mut bytes = [51, 0, 102, 7][..channels].repeat(12);
+            let sides = |bytes: &[u8]| {
+                let image =
+                    Image { width: 4, height: 3, channels: channels as u32, samples: Samples::U8(bytes.to_vec()) };
+                Rgba(&image).common_sides()
+            };
+            assert_eq!(sides(&bytes), Some([0.2, [0.2, 0.0, 0.4, 0.4][channels - 1]]), "{channels} channels");
+            for c in 0..channels {
+                let last = bytes.len() - channels + c;
+                bytes[last] += 1;
+                assert_eq!(sides(&bytes).is_none(), c % 2 == 0, "channel {c} of {channels}");
+                bytes[last] -= 1;
             }
         }
     }

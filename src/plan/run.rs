@@ -67,7 +67,8 @@ pub struct Prepared {
 
 enum Outputs {
     Found(Box<Found>),
-    Baked(Box<(Entry, Baked)>),
+    /// With its entry, if there is a cache.
+    Baked(Box<(Option<Entry>, Baked)>),
 }
 
 /// Fetches the outputs of `job` if its `lookup` found it, and else bakes them and puts them into the cache, all in memory. Jobs
@@ -76,10 +77,11 @@ pub fn prepare(job: &Job, mut lookup: Option<Lookup<'_>>, room: &Room, advance: 
     let outputs = match lookup.as_mut().and_then(|lookup| lookup.fetch(job)) {
         Some(found) => Ok(Outputs::Found(Box::new(found))),
         None => baked(job, room, advance).map(|baked| {
-            let entry = Entry::new(&name(job, &baked), &baked);
-            if let Some(Lookup { cache, warnings, .. }) = &mut lookup {
+            let entry = lookup.as_mut().map(|Lookup { cache, warnings, .. }| {
+                let entry = Entry::new(&name(job, &baked), &baked);
                 cache.put(&job.id, &entry, &baked, &mut |error| warnings.push(error));
-            }
+                entry
+            });
             Outputs::Baked(Box::new((entry, baked)))
         }),
     };
@@ -96,7 +98,13 @@ pub fn finish(job: &Job, prepared: Prepared, places: &mut Places, warn: Warn<'_>
         Outputs::Found(found) => Done::new(job, restore(job, places, *found)?, true),
         Outputs::Baked(baked) => {
             let (entry, baked) = *baked;
-            publish(&baked, &job.output.join(&entry.document.path), &job.source, places)?;
+            let name = name(job, &baked);
+            // Outputs are hashed while the disk is waited for.
+            let (published, entry) = rayon::join(
+                || publish(&baked, &job.output.join(&name), &job.source, places),
+                || entry.unwrap_or_else(|| Entry::new(&name, &baked)),
+            );
+            published?;
             Done::new(job, entry, false)
         }
     };

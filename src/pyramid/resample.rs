@@ -90,6 +90,11 @@ impl<R: Rows> Linear<R> {
         Self { source, width, height, wrap }
     }
 
+    /// What is resampled.
+    pub fn source(&self) -> &R {
+        &self.source
+    }
+
     /// As [`Area::unchanged`].
     pub fn unchanged(&self) -> Option<&R> {
         ((self.width, self.height) == (self.source.width(), self.source.height())).then_some(&self.source)
