@@ -173,11 +173,11 @@ impl Finest<'_> {
             y,
             greens.iter().copied(),
             out,
-            |Offset { u, v }, green, mark| {
+            |Offset { u, v }, green| {
                 let [x, y, z] = self.normal([u, v]);
-                [x, y, z, self.base.squared_alpha(green), mark]
+                [x, y, z, self.base.squared_alpha(green)]
             },
-            |lobe, [x, y, z, squared_alpha, _]| {
+            |lobe, [x, y, z, squared_alpha]| {
                 lobe.normal = [x, y, z];
                 lobe.squared_alpha = SquaredAlpha(Symmetric2::diagonal(squared_alpha, squared_alpha));
             },

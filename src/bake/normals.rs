@@ -87,12 +87,9 @@ impl<'a> Normals<'a> {
             let [x, y, z] = normal_from_offset(offset);
             [0.5 * x + 0.5, 0.5 * y + 0.5, 0.5 * z + 0.5]
         };
+        let store = |value: &mut [f32; 4], [x, y, z]: [f32; 3]| *value = [x, y, z, 1.0];
         if let Some(relief) = self.finest.unchanged().filter(|_| level == 0) {
-            let of = |offset: Offset, _, mark| {
-                let [x, y, z] = texel(offset);
-                [x, y, z, mark]
-            };
-            return relief.map_offsets(y, repeat(0.0), out, of, |value, [x, y, z, _]| *value = [x, y, z, 1.0]);
+            return relief.map_offsets(y, repeat(0.0), out, |offset, _| texel(offset), store);
         }
         let mut offsets = vec![[0.0; 2]; out.len()];
         match &self.coarser {
@@ -100,8 +97,7 @@ impl<'a> Normals<'a> {
             Offsets::Lobes(_) => Means(self.finest).row(y, &mut offsets),
             Offsets::Coarser(means) => means.row(&Means(self.finest), level, y, &mut offsets),
         }
-        let of = |[u, v]: [f32; 2]| texel(Offset { u, v });
-        map_row(offsets.into_iter(), out, of, |value, [x, y, z]| *value = [x, y, z, 1.0]);
+        map_row(offsets.into_iter(), out, |[u, v]| texel(Offset { u, v }), store);
     }
 
     /// The texture, encoded.

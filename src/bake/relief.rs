@@ -41,25 +41,25 @@ impl Relief {
         }
     }
 
-    /// Stores in each of `out` what `of` makes of the texel's offset in row `y`, the number `beside` it and a mark, which is to be
-    /// the last number that it makes: in one pass over the row, without branches.
+    /// Stores in each of `out` what `of` makes of the texel's offset in row `y` and of the number `beside` it, as
+    /// [`map_row`] does.
     pub fn map_offsets<T, const M: usize>(
         &self,
         y: u32,
         beside: impl Iterator<Item = f32> + Clone,
         out: &mut [T],
-        of: impl Fn(Offset, f32, f32) -> [f32; M],
+        of: impl Fn(Offset, f32) -> [f32; M],
         store: impl Fn(&mut T, [f32; M]),
     ) {
         if let Self::Normals(map) = self {
-            return NormalOffsets::new(map).each(y, beside, out, of, store);
+            return NormalOffsets::new(map).map_offsets(y, beside, out, of, store);
         }
         let mut offsets = vec![[0.0; 2]; out.len()];
         self.offsets(y, &mut offsets);
         map_row(
             offsets.iter().zip(beside).map(|(&[u, v], beside)| [u, v, beside]),
             out,
-            |[u, v, beside]| of(Offset { u, v }, beside, 0.0),
+            |[u, v, beside]| of(Offset { u, v }, beside),
             store,
         );
     }

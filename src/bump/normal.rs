@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::{MAX_SLOPE, Offset, Outliers};
 use crate::map::NormalMap;
 use crate::pyramid::{Moments, Rows};
-use crate::simd::map_row;
+use crate::simd::map_row_marking;
 use crate::symmetric::Symmetric2;
 
 /// f_u = -x/z, f_v = -y/z: the length of the normal cancels, so maps need not be normalised. Slopes beyond
@@ -66,13 +66,13 @@ impl<'a> NormalOffsets<'a> {
         (0..self.map.height())
             .into_par_iter()
             .map_init(
-                || (vec![[0.0; 3]; self.map.width() as usize], vec![0.0; self.map.width() as usize]),
-                |(normals, marks), y| {
+                || vec![[0.0; 3]; self.map.width() as usize],
+                |normals, y| {
                     self.map.row(y, normals);
-                    let mark = |normal| [f32::from(u8::from(is_steep(normal)))];
-                    map_row(normals.iter().copied(), marks, mark, |out, [mark]| *out = mark);
                     // Most rows have none, which vectors find out.
-                    if marks.iter().fold(0, |any, mark| any | mark.to_bits()) == 0 {
+                    let mut nothing = vec![(); normals.len()];
+                    let mark = |normal| ([], is_steep(normal));
+                    if !map_row_marking(normals.iter().copied(), &mut nothing, mark, |(), []| ()) {
                         return Outliers::default();
                     }
                     let below = normals.iter().filter(|normal| normal[2] <= 0.0).count() as u64;
@@ -85,35 +85,30 @@ impl<'a> NormalOffsets<'a> {
 
     /// Writes f_u and f_v of row `y` to `out`.
     pub fn offsets(&self, y: u32, out: &mut [[f32; 2]]) {
-        let of = |Offset { u, v }: Offset, _, mark| [u, v, mark];
-        self.each(y, repeat(0.0), out, of, |texel, [u, v, _]| *texel = [u, v]);
+        self.map_offsets(y, repeat(0.0), out, |Offset { u, v }, _| [u, v], |texel, offset| *texel = offset);
     }
 
-    /// Stores in each of `out` what `of` makes of the texel's offset in row `y`, the number `beside` it and a mark, which is to be
-    /// the last number that it makes. As in [`map_row`], it should not branch.
-    pub(crate) fn each<T, const M: usize>(
+    /// Stores in each of `out` what `of` makes of the texel's offset in row `y` and of the number `beside` it, as
+    /// [`map_row`](crate::simd::map_row) does.
+    pub(crate) fn map_offsets<T, const M: usize>(
         &self,
         y: u32,
         beside: impl Iterator<Item = f32> + Clone,
         out: &mut [T],
-        of: impl Fn(Offset, f32, f32) -> [f32; M],
+        of: impl Fn(Offset, f32) -> [f32; M],
         store: impl Fn(&mut T, [f32; M]),
     ) {
         let mut normals = vec![[0.0; 3]; out.len()];
         self.map.row(y, &mut normals);
-        let mut steep = 0.0;
-        map_row(
+        let is_any_steep = map_row_marking(
             normals.iter().zip(beside.clone()).map(|(&[x, y, z], beside)| [x, y, z, beside]),
             out,
-            |[x, y, z, beside]| of(slopes([x, y, z]), beside, f32::from(u8::from(is_steep([x, y, z])))),
-            |texel, made| {
-                steep += made[M - 1];
-                store(texel, made);
-            },
+            |[x, y, z, beside]| (of(slopes([x, y, z]), beside), is_steep([x, y, z])),
+            &store,
         );
-        if steep > 0.0 {
+        if is_any_steep {
             let texels = out.iter_mut().zip(normals).zip(beside).filter(|((_, normal), _)| is_steep(*normal));
-            texels.for_each(|((texel, normal), beside)| store(texel, of(offset_from_normal(normal), beside, 0.0)));
+            texels.for_each(|((texel, normal), beside)| store(texel, of(offset_from_normal(normal), beside)));
         }
     }
 }
@@ -130,8 +125,8 @@ impl Rows for NormalOffsets<'_> {
     }
 
     fn row(&self, y: u32, out: &mut [Moments]) {
-        let of = |Offset { u, v }: Offset, _, mark| [u, v, mark];
-        self.each(y, repeat(0.0), out, of, |texel, [u, v, _]| *texel = Moments::flat(Offset { u, v }));
+        let flat = |texel: &mut Moments, [u, v]: [f32; 2]| *texel = Moments::flat(Offset { u, v });
+        self.map_offsets(y, repeat(0.0), out, |Offset { u, v }, _| [u, v], flat);
     }
 }
 
@@ -176,8 +171,8 @@ mod tests {
         let map = NormalMap::new(image, NormalLayout::Xyz, false).unwrap();
         let mut row = [[0.0; 2]; 150];
         let beside = (0..150).map(|i| i as f32);
-        let of = |Offset { u, .. }: Offset, beside, mark| [u, beside, mark];
-        NormalOffsets::new(&map).each(0, beside, &mut row, of, |texel, [u, beside, _]| *texel = [u, beside]);
+        let of = |Offset { u, .. }: Offset, beside| [u, beside];
+        NormalOffsets::new(&map).map_offsets(0, beside, &mut row, of, |texel, made| *texel = made);
         for (i, texel) in (0..).zip(row) {
             assert_eq!(texel, [offset_from_normal(normal(i)).u, i as f32]);
         }

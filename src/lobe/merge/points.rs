@@ -11,7 +11,8 @@ use crate::simd::Real;
 /// Half-vectors that stand for a lobe: [`RADII`] by [`SPOKES`], ring by ring; within a ring each is a quarter turn from the one
 /// before. Two radii change the lobe error of `../shared/data` (half floats) by up to 0.008.
 pub const POINTS: usize = RADII.len() * SPOKES;
-/// Directions of half-vectors: two and their opposites, which share a division. With three the lobe depends 2.5 times as much on the order of its parts.
+/// Directions of half-vectors: two and their opposites. With three the lobe depends 2.5 times as much on the order of its
+/// parts.
 const SPOKES: usize = 4;
 /// Radii, in alphas, within which 1/6, 1/2 and 5/6 of a GGX lobe lie (r^2 = p / (1 - p)). Any such symmetric choice
 /// gives back the lobe itself when it is merged alone.
@@ -62,7 +63,7 @@ pub fn half_vectors<'r, F: Real>(
             }
             for (spoke, leg) in [leg, turned].into_iter().enumerate() {
                 let (ahead, behind) = ((up[2] + leg[2]).max(least_cosine), (up[2] - leg[2]).max(least_cosine));
-                // One division for both: they take as long as all the rest.
+                // One division for both.
                 let share = one / (ahead * behind);
                 let (ahead, behind) = (behind * share, ahead * share);
                 points[spoke] = [(up[0] + leg[0]) * ahead, (up[1] + leg[1]) * ahead];

@@ -4,7 +4,7 @@
 //! packing". Fields follow each other from bit 0 of byte 0 upwards.
 
 use super::hints::Hints;
-use super::tables::{Layout, MODE_0, MODE_4, MODE_5, MODE_6, MODE_18, Mode, PATTERNS, SOLID_CODE, THIRDS, groups};
+use super::tables::{Layout, MODE_0, MODE_4, MODE_5, MODE_6, MODE_18, Mode, PATTERNS, SOLID_CODE, THIRDS};
 
 /// A block of any mode but the solid one.
 #[derive(Clone)]
@@ -118,9 +118,10 @@ impl Block {
     }
 
     #[inline(always)]
-    fn write_endpoints(&self, Layout { channels, subsets, bits, base, .. }: Layout, out: &mut Bits) {
+    fn write_endpoints(&self, layout: Layout, out: &mut Bits) {
+        let Layout { channels, subsets, bits, base, .. } = layout;
         let code = &self.mode.range.code;
-        let (group, lengths) = groups(base);
+        let (group, lengths) = layout.groups();
         let mut codes = [0; 18];
         let mut count = 0;
         for subset in &self.endpoints[..subsets] {

@@ -218,8 +218,8 @@ pub(super) fn fast_lines<S: Simd>(
     (winner, [planes_estimate.simd_lt(line_estimate * DOUBT), is_grey(texels, scale)])
 }
 
-/// Lines through opaque texels of which only the green varies: those of [`fast_lines`], at a third of the cost. A roughness
-/// texture of a material with one metalness and no occlusion is made of them.
+/// Lines through opaque texels of which only the green varies: those of [`fast_lines`], of a third of the numbers. A
+/// roughness texture of a material with one metalness and no occlusion is made of them.
 #[inline(always)]
 pub(super) fn fast_greens<S: Simd>(simd: S, [reds, greens, blues]: &[Grid<S>; 3], scale: &[f32; 3]) -> Blocks<S> {
     let greens = [*greens];

@@ -44,6 +44,21 @@ pub(super) struct Layout {
     pub base: u32,
 }
 
+impl Layout {
+    /// Codes whose trits or quints share a number of base 3 or 5, and the bits of that number by how many of them there
+    /// are: trits by fives in 8 bits, quints by threes in 7; a last, incomplete group takes the bits that its largest value
+    /// needs.
+    #[inline(always)]
+    pub fn groups(self) -> (usize, &'static [u32]) {
+        match self.base {
+            3 => (5, &[0, 2, 4, 5, 7, 8]),
+            5 => (3, &[0, 3, 5, 7]),
+            // Neither: one group of nothing.
+            _ => (18, &[0; 19]),
+        }
+    }
+}
+
 impl Mode {
     /// The layout of its blocks.
     pub const fn layout(&self) -> Layout {
@@ -159,18 +174,6 @@ impl Range {
     /// The level that `code` stands for.
     pub fn level_of(&self, code: u32) -> u8 {
         unquantize(code, self.bits, self.base) as u8
-    }
-}
-
-/// Codes whose trits or quints share a number of base 3 or 5, and the bits of that number by how many of them there are:
-/// trits by fives in 8 bits, quints by threes in 7; a last, incomplete group takes the bits that its largest value needs.
-#[inline(always)]
-pub(super) fn groups(base: u32) -> (usize, &'static [u32]) {
-    match base {
-        3 => (5, &[0, 2, 4, 5, 7, 8]),
-        5 => (3, &[0, 3, 5, 7]),
-        // Neither: one group of nothing.
-        _ => (18, &[0; 19]),
     }
 }
 

@@ -4,7 +4,7 @@ use super::line::{decode, ramp};
 use super::pack::Block;
 use super::rate::Lane;
 use super::tables::{
-    MODE_0, MODE_1, MODE_2, MODE_3, MODE_4, MODE_5, MODE_6, MODE_18, Mode, PATTERNS, Range, SOLID_CODE, THIRDS, groups,
+    MODE_0, MODE_1, MODE_2, MODE_3, MODE_4, MODE_5, MODE_6, MODE_18, Mode, PATTERNS, Range, SOLID_CODE, THIRDS,
 };
 
 /// The opaque modes but the solid and the grey one.
@@ -75,7 +75,7 @@ impl Block {
     fn read_endpoints(&mut self, reader: &mut Reader) {
         let range: &Range = self.mode.range;
         let count = 2 * self.mode.channels * self.mode.subsets;
-        let (group, lengths) = groups(range.base);
+        let (group, lengths) = self.mode.layout().groups();
         let mut codes = [0; 18];
         for group in codes[..count].chunks_mut(group) {
             let mut number = reader.take(lengths[group.len()]);
