@@ -1,4 +1,4 @@
-//! UASTC blocks from texels, and zstd of them: `cargo bench --bench encoder`.
+//! UASTC blocks from texels, and zstd of them, beside a copy of as many bytes: `cargo bench --bench encoder`.
 
 use divan::counter::{BytesCount, ItemsCount};
 use divan::{Bencher, black_box};
@@ -23,6 +23,13 @@ fn encode(bencher: Bencher, rgb: &[u8], metric: Metric, effort: Effort) {
         .bench(|| encode_level(black_box(&texels), size, size, metric, effort));
 }
 
+/// RGBA8 read, a byte a texel written.
+#[divan::bench(sample_count = 20)]
+fn copy(bencher: Bencher) {
+    let texels = common::size() * common::size();
+    common::bench_copy(bencher, 4 * texels, texels);
+}
+
 #[divan::bench(sample_count = 5)]
 fn normals_fast(bencher: Bencher) {
     encode(bencher, &common::maps::normals(common::size()), Metric::Direction, Effort::Fast);
@@ -35,12 +42,12 @@ fn normals_best(bencher: Bencher) {
 
 #[divan::bench(sample_count = 5)]
 fn roughness_fast(bencher: Bencher) {
-    encode(bencher, &common::maps::surface(common::size()), Metric::Rgb, Effort::Fast);
+    encode(bencher, &common::maps::surface(common::size()), Metric::Surface, Effort::Fast);
 }
 
 #[divan::bench(sample_count = 1)]
 fn roughness_best(bencher: Bencher) {
-    encode(bencher, &common::maps::surface(common::size()), Metric::Rgb, Effort::Best);
+    encode(bencher, &common::maps::surface(common::size()), Metric::Surface, Effort::Best);
 }
 
 #[divan::bench(sample_count = 5)]

@@ -1,8 +1,8 @@
 //! From a normal map to its pyramid, beside a copy of as many bytes: `cargo bench --bench kernels`.
 //!
-//! Items are texels of level 0. The copies move what the kernels read and write, with the same threads.
+//! Items are texels of level 0. The copies read and write as much as the kernels do, with the same threads.
 
-use divan::counter::{BytesCount, ItemsCount};
+use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use rayon::prelude::*;
 use roughcast::bump::NormalOffsets;
@@ -33,25 +33,14 @@ fn normals() -> NormalMap {
     NormalMap::new(image, NormalLayout::Auto, false).expect("three channels")
 }
 
-fn copy(bencher: Bencher, bytes: usize) {
-    let source = vec![1_u8; bytes];
-    bencher.counter(BytesCount::new(bytes)).bench(|| {
-        // As the kernels do: into memory that is new.
-        let mut target = vec![0_u8; bytes];
-        let pairs = target.par_chunks_mut(1 << 20).zip(source.par_chunks(1 << 20));
-        pairs.for_each(|(target, source)| target.copy_from_slice(source));
-        target
-    });
-}
-
 #[divan::bench(sample_count = 20)]
 fn copy_of_mean_and_covariance(bencher: Bencher) {
-    copy(bencher, 3 * texels() + coarser() * size_of::<Moments>());
+    common::bench_copy(bencher, 3 * texels(), coarser() * size_of::<Moments>());
 }
 
 #[divan::bench(sample_count = 20)]
 fn copy_of_shape(bencher: Bencher) {
-    copy(bencher, 3 * texels() + coarser() * size_of::<ShapedMoments>());
+    common::bench_copy(bencher, 3 * texels(), coarser() * size_of::<ShapedMoments>());
 }
 
 #[divan::bench(sample_count = 5)]

@@ -1,4 +1,4 @@
-//! A document with one normal and one roughness map, baked in memory, beside decoding its images:
+//! A document with one normal and one roughness map, baked in memory, beside decoding its images and a copy of as many bytes:
 //! `cargo bench --bench whole`. Items are texels of level 0 of one map.
 
 use std::collections::BTreeMap;
@@ -33,6 +33,13 @@ fn whole(bencher: Bencher, form: Form, model: Model) {
     let settings = Settings { form, model, ..Settings::default() };
     let texels = common::size() * common::size();
     bencher.counter(ItemsCount::new(texels)).bench(|| bake(black_box(&source), &settings, &|_| ()).map(drop));
+}
+
+/// Two RGB images read, two textures with all levels written, of a byte a texel before zstd.
+#[divan::bench(sample_count = 20)]
+fn copy(bencher: Bencher) {
+    let texels = common::size() * common::size();
+    common::bench_copy(bencher, 6 * texels, 2 * texels / 3 * 4);
 }
 
 /// The two PNGs, one after the other.

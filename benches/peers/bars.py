@@ -40,20 +40,26 @@ def encoders(part):
     is_told = lambda row, a, b, key: key in row.get(a, {}) and min(row[a][key], row[b][key]) < 99
     gap = lambda a, b, key: {name: row[a][key] - row[b][key] for name, row in quality.items() if is_told(row, a, b, key)}
     worst = lambda gaps: min(gaps.items(), key=lambda gap: gap[1], default=("none", None))
-    (fast_map, fast), (best_map, best) = worst(gap("fast rgb", "level 0", "psnr")), worst(gap("best rgb", "level 2", "psnr"))
     average = lambda values: mean(values) if values else None
+    rows = []
+    for what, ours, key in [("by colour", "rgb", "psnr"), ("by roughness", "surface", "green")]:
+        kind = "PSNR" if key == "psnr" else f"PSNR of {key}"
+        fast, best = f"fast {ours}", f"best {ours}"
+        for name, mine, other in [("fast", fast, "level 0"), ("best", best, "level 2")]:
+            place, least = worst(gap(mine, other, key))
+            rows.append(at_least(f"`{name}` {what} less {other}, {kind} on the worst map ({place}), dB", 0, least))
+        rows.append(at_least(f"`fast` {what} less level 1, mean {kind}, dB", -1, average(list(gap(fast, "level 1", key).values()))))
     directions = [row for row in quality.values() if "degrees" in row["fast"]]
-    turned = average([row["fast"]["degrees"] for row in directions]), average([row["level 1"]["degrees"] for row in directions])
-    return [
+    turned = [average([row[encoder]["degrees"] for row in directions]) for encoder in ("fast", "level 1")]
+    return rows + [
         at_most("UASTC `fast` by direction beside level 0, time", 1 / 5, ratio(times, "fast", "level 0")),
         at_most("the same beside level 0 with statistics (what the C interface does)", 1 / 5, ratio(times, "fast", "level 0 with statistics")),
         at_most("`fast` by colour beside level 0, time", 1 / 5, ratio(times, "fast rgb", "level 0")),
-        at_least(f"`fast` by colour less level 0, PSNR on the worst map ({fast_map}), dB", 0, fast),
-        at_least("`fast` by colour less level 1, mean PSNR, dB", -1, average(list(gap("fast rgb", "level 1", "psnr").values()))),
+        at_most("`fast` by roughness beside level 0, time", 1 / 5, ratio(times, "fast surface, roughness", "level 0, roughness")),
         at_most("`fast` by direction beside level 1, mean angle of normals", 1, turned[0] and turned[0] / turned[1]),
-        at_least(f"`best` by colour less level 2, PSNR on the worst map ({best_map}), dB", 0, best),
         at_most("`best` by direction beside level 1, time", 1 / 4, ratio(times, "best", "level 1")),
         at_most("`best` by colour beside level 1, time", 1 / 4, ratio(times, "best rgb", "level 1")),
+        at_most("`best` by roughness beside level 1, time", 1 / 4, ratio(times, "best surface, roughness", "level 1, roughness")),
     ]
 
 

@@ -2,7 +2,7 @@
 
 from statistics import mean
 
-from bars import bars, share
+from bars import bars, ratio, share
 
 # What each contender is, as the tables name it.
 NAMES = {
@@ -17,8 +17,13 @@ NAMES = {
     "best": "Roughcast `best`, by direction",
     "fast rgb": "Roughcast `fast`, by colour",
     "best rgb": "Roughcast `best`, by colour",
+    "fast surface, roughness": "Roughcast `fast`, by roughness, of roughness",
+    "best surface, roughness": "Roughcast `best`, by roughness, of roughness",
     **{f"level {i}{s}": f"basis_universal level {i}{s and ', C interface' + s}" for i in (0, 1) for s in ("", " with statistics")},
-    "level 2": "basis_universal level 2",
+    **{f"level {i}, roughness": f"basis_universal level {i}, of roughness" for i in (0, 1)},
+    "copy in place": "copy: the same as the next, into memory that was written before",
+    "copy of moments": "copy: the map read, as many bytes written as means and K have",
+    "copy of shape": "copy: the map read, as many bytes written as all moments have",
     "pack both": "the same of both maps, one after the other",
 }
 
@@ -69,7 +74,8 @@ def head(results):
         lines += [f"**Of `--quick`, small maps and one run each: {', '.join(quick)}. That shows that it runs; its figures are none.**", ""]
     lines += [
         "Roughcast beside others that do parts of its work, on one machine, in alternating runs. `python3 benches/peers/run.py` writes this",
-        "page (Linux, 25 minutes; needs Rust, a C++ compiler, Python 3.10 with venv): it installs OpenImageIO from PyPI into a",
+        "page (Linux, 30 minutes; needs Rust, a C++ compiler, Python 3.10 with venv, and `ktx` of KTX-Software 4.4 or later on the",
+        "PATH, in whose place a stand-in is timed where there is none): it installs OpenImageIO from PyPI into a",
         "scratch environment under `target/peers`, builds, makes the inputs, measures, and prints the same tables.",
         "`--only PART` measures one of encoders, kernels, decoders, whole, growth, memory again.",
         "",
@@ -80,12 +86,23 @@ def head(results):
         "## The machine",
         "",
     ]
-    lines += [f"- {fact}: {value}" for fact, value in results.get("machine", {}).items() if fact != "quick"]
-    lines += ["- commits: " + ", ".join(f"{name} {part['commit']}" for name, part in results.items() if "commit" in part)]
+    facts = {fact: None for name in SECTIONS if name in results for fact in results[name]["machine"]}
+    lines += [f"- {fact}: {told(fact, results)}" for fact in facts]
     lines += ["", "## What was promised", ""]
     verdicts = [[*row[:3], row[3] if row[3] == "met" else f"**{row[3]}**"] for row in bars(results)]
     lines += [table(["", "bound", "measured", ""], verdicts)]
     return "\n".join(lines)
+
+
+def told(fact, results):
+    """What the parts say of it: once if they agree."""
+    values = {}
+    for name in SECTIONS:
+        if name in results:
+            values.setdefault(results[name]["machine"].get(fact, "?"), []).append(name)
+    if len(values) == 1:
+        return next(iter(values))
+    return "; ".join(f"{value} ({', '.join(names)})" for value, names in values.items())
 
 
 def square(size):
@@ -97,16 +114,18 @@ def encoders(part):
     known = {} if "failed" in lobes else lobes
     lobe = lambda name: [f"{mean(row[name] for row in known.values()):.4f}" if known and name in next(iter(known.values())) else "-"]
     same = {"level 0 with statistics": "level 0", "level 1 with statistics": "level 1"}
+    more = lambda name: [rate(part, name), *lobe(same.get(name, name))]
     lines = [
         f"## UASTC: one level of {square(part['size'])}",
         "",
         "`--only encoders`. From texels in memory to blocks in memory; normals. basis_universal also wraps its blocks into a file in that time,",
         "which cannot be left out of one call. Its C interface computes PSNR, SSIM and",
         "PSNR-HVS-M on the side and cannot be told not to; without it is the C++ function underneath, told not to. The bars",
-        "name the latter, which is the faster. Lobe errors are means of real normal maps, levels 1 to 4, alpha 0.2, baked to ellipses",
+        "name the latter, which is the faster. A bake encodes normals by direction, roughness with occlusion and metal by roughness, all",
+        "else by colour. Lobe errors are means of real normal maps, levels 1 to 4, alpha 0.2, baked to ellipses",
         "whose normals alone are encoded" + (f"; of half floats it is {lobe('half floats')[0]}." if known else "."),
         "",
-        timed(part["times"], "level 0", lambda name: lobe(same.get(name, name)), ["lobe error"]),
+        timed(part["times"], "level 0", more, ["Mtexel/s", "lobe error"]),
         "",
         "How near decoded texels are to their source (PSNR of red, green and blue in dB by the encoders that fit colours, 99 for no",
         "difference; angles of normals, root mean square in degrees, by those that fit directions):",
@@ -125,18 +144,42 @@ def encoders(part):
     ]
     rows.append(["mean", *means(psnr, "psnr"), *means(angle, "degrees")])
     header = ["", "`fast` dB", "`best` dB", "level 0 dB", "level 1 dB", "level 2 dB"]
-    return "\n".join([*lines, table([*header, "`fast` °", "`best` °", "level 0 °", "level 1 °", "level 2 °"], rows)])
+    lines += [table([*header, "`fast` °", "`best` °", "level 0 °", "level 1 °", "level 2 °"], rows)]
+    green = ["fast surface", "best surface", "level 0", "level 1", "level 2"]
+    rows = [
+        [name, *[f"{row[e]['green']:.1f}" for e in green]] for name, row in part["quality"].items() if "green" in row["level 0"]
+    ]
+    lines += ["", "The same of green alone, where roughness is, by the encoder of roughness (occlusion and metal count for a quarter):", ""]
+    return "\n".join([*lines, table(header, [*rows, ["mean", *means(green, "green")]])])
+
+
+def rate(part, name):
+    """Million texels of the largest level in a second."""
+    wall = part["times"][name].get("wall")
+    return f"{part['size'] ** 2 / 1e6 / wall:.1f}" if wall else "-"
 
 
 def kernels(part):
+    texels = part["size"] ** 2
+    # Three bytes a texel are read; coarser levels have a third of the texels.
+    bandwidth = lambda name, size: (3 + size / 3) * texels / 1e9 / part["times"][name]["wall"]
+    sizes = {"copy in place": 20, "copy of moments": 20, "moments": 20, "copy of shape": 56, "shape": 56}
+    beside = lambda name: ratio(part["times"], name, f"copy of {name}")
+    more = lambda name: [
+        rate(part, name),
+        f"{bandwidth(name, sizes[name]):.1f}" if "wall" in part["times"][name] else "-",
+        f"{beside(name):.2f}" if beside(name) else "-",
+    ]
+    in_place = ratio(part["times"], "moments", "copy in place")
     return "\n".join([
         f"## From a normal map to its pyramid: {square(part['size'])}",
         "",
         "`--only kernels`. From 8-bit texels in memory to the means and covariances K (20 bytes a texel) of all coarser levels, or with the moments",
-        "of shape (56 bytes); the copies read the input and write as many bytes as the levels have. All into new memory, on two threads, in the",
-        "second run of a process. Nothing is encoded and no lobe is fitted, so there is no lobe error.",
+        "of shape (56 bytes). On two threads, in the second run of a process. All but the first copy write to memory that is new, as a bake",
+        "does: the system clears it page by page, which takes longer than the copy. Beside a copy that writes where something was before,",
+        f"means and K take {in_place:.1f} times as long. Nothing is encoded and no lobe is fitted, so there is no lobe error." if in_place else "",
         "",
-        timed(part["times"], "copy of moments"),
+        timed(part["times"], "copy of moments", more, ["Mtexel/s", "GB/s", "ratio to its copy"]),
     ])
 
 
@@ -145,7 +188,8 @@ def decoders(part):
         f"## Decoders: {square(part['size'])} normals",
         "",
         "`--only decoders`. From a file in memory to 8-bit texels. Roughcast decodes PNG with `png` (through `image`) and JPEG with",
-        "`zune-jpeg`. Decoding is exact, or for JPEG within rounding: lobe errors do not depend on it.",
+        "`zune-jpeg`, to which `image` moved from `jpeg-decoder` in 0.25. Decoding is exact, or for JPEG within rounding: lobe errors do",
+        "not depend on it.",
         "",
         timed(part["times"], "PNG, png"),
     ])
@@ -155,16 +199,18 @@ def whole(part):
     found = part["errors"]
     model = {"two textures": "isotropic", "default": "default", "pack": "none", "pack both": "none"}
     written = lambda name: part["times"][name]["written"]
-    more = lambda name: [f"{written(name):.1f}" if written(name) else "-", lobes(found.get(model.get(name)))]
+    more = lambda name: [rate(part, name), f"{written(name):.1f}" if written(name) else "-", lobes(found.get(model.get(name)))]
     pack = "`ktx create --encode uastc --uastc-quality 0 --zstd 5`" if part["ktx"] else PACK
     return "\n".join([
         f"## A whole bake: one material, normal and roughness of {square(part['size'])}",
         "",
         "`--only whole`. From PNGs on disk to files on disk, mips included. `maketx` and the first `ktx create` take the normal map only. Lobe errors",
-        "(mean of all levels, worst level) are what the bake itself reports of what engines decode after encoding; plain",
-        "mips, as `ktx create` makes them, keep the material's roughness. What `maketx` writes is for renderers that fold it themselves.",
+        "(mean of all levels, worst level) are those by which the default bake chose, of blocks as engines decode them: of one width (isotropic),",
+        "of what it took, and of plain mips whose material keeps its roughness. The last stand beside `ktx create`, which makes",
+        "such mips, though of Roughcast's blocks and not of its own. What `maketx` writes is for renderers that fold it themselves.",
+        "Mtexel/s are texels of level 0 of one map; what copies reach is among the kernels above.",
         "",
-        timed(part["times"], "two textures", more, ["written MiB", "lobe error"], pack),
+        timed(part["times"], "two textures", more, ["Mtexel/s", "written MiB", "lobe error"], pack),
     ])
 
 
@@ -198,14 +244,14 @@ def growth(part):
         "",
         "![Time of bakes against the side of maps and against the number of materials](pictures/growth.svg)",
         "",
-        table(["", *with_last("lobe error"), "maketx: wall s", "level 0 and zstd: wall s", "runs"], sizes),
+        table(["", *with_last("lobe error"), "maketx: wall s", f"{'`ktx create`' if part['ktx'] else 'its stand-in'}: wall s", "runs"], sizes),
         "",
         "Materials of 512 x 512, each in a document of its own, in one bake; busy is the share of both cores. Every material has the texels of",
         "the row 512 x 512 above, and its lobe errors.",
         "",
         table(["", *with_last("busy %"), "runs"], counts),
         "",
-        "Ten materials of the largest maps of the section above at a time: "
+        "Ten materials of 4096 x 4096 in one bake, which works on as many at a time as fit into 1 GiB (`src/plan/room.rs`), else one: "
         + "; ".join(f"{form} {run['peak']:.0f} MiB, {seconds(run['wall'])} s" for form, run in part["ten"].items() if "wall" in run) + ".",
     ])
 

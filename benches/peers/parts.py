@@ -86,11 +86,13 @@ class Bench:
 
 def encoders(bench):
     """UASTC, one level: time, then what is left of real maps."""
-    contender = lambda name, rounds=None: bench.inner("encode", name, bench.normal(), rounds=rounds)
     names = ["fast", "level 0", "level 0 with statistics", "best", "level 1", "level 1 with statistics", "fast rgb", "best rgb"]
     # The slowest is shown, and no bar names it.
-    slow = {"level 1 with statistics": 1}
-    times = alternate({name: contender(name, slow.get(name)) for name in names}, bench.rounds)
+    rounds = {"level 1 with statistics": 1}
+    contenders = {name: bench.inner("encode", name, bench.normal(), rounds=rounds.get(name)) for name in names}
+    surfaces = ["fast surface", "level 0", "best surface", "level 1"]
+    contenders |= {f"{name}, roughness": bench.inner("encode", name, bench.surface()) for name in surfaces}
+    times = alternate(contenders, bench.rounds)
     print("  distance from the source, lobe errors")
     maps = bench.real("normal", "_nor_", "rough", "depth", "_arm_")
     few = bench.real("sand_normal", "water_normal", "wool_normal", "bricks_normal", "aluminium_normal")
@@ -115,7 +117,7 @@ def printed(bench, *argv):
 
 def kernels(bench):
     """The pyramid's kernel beside copies."""
-    names = ["copy of moments", "moments", "copy of shape", "shape"]
+    names = ["copy in place", "copy of moments", "moments", "copy of shape", "shape"]
     contenders = {name: bench.inner("kernel", name, bench.normal()) for name in names}
     return {"size": bench.size, "times": alternate(contenders, bench.rounds if bench.quick else 9)}
 
@@ -147,8 +149,8 @@ def whole(bench):
 
 
 def errors(bench):
-    """Lobe errors by level, as decoded from blocks, of each model in full size and of what a bake takes (`default`), by the report
-    of the last one; or nothing."""
+    """Lobe errors by level, as decoded from blocks, of each model in full size and of what a bake takes (`default`), as the default
+    bake judged them before it chose; or nothing."""
     if not bench.report.exists():
         return {}
     choice = json.loads(bench.report.read_text())["assets"][0]["layers"][0]["choice"]
@@ -162,7 +164,7 @@ def errors(bench):
 def growth(bench):
     """Time and memory against size and number of materials."""
     counts = [1, 10, 100] + ([] if bench.quick else [200, 1000])
-    result = {"sizes": {}, "counts": {}}
+    result = {"sizes": {}, "counts": {}, "ktx": bool(bench.tools.ktx)}
     for size in bench.sizes():
         print(f"  {size} x {size}")
         rounds = 1 if bench.quick or size > 4096 else 3 if size > 2048 else 5

@@ -60,8 +60,12 @@ def build(tools):
 
 def cxx_flags():
     """As basis_universal's own CMakeLists.txt has them, which its crate does not: without assertions, with SSE 4.1."""
-    sse = ["-DBASISU_SUPPORT_SSE=1", "-msse4.1"] if platform.machine() in ("x86_64", "AMD64") else []
+    sse = ["-DBASISU_SUPPORT_SSE=1", "-msse4.1"] if is_x86() else []
     return " ".join(["-DNDEBUG", *sse])
+
+
+def is_x86():
+    return platform.machine() in ("x86_64", "AMD64")
 
 
 def inputs(tools, data, size, count):
@@ -90,7 +94,7 @@ def machine(tools, cores, load):
     facts["load average before the run"] = load
     facts["compilers"] = f"{text(['rustc', '--version'])}; {text(['c++', '--version']).split(chr(10))[0]}"
     facts["Roughcast"] = text([tools.roughcast, "--version"]).removeprefix("roughcast ")
-    facts["basis_universal"] = "2.50 (basisu_c_sys 0.9.1), SSE 4.1, without assertions"
+    facts["basis_universal"] = f"2.50 (basisu_c_sys 0.9.1), {'SSE 4.1, ' if is_x86() else ''}without assertions"
     facts["OpenImageIO"] = WHEELS[0].split("==")[1]
     facts["KTX-Software"] = text([tools.ktx, "--version"]) if tools.ktx else "no `ktx` on this machine: a stand-in"
     return facts

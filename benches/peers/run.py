@@ -38,18 +38,19 @@ def main():
 
     stored = tools.work / "results.json"
     results = json.loads(stored.read_text()) if stored.exists() else {}
-    results["machine"] = machine(tools, cores, load)
+    facts = machine(tools, cores, load)
     bench = Bench(tools, options.data if options.data.is_dir() else None, options.quick)
     step("inputs")
     for size in bench.sizes() if {"growth", "memory"} & set(options.only or PARTS) else [bench.size]:
         bench.folder(size)
     for name in options.only or PARTS:
         step(name)
-        results[name] = PARTS[name](bench) | {"quick": options.quick, "commit": commit()}
+        results[name] = PARTS[name](bench) | {"quick": options.quick, "machine": facts | {"commit": commit()}}
         stored.write_text(json.dumps(results, indent=1))
         print(page.SECTIONS[name](results[name]), flush=True)
-    # Where parts were measured elsewhere, a page without them would lose what docs/performance.md says of them.
-    lacking = [name for name in PARTS if name not in results]
+    # Where parts were measured elsewhere, a page without them would lose what docs/performance.md says of them; and figures of
+    # small maps are none.
+    lacking = [name for name in PARTS if results.get(name, {"quick": True})["quick"]]
     docs = tools.work if lacking else ROOT / "docs"
     (docs / "performance.md").write_text(page.page(results))
     if "growth" in results:

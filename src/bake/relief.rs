@@ -42,7 +42,7 @@ impl Relief {
     }
 
     /// Stores in each of `out` what `of` makes of the texel's offset in row `y` and of the number `beside` it, as
-    /// [`map_row`] does.
+    /// `simd::map_row` does.
     pub fn map_offsets<T, const M: usize>(
         &self,
         y: u32,

@@ -1,7 +1,9 @@
-//! The synthetic maps of the other benches.
+//! The synthetic maps and the copy of the other benches.
 
 #![allow(dead_code, reason = "not all of it is needed here")]
 
+#[path = "../../common/copy.rs"]
+pub mod copy;
 #[path = "../../common/maps.rs"]
 pub mod maps;
 #[path = "../../../examples/generate_fixtures/fixtures/noise.rs"]

@@ -23,13 +23,15 @@ pub enum Encoder {
 }
 
 impl Encoder {
-    /// By its name: `fast`, `best`, `fast rgb`, `best rgb`, `level 0`, `level 0 with statistics` and so on.
+    /// By its name: `fast`, `best`, `fast rgb`, `fast surface` and so on, `level 0`, `level 0 with statistics` and so on.
     fn named(name: &str) -> Option<Self> {
         Some(match name {
             "fast" => Self::Roughcast(Metric::Direction, Effort::Fast),
             "best" => Self::Roughcast(Metric::Direction, Effort::Best),
             "fast rgb" => Self::Roughcast(Metric::Rgb, Effort::Fast),
             "best rgb" => Self::Roughcast(Metric::Rgb, Effort::Best),
+            "fast surface" => Self::Roughcast(Metric::Surface, Effort::Fast),
+            "best surface" => Self::Roughcast(Metric::Surface, Effort::Best),
             _ => {
                 let level = name.strip_prefix("level ")?;
                 match level.strip_suffix(" with statistics") {

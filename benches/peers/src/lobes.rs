@@ -23,12 +23,11 @@ const LEVELS: std::ops::RangeInclusive<u32> = 1..=4;
 /// Texels of each level that are judged.
 const TEXELS: usize = 64;
 /// What makes the blocks of normals.
-const ENCODERS: [(&str, Encoder); 5] = [
+const ENCODERS: [(&str, Encoder); 4] = [
     ("fast", Encoder::Roughcast(Metric::Direction, Effort::Fast)),
     ("best", Encoder::Roughcast(Metric::Direction, Effort::Best)),
     ("level 0", Encoder::Basisu(0, Interface::Plain)),
     ("level 1", Encoder::Basisu(1, Interface::Plain)),
-    ("level 2", Encoder::Basisu(2, Interface::Plain)),
 ];
 /// Not encoded, then [`ENCODERS`].
 const COLUMNS: usize = 1 + ENCODERS.len();

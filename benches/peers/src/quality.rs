@@ -1,5 +1,6 @@
 //! How near decoded blocks are to their source, map by map.
 
+use std::ops::Range;
 use std::path::Path;
 
 use roughcast::map::Image;
@@ -10,10 +11,13 @@ use crate::Failure;
 use crate::basisu::{self, Interface};
 use crate::encoders::{Encoder, read};
 
-/// What is compared, by the names of the table. PSNR goes by those that fit colours, angles by those that fit directions.
-const ENCODERS: [(&str, Encoder); 7] = [
+/// What is compared, by the names of the table. PSNR goes by those that fit colours, that of green by those that fit roughness,
+/// angles by those that fit directions.
+const ENCODERS: [(&str, Encoder); 9] = [
     ("fast rgb", Encoder::Roughcast(Metric::Rgb, Effort::Fast)),
     ("best rgb", Encoder::Roughcast(Metric::Rgb, Effort::Best)),
+    ("fast surface", Encoder::Roughcast(Metric::Surface, Effort::Fast)),
+    ("best surface", Encoder::Roughcast(Metric::Surface, Effort::Best)),
     ("fast", Encoder::Roughcast(Metric::Direction, Effort::Fast)),
     ("best", Encoder::Roughcast(Metric::Direction, Effort::Best)),
     ("level 0", Encoder::Basisu(0, Interface::Plain)),
@@ -21,7 +25,8 @@ const ENCODERS: [(&str, Encoder); 7] = [
     ("level 2", Encoder::Basisu(2, Interface::Plain)),
 ];
 
-/// PSNR of each encoder on each image, and on normal maps (by their name) the angle between normals.
+/// PSNR of each encoder on each image; on normal maps (by their name) the angle between normals, on all others the PSNR of
+/// green.
 ///
 /// # Errors
 /// Where an image cannot be read or encoded.
@@ -36,9 +41,11 @@ pub fn measure(images: &[&str]) -> Result<Value, Failure> {
         let mut row = Map::new();
         for (encoder, of) in ENCODERS {
             let decoded = of.decoded(&rgba, width, height)?;
-            let mut found = json!({ "psnr": psnr(&rgba, &decoded) });
+            let mut found = json!({ "psnr": psnr(&rgba, &decoded, 0..3) });
             if is_normal {
                 found["degrees"] = json!(degrees(&rgba, &decoded));
+            } else {
+                found["green"] = json!(psnr(&rgba, &decoded, 1..2));
             }
             row.insert(encoder.to_owned(), found);
         }
@@ -48,7 +55,7 @@ pub fn measure(images: &[&str]) -> Result<Value, Failure> {
 }
 
 /// Whether a map of that name holds normals.
-pub fn is_normal_map(name: &str) -> bool {
+fn is_normal_map(name: &str) -> bool {
     let name = name.to_ascii_lowercase();
     name.contains("normal") || name.contains("_nor_")
 }
@@ -65,10 +72,10 @@ fn pairs<'a>(rgba: &'a [u8], decoded: &'a Image) -> impl Iterator<Item = [[f64; 
 /// What stands for no difference, in dB: more than 8 bits can tell.
 const EXACT: f64 = 99.0;
 
-/// Of red, green and blue together, in dB.
-fn psnr(rgba: &[u8], decoded: &Image) -> f64 {
-    let squares: f64 = pairs(rgba, decoded).map(|[a, b]| (0..3).map(|c| (a[c] - b[c]).powi(2)).sum::<f64>()).sum();
-    let mean = squares / (rgba.len() / 4 * 3) as f64;
+/// Of these channels together, in dB.
+fn psnr(rgba: &[u8], decoded: &Image, channels: Range<usize>) -> f64 {
+    let square = |[a, b]: [[f64; 3]; 2]| channels.clone().map(|c| (a[c] - b[c]).powi(2)).sum::<f64>();
+    let mean = pairs(rgba, decoded).map(square).sum::<f64>() / (rgba.len() / 4 * channels.len()) as f64;
     (10.0 * (255.0 * 255.0 / mean).log10()).min(EXACT)
 }
 
