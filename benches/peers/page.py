@@ -263,6 +263,7 @@ def memory(part):
         "",
         "`--only memory`. `roughcast map --roughness-factor 0.4`, with `--model isotropic` or `anisotropic`: " + "; ".join(told) + ". Above, assets",
         "have a roughness map of three channels as large as the normal map beside it, and by default PNGs of level 0 for engines without KTX2.",
+        "A model that is asked for is not judged; lobe errors of these normals are in the last row of sizes above.",
     ])
 
 

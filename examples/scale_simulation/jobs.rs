@@ -17,10 +17,10 @@ pub struct Kind {
 
 /// One texture set each, on one thread.
 pub const KINDS: [Kind; 4] = [
-    Kind { name: "128^2", share: 0.30, bake: 0.12, cached: 0.007, inputs: 59_810.0, kept: 79_676.0 },
-    Kind { name: "1024^2", share: 0.40, bake: 1.14, cached: 0.010, inputs: 2_454_732.0, kept: 4_254_525.0 },
-    Kind { name: "2048^2", share: 0.25, bake: 3.07, cached: 0.022, inputs: 5_167_064.0, kept: 11_382_637.0 },
-    Kind { name: "4096^2", share: 0.05, bake: 12.44, cached: 0.058, inputs: 10_806_764.0, kept: 42_719_283.0 },
+    Kind { name: "128^2", share: 0.30, bake: 0.08, cached: 0.003, inputs: 59_810.0, kept: 80_459.0 },
+    Kind { name: "1024^2", share: 0.40, bake: 0.37, cached: 0.005, inputs: 2_189_621.0, kept: 4_271_294.0 },
+    Kind { name: "2048^2", share: 0.25, bake: 0.83, cached: 0.008, inputs: 4_448_648.0, kept: 12_349_377.0 },
+    Kind { name: "4096^2", share: 0.05, bake: 2.76, cached: 0.017, inputs: 9_118_828.0, kept: 42_887_502.0 },
 ];
 
 /// Shorter actions are grouped, as `bake --remote` groups jobs.
