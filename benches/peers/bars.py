@@ -67,6 +67,7 @@ def kernels(part):
     times = part["times"]
     return [
         at_most("mean and K of all levels beside a copy of the same bytes", 4, ratio(times, "moments", "copy of moments")),
+        at_most("the same beside a copy to where something was before", 4, ratio(times, "moments", "copy in place")),
         at_most("with moments of shape beside a copy of the same bytes", 8, ratio(times, "shape", "copy of shape")),
     ]
 
@@ -93,7 +94,7 @@ def growth(part):
         rows.append(at_most(f"ten large maps at a time, {form}: peak memory, MiB", 2048, peak, "{:.0f}"))
         if "200" in part["counts"]:
             busy = share(part["counts"]["200"][form])
-            rows.append(at_least(f"200 materials of 512 x 512, {form}: share of both cores, %", 90, busy, "{:.0f}"))
+            rows.append(at_least(f"200 materials of 512 x 512, {form}: share of both cores, %", 90, busy, "{:.1f}"))
     return rows
 
 

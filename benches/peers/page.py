@@ -233,7 +233,7 @@ def growth(part):
     counts = []
     for count, point in part["counts"].items():
         two, default = point["two textures"], point.get("default", {"failed": "-"})
-        busy = lambda run: [f"{share(run):.0f}" if "cpu" in run else ""]
+        busy = lambda run: [f"{share(run):.1f}" if "cpu" in run else ""]
         counts.append([count, *cells(two, busy(two)), *cells(default, busy(default)), two.get("runs", 0)])
     header = [f"{form}: {what}" for form in ("two textures", "default") for what in ("wall s", "CPU s", "peak MiB", "{}")]
     with_last = lambda last: [column.format(last) for column in header]
