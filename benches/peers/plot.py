@@ -11,13 +11,8 @@ COLOURS = {
     "dark": {"ink": "#e8ebef", "soft": "#9aa3ae", "grid": "#333a44", "paper": "#14181d",
              "two": "#6cbcf2", "default": "#3f7fb0", "maketx": "#f0a35e", "pack": "#c49be0"},
 }
-# The name of each line in the results, its class and what stands beside it.
-LINES = [
-    ("two textures", "two", "two textures"),
-    ("default", "default", "default"),
-    ("maketx", "maketx", "maketx"),
-    ("pack", "pack", "level 0 + zstd"),
-]
+# The name of each line in the results, and its class.
+LINES = {"two textures": "two", "default": "default", "maketx": "maketx", "pack": "pack"}
 
 
 def growth(results):
@@ -26,18 +21,19 @@ def growth(results):
         ("Time against the side of one material's maps", "texels", results["sizes"]),
         ("Time against materials of 512 x 512", "materials", results["counts"]),
     ]
+    names = {"pack": "ktx create" if results["ktx"] else "ktx stand-in"}
     width = 2 * WIDTH + GAP
     parts = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {HEIGHT}" width="{width}" height="{HEIGHT}">']
     parts += [f"<style>{style()}</style>", '<rect class="paper" width="100%" height="100%"/>']
     for index, (title, unit, points) in enumerate(charts):
-        parts.append(f'<g transform="translate({index * (WIDTH + GAP)} 0)">{chart(title, unit, points)}</g>')
+        parts.append(f'<g transform="translate({index * (WIDTH + GAP)} 0)">{chart(title, unit, points, names)}</g>')
     return "".join(parts) + "</svg>\n"
 
 
 def style():
     """Colours of both schemes, and what has them."""
     names = lambda scheme: ";".join(f"--{name}:{value}" for name, value in COLOURS[scheme].items())
-    lines = "".join(f".{c}{{stroke:var(--{c});stroke-width:1.8}}text.{c}{{fill:var(--{c});stroke:none}}" for _, c, _ in LINES)
+    lines = "".join(f".{c}{{stroke:var(--{c});stroke-width:1.8}}text.{c}{{fill:var(--{c});stroke:none}}" for c in LINES.values())
     return (
         f"svg{{{names('light')}}}@media(prefers-color-scheme:dark){{svg{{{names('dark')}}}}}"
         "text{font:11px system-ui,sans-serif;fill:var(--ink)}.title{font-weight:600;font-size:13px}"
@@ -45,14 +41,14 @@ def style():
     )
 
 
-def chart(title, unit, points):
-    """One chart; `points` are summaries by name, by size or number."""
+def chart(title, unit, points, names):
+    """One chart; `points` are summaries by name, by size or number. Lines have their own name unless `names` has another."""
     xs = sorted(int(x) for x in points)
     series = []
-    for name, kind, label in LINES:
+    for name, kind in LINES.items():
         known = [(x, points[str(x)][name]["wall"]) for x in xs if "wall" in points[str(x)].get(name, {})]
         if known:
-            series.append((kind, label, known))
+            series.append((kind, names.get(name, name), known))
     walls = [wall for _, _, known in series for _, wall in known] or [1.0]
     low, high = math.floor(math.log10(min(walls))), math.ceil(math.log10(max(walls)) + 1e-9)
     first, last = math.log(xs[0]), math.log(max(xs[-1], xs[0] + 1))
@@ -70,8 +66,8 @@ def chart(title, unit, points):
     free = HEIGHT
     for kind, label, known in sorted(series, key=lambda s: at_y(s[2][-1][1]), reverse=True):
         line = "L".join(f"{at_x(x):.1f} {at_y(wall):.1f}" for x, wall in known)
-        # Labels from below, none over another.
+        # Labels from below beside the chart, none over another nor over a line.
         free = min(at_y(known[-1][1]) + 4, free - 13)
         parts.append(f'<path class="{kind}" d="M{line}"/>')
-        parts.append(f'<text class="{kind}" x="{at_x(known[-1][0]) + 6:.1f}" y="{free:.1f}">{label}</text>')
+        parts.append(f'<text class="{kind}" x="{end + 6}" y="{free:.1f}">{label}</text>')
     return "".join(parts)
