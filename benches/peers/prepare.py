@@ -65,6 +65,7 @@ def cxx_flags():
 
 
 def is_x86():
+    """Whether this machine has SSE."""
     return platform.machine() in ("x86_64", "AMD64")
 
 
