@@ -162,7 +162,7 @@ fn errors_by_level(image: &Image, alpha: f32, texels: usize) -> Result<Vec<Means
 
 /// The KTX2 files of a bake: a texture's content and its bytes.
 fn files_of(baked: &BareBake) -> Vec<(Content, Vec<u8>)> {
-    baked.textures.iter().map(|t| (t.content, t.chain.to_ktx2(&[]))).collect()
+    baked.textures.iter().map(|t| (t.content, t.chain.to_ktx2(&[]).unwrap())).collect()
 }
 
 fn decoded(files: &[(Content, Vec<u8>)], level: u32) -> Result<Decoded, Box<dyn Error>> {

@@ -74,7 +74,8 @@ fn errors_by_level(image: &Image, alpha: f32, texels: usize) -> Result<Vec<Row>,
     let settings =
         Settings { model: Model::Anisotropic, target: Target::Float, provenance: false, ..Settings::default() };
     let baked = bake_map(&relief, Some(&own), &settings)?;
-    let files: Vec<_> = baked.textures.iter().map(|t| (t.content, t.chain.to_ktx2(&[]))).collect();
+    let files = baked.textures.iter().map(|t| Ok((t.content, t.chain.to_ktx2(&[])?)));
+    let files = files.collect::<Result<Vec<_>, Box<dyn Error>>>()?;
     LEVELS
         .filter(|level| image.width.max(image.height) >> level > 0)
         .map(|level| {
@@ -119,7 +120,7 @@ fn encoded(normals: &Image, format: Format, metric: Metric, effort: Effort) -> R
         }
     };
     let level = encode(&Texels { width, height, row: &row }, format, metric, effort)?;
-    let levels = vec![StoredLevel::new(level, format, effort)];
-    let file = Ktx2Writer { format, width, height, levels, keys: &[] }.into_bytes();
+    let levels = vec![StoredLevel::new(level, format, effort)?];
+    let file = Ktx2Writer { format, width, height, levels, keys: &[] }.into_bytes()?;
     Ok(Ktx2::parse(&file)?.decode_level(0)?)
 }

@@ -73,8 +73,8 @@ fn saved(before: usize, after: usize) -> f64 {
 fn measured(blocks: Vec<u8>, texels: &Texels<'_>, effort: Effort) -> Result<(usize, f64), Box<dyn Error>> {
     let &Texels { width, height, .. } = texels;
     let format = Format::UastcRgb;
-    let levels = vec![StoredLevel::new(blocks, format, effort)];
-    let file = Ktx2Writer { format, width, height, levels, keys: &[] }.into_bytes();
+    let levels = vec![StoredLevel::new(blocks, format, effort)?];
+    let file = Ktx2Writer { format, width, height, levels, keys: &[] }.into_bytes()?;
     let decoded = Ktx2::parse(&file)?.decode_level(0)?;
     let source = texels.to_rgba8();
     let mut error = 0.0;

@@ -65,7 +65,7 @@ fn means(image: &Image, alpha: f32, judged_as: Family, settings: Settings, level
 fn decoded(baked: &BareBake, level: u32, own: Roughness) -> Decoded {
     let of = |content| {
         let texture = baked.textures.iter().find(|t| t.content == content)?;
-        let bytes = texture.chain.to_ktx2(&[]);
+        let bytes = texture.chain.to_ktx2(&[]).unwrap();
         Some(Ktx2::parse(&bytes).unwrap().decode_level(level).unwrap())
     };
     let roughness = of(Content::Roughness);

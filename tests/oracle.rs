@@ -92,7 +92,7 @@ fn compare(normals: Image, roughness: Option<Image>, factor: f32, target: Target
     assert_eq!(relief.outliers(), Outliers::default());
     let contents: Vec<Content> = baked.textures.iter().map(|t| t.content).collect();
     assert_eq!(contents, [Content::Normal, Content::Roughness, Content::Anisotropy]);
-    let files: Vec<Vec<u8>> = baked.textures.iter().map(|t| t.chain.to_ktx2(&[])).collect();
+    let files: Vec<Vec<u8>> = baked.textures.iter().map(|t| t.chain.to_ktx2(&[]).unwrap()).collect();
     for level in 0..=6 {
         let [normal, surface, axes] =
             [0, 1, 2].map(|t| ktx2::Ktx2::decode_level(&Ktx2::parse(&files[t]).unwrap(), level).unwrap());

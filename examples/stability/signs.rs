@@ -54,7 +54,7 @@ fn baked(level: &Level<roughcast::pyramid::Moments>) -> Result<(Image, Vec<Strin
     let settings = Settings { model: Model::Anisotropic, ..Settings::default() };
     let baked = bake_map(&relief, Some(&OwnRoughness { image: None, factor: 0.3 }), &settings)?;
     let texture = baked.textures.iter().find(|t| t.content == Content::Anisotropy).ok_or("no anisotropy")?;
-    let axes = Ktx2::parse(&texture.chain.to_ktx2(&[]))?.decode_level(LEVEL)?;
+    let axes = Ktx2::parse(&texture.chain.to_ktx2(&[])?)?.decode_level(LEVEL)?;
     Ok((axes, baked.notes))
 }
 

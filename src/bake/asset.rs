@@ -23,6 +23,7 @@ use crate::gltf::material::{MaterialError, materials};
 use crate::gltf::rewrite::{NewImage, NewTexture, add_textures, declare};
 use crate::gltf::texture::ImageLocation;
 use crate::gltf::uri::{encode_path, relative_path};
+use crate::texture::EncodeError;
 use crate::texture::ktx2::{Provenance, SourceDigest};
 
 /// Why an asset cannot be baked. Messages name material and texture; the caller adds the file.
@@ -85,7 +86,7 @@ pub fn bake(source: &Source<'_>, settings: &Settings, advance: &dyn Fn(f32)) -> 
     // References that cannot be followed are an error before any work is done.
     container::files(source.document.json())?;
     source.check_buffers()?;
-    let geometry = Geometry::new(&root, source, settings);
+    let geometry = Geometry::new(&root, source, settings)?;
     let flat: Vec<LayerReport> = materials.iter().filter(|m| m.layers.is_empty()).map(LayerReport::flat).collect();
     let plans = plan(&root, materials, settings, &geometry)?;
     let mut assembly = Assembly::new(source, settings)?;
@@ -156,10 +157,10 @@ impl<'a> Assembly<'a> {
             false => Vec::new(),
         };
         let with_file = |mut texture: JobTexture| {
-            let ktx2 = texture.chain.take_ktx2(&keys(&texture));
-            (texture, ktx2)
+            let ktx2 = texture.chain.take_ktx2(&keys(&texture)).map_err(EncodeError::from).map_err(JobError::from)?;
+            Ok((texture, ktx2))
         };
-        let textures: Vec<_> = output.textures.into_par_iter().map(with_file).collect();
+        let textures = output.textures.into_par_iter().map(with_file).collect::<Result<Vec<_>, JobError>>()?;
         for (texture, ktx2) in textures {
             self.add_texture(texture, ktx2)?;
         }

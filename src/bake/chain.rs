@@ -4,6 +4,7 @@ use std::mem;
 
 use super::png::fallback;
 use super::settings::{Form, Settings};
+use crate::memory::{self, OutOfMemory};
 use crate::pyramid::level_sizes;
 use crate::texture::ktx2::{Key, Ktx2Writer, StoredLevel, Storing};
 use crate::texture::uastc::{Effort, Metric};
@@ -79,31 +80,49 @@ impl Encoding {
     }
 }
 
-/// Maps whose common grid would be larger than an image may be.
+/// Why maps have no common grid.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("expected maps whose common grid has at most {limit} texels, found {width} x {height}; scale one of them down")]
-pub struct GridError {
-    /// Columns.
-    pub width: u32,
-    /// Rows.
-    pub height: u32,
-    /// The limit on texels.
-    pub limit: u64,
+pub enum GridError {
+    /// It would be larger than an image may be.
+    #[error(
+        "expected maps whose common grid has at most {limit} texels, found {width} x {height}; scale one of them down"
+    )]
+    TooLarge {
+        /// Columns.
+        width: u32,
+        /// Rows.
+        height: u32,
+        /// The limit on texels.
+        limit: u64,
+    },
+    /// There is no memory for the levels over it.
+    #[error(transparent)]
+    OutOfMemory(#[from] OutOfMemory),
 }
 
 /// The smallest grid that holds all of `sizes` and that the target's blocks allow: KHR_texture_basisu and BCn want
 /// multiples of 4.
 ///
 /// # Errors
-/// [`GridError`] when it has more texels than the settings allow an image (and than rounding up can add).
+/// [`GridError`] when it has more texels than the settings allow an image (and than rounding up can add), or when there is no
+/// memory for what a bake keeps of its levels.
 pub fn grid(settings: &Settings, sizes: impl IntoIterator<Item = (u32, u32)>) -> Result<(u32, u32), GridError> {
     let (width, height) = sizes.into_iter().fold((1, 1), |a, b| (a.0.max(b.0), a.1.max(b.1)));
     let limit = settings.max_texels;
     if u64::from(width) * u64::from(height) > limit {
-        return Err(GridError { width, height, limit });
+        return Err(GridError::TooLarge { width, height, limit });
     }
+    memory::check(kept_bytes(u64::from(width) * u64::from(height), settings.rdo.is_some()))?;
     let is_whole = is_whole(settings.target.format(3), width, height);
     Ok(if !is_whole { (width.next_multiple_of(4), height.next_multiple_of(4)) } else { (width, height) })
+}
+
+/// About what a bake keeps at the default quality of the levels over a grid of `texels` beside its images: moments and own
+/// lobes up to level 1 of 4096^2, merged lobes up to level 1 of 8192^2. With `has_rdo` a level is held as RGBA8 beside three
+/// copies of its blocks.
+pub fn kept_bytes(texels: u64, has_rdo: bool) -> u64 {
+    let rewritten = if has_rdo { 7 * texels } else { 0 };
+    12 * texels.min(1 << 24) + 8 * texels.min(1 << 26) + rewritten
 }
 
 /// Whether level 0 may have the size.
@@ -142,11 +161,9 @@ fn encode_levels(
     let Encoding { format, effort, .. } = encoding;
     let mut levels = Vec::with_capacity(sizes.len());
     let mut encoded: Option<(Storing, Vec<u8>)> = None;
-    let compressed = |encoded: Option<(Storing, Vec<u8>)>| {
-        encoded.map(|(mut level, band)| {
-            level.push(&band);
-            level
-        })
+    let compressed = |encoded: Option<(Storing, Vec<u8>)>| match encoded {
+        Some((mut level, band)) => level.push(&band).map(|()| Some(level)),
+        None => Ok(None),
     };
     for (level, &(width, height)) in sizes.iter().enumerate() {
         // Whole blocks, and all of them where they look at each other.
@@ -156,17 +173,17 @@ fn encode_levels(
             let of_band = |y: u32, out: &mut [[f32; 4]]| row(level, first + y, out);
             let texels = Texels { width, height: rows.min(height - first), row: &of_band };
             let (band, last) = rayon::join(|| encode_band(&texels, encoding), || compressed(encoded.take()));
-            let storing = match last {
+            let storing = match last? {
                 Some(storing) if first > 0 => storing,
                 finished => {
-                    levels.extend(finished.map(Storing::finish));
-                    Storing::new(format.level_bytes(width, height), format, effort)
+                    levels.extend(finished.map(Storing::finish).transpose()?);
+                    Storing::new(format.level_bytes(width, height), format, effort)?
                 }
             };
             encoded = Some((storing, band?));
         }
     }
-    levels.extend(compressed(encoded).map(Storing::finish));
+    levels.extend(compressed(encoded)?.map(Storing::finish).transpose()?);
     Ok(levels)
 }
 
@@ -184,12 +201,18 @@ fn encode_band(texels: &Texels<'_>, encoding: Encoding) -> Result<Vec<u8>, Encod
 
 impl Chain {
     /// The KTX2 file of the chain.
-    pub fn to_ktx2(&self, keys: &[Key]) -> Vec<u8> {
+    ///
+    /// # Errors
+    /// [`OutOfMemory`].
+    pub fn to_ktx2(&self, keys: &[Key]) -> Result<Vec<u8>, OutOfMemory> {
         self.clone().take_ktx2(keys)
     }
 
-    /// The same, made of the bytes of the levels, which are gone then.
-    pub fn take_ktx2(&mut self, keys: &[Key]) -> Vec<u8> {
+    /// The KTX2 file of the chain, made of the bytes of the levels, which are gone then.
+    ///
+    /// # Errors
+    /// [`OutOfMemory`].
+    pub fn take_ktx2(&mut self, keys: &[Key]) -> Result<Vec<u8>, OutOfMemory> {
         let Self { format, width, height, .. } = *self;
         Ktx2Writer { format, width, height, levels: mem::take(&mut self.levels), keys }.into_bytes()
     }
@@ -218,7 +241,9 @@ mod tests {
             for encoding in [Encoding::of(&settings, 3), Encoding::of_normals(&settings)] {
                 let file = |most| {
                     let levels = encode_levels(&sizes, encoding, most, &row).unwrap();
-                    Ktx2Writer { format: encoding.format, width: 52, height: 36, levels, keys: &[] }.into_bytes()
+                    Ktx2Writer { format: encoding.format, width: 52, height: 36, levels, keys: &[] }
+                        .into_bytes()
+                        .unwrap()
                 };
                 let whole = file(1 << 20);
                 for most in [1, 500, 3000] {

@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use super::settings::Settings;
-use super::source::Source;
+use super::source::{Source, SourceError};
 use super::view::{Finest, View};
 use crate::bump::Frame;
 use crate::gltf::density::{NoDensity, density};
@@ -26,17 +26,23 @@ pub struct Geometry<'a> {
 
 impl<'a> Geometry<'a> {
     /// Reads the buffers if they are needed. One without data, such as the fallback of compressed ones, is empty.
-    pub fn new(root: &'a Value, source: &Source<'_>, settings: &Settings) -> Self {
+    ///
+    /// # Errors
+    /// Why a buffer with data cannot be read: without it the bake would be another one.
+    pub fn new(root: &'a Value, source: &Source<'_>, settings: &Settings) -> Result<Self, SourceError> {
         let count = root.get("buffers").and_then(Value::as_array).map_or(0, Vec::len);
-        let read = || (0..count).map(|index| source.buffer(index).unwrap_or_default()).collect();
+        let read = |index| match source.buffer(index) {
+            Err(SourceError::NoBuffer { .. }) => Ok(Vec::new()),
+            read => read,
+        };
         let main_direction = match settings.frame {
             Frame::MainDirection(m) => m,
             Frame::Natural | Frame::Unit => [0.0, 1.0, 0.0],
         };
         let (has_frame, view) = (settings.frame != Frame::Unit, settings.view);
-        let buffers = (has_frame || view.is_some()).then(read);
+        let buffers = (has_frame || view.is_some()).then(|| (0..count).map(read).collect()).transpose()?;
         let placements = if view.is_some() { placements(root) } else { Ok(Vec::new()) };
-        Self { root, buffers, has_frame, main_direction, view, placements }
+        Ok(Self { root, buffers, has_frame, main_direction, view, placements })
     }
 
     /// See [`layout`]; `None` under the unit frame.

@@ -28,14 +28,16 @@ mod survey;
 mod trial;
 mod view;
 
+pub use crate::input_file::{check_file, hash_file, read_file};
 pub use asset::{BakeError, Baked, NewFile, bake};
 pub use bare::{BareBake, BareError, BareTexture, OwnRoughness, bake_map};
-pub use chain::{Chain, GridError};
+pub use chain::{Chain, GridError, kept_bytes};
+pub use container::ContainerError;
 pub use extension::EXTENSION;
 pub use job::JobError;
 pub use png::encode_png;
 pub use provenance::DocumentProvenance;
-pub use publish::{Places, PublishError, check_file, claim, hash_file, publish, read_file, write_file, write_unsynced};
+pub use publish::{Places, PublishError, claim, publish, write_file, write_unsynced};
 pub use pyramids::Range;
 pub use relief::Relief;
 pub use settings::{Form, Model, Profile, Settings};

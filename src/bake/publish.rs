@@ -3,14 +3,14 @@
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeSet, HashMap};
 use std::fs::{self, File};
-use std::io::{self, Read, Write};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use rayon::prelude::*;
 
 use super::asset::Baked;
-use crate::digest::digest_of;
+use crate::input_file::{check_file, read_file};
 
 /// Why a file cannot be written.
 #[derive(Debug, thiserror::Error)]
@@ -175,46 +175,6 @@ pub fn publish(baked: &Baked, document: &Path, source: &Path, places: &mut Place
         baked.files.par_iter().map(|file| write_file(&folder.join(&file.path), &file.bytes)).collect();
     written.into_iter().collect::<Result<(), _>>()?;
     write_file(document, &baked.document)
-}
-
-/// Largest input file: no map within the limits on texels is as large.
-const MAX_FILE_BYTES: u64 = 8 << 30;
-
-/// Reads a file that is one, and not a device that never ends.
-///
-/// # Errors
-/// The system's, or that it is no ordinary file, or larger than 8 GiB.
-pub fn read_file(path: &Path) -> io::Result<Vec<u8>> {
-    let length = check_file(path)?;
-    let mut bytes = Vec::with_capacity(usize::try_from(length).unwrap_or(0));
-    // Not past the end of a file that someone adds to.
-    File::open(path)?.take(MAX_FILE_BYTES).read_to_end(&mut bytes)?;
-    Ok(bytes)
-}
-
-/// BLAKE3 in hex of a file that [`read_file`] may read, and its length. The file is not held: hashing 48 MB that way takes 15 ms,
-/// after reading them into new memory 40.
-///
-/// # Errors
-/// As there.
-pub fn hash_file(path: &Path) -> io::Result<(String, u64)> {
-    check_file(path)?;
-    digest_of(File::open(path)?.take(MAX_FILE_BYTES))
-}
-
-/// Checks that [`read_file`] may read the file; returns its length.
-///
-/// # Errors
-/// As there.
-pub fn check_file(path: &Path) -> io::Result<u64> {
-    let facts = fs::metadata(path)?;
-    if !facts.is_file() {
-        return Err(io::Error::new(io::ErrorKind::InvalidInput, "not an ordinary file"));
-    }
-    if facts.len() > MAX_FILE_BYTES {
-        return Err(io::Error::new(io::ErrorKind::FileTooLarge, "larger than 8 GiB"));
-    }
-    Ok(facts.len())
 }
 
 /// Writes a file whole or not at all, making its folder.

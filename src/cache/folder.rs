@@ -1,6 +1,6 @@
 //! The folder of a cache: `jobs/<id>` and `blobs/<digest>`, in folders by their first two digits.
 
-use std::fs::{self, File};
+use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
@@ -11,6 +11,7 @@ use super::entry::{Entry, Stored};
 use super::error::CacheError;
 use crate::bake::write_unsynced;
 use crate::digest::digest;
+use crate::input_file::{open_file, read_file};
 
 /// A cache in a folder.
 #[derive(Clone, Debug)]
@@ -77,7 +78,7 @@ impl Folder {
         let blobs = entry.stored().map(|stored| self.path("blobs", &stored.blake3));
         for path in blobs.chain([self.path("jobs", id)]) {
             // Only the order of eviction depends on it.
-            let _ = File::open(path).and_then(|file| file.set_modified(now));
+            let _ = open_file(&path).and_then(|(file, _)| file.set_modified(now));
         }
     }
 
@@ -119,7 +120,7 @@ impl Folder {
 const MARK_AGE: Duration = Duration::from_secs(3600);
 
 fn read(path: &Path) -> Result<Option<Vec<u8>>, CacheError> {
-    match fs::read(path) {
+    match read_file(path) {
         Ok(bytes) => Ok(Some(bytes)),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
         Err(error) => Err(failed(path)(error)),

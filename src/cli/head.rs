@@ -1,11 +1,11 @@
 //! Files as far as a check that decodes nothing looks at them.
 
-use std::fs::File;
 use std::io::{self, Read};
 use std::ops::Range;
 use std::path::Path;
 
-use crate::bake::check_file;
+use crate::input_file::open_file;
+use crate::memory;
 
 /// Bytes that are read of any file: header, level index, descriptor and provenance of a KTX2 that we bake lie within.
 const START: usize = 4096;
@@ -16,9 +16,9 @@ const START: usize = 4096;
 /// # Errors
 /// As [`crate::bake::read_file`].
 pub fn read_head(path: &Path) -> io::Result<Vec<u8>> {
-    let length = usize::try_from(check_file(path)?).map_err(io::Error::other)?;
-    let mut file = File::open(path)?;
-    let mut bytes = vec![0; length];
+    let (mut file, length) = open_file(path)?;
+    let length = usize::try_from(length).map_err(io::Error::other)?;
+    let mut bytes = memory::filled(length, 0)?;
     let start = length.min(START);
     file.read_exact(&mut bytes[..start])?;
     let end = if bytes.starts_with(&ktx2::MAGIC) { sections_end(&bytes).clamp(start, length) } else { start };

@@ -223,7 +223,7 @@ fn bake(args: &Args, settings: &Settings) -> Result<Written, MapCommandError> {
     }
     let mut written = Vec::new();
     for (texture, (path, keys)) in baked.textures.iter_mut().zip(places) {
-        let bytes = texture.chain.take_ktx2(&keys);
+        let bytes = texture.chain.take_ktx2(&keys).map_err(|error| BareError::Encode(error.into()))?;
         write_file(&path, &bytes)?;
         written.push((path, bytes.len() as u64));
     }

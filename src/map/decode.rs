@@ -10,6 +10,7 @@ use image::codecs::{hdr::HdrDecoder, png::PngDecoder, tga::TgaDecoder, webp::Web
 use image::{DynamicImage, ImageDecoder, ImageError, Limits};
 
 use super::{DecodeError, Format, Image, Samples, exr, jpeg, tiff};
+use crate::memory;
 use crate::texture::ktx2::Ktx2;
 
 /// What to decode, and how much at most.
@@ -57,10 +58,10 @@ fn decode_as(format: Format, bytes: &[u8], options: &DecodeOptions) -> Result<Im
     let failed = |error| from_image(format, limit, error);
     match format {
         Format::Png => {
-            // The decoder plans its rows while it reads the header, so look there first: the
-            // size stands in the first chunk (PNG 3, 11.2.1).
-            if let Some((width, height)) = png_size(bytes) {
-                texels(format, width, height, limit)?;
+            // The decoder plans its rows while it reads the header, so the header is looked at first.
+            if let Some(header) = PngHeader::read(bytes) {
+                texels(format, header.width, header.height, limit)?;
+                header.check_length(bytes.len() as u64)?;
             }
             let limits = side_limits();
             let decoder = PngDecoder::with_limits(Cursor::new(bytes), limits).map_err(failed)?;
@@ -96,9 +97,37 @@ pub(super) fn texels(format: Format, width: u64, height: u64, limit: u64) -> Res
     texels.and_then(|t| usize::try_from(t).ok()).ok_or(too_large)
 }
 
-fn png_size(bytes: &[u8]) -> Option<(u64, u64)> {
-    let side = |at: usize| Some(u32::from_be_bytes(*bytes.get(at..)?.first_chunk()?).into());
-    Some((side(16)?, side(20)?))
+/// What the first chunk of a PNG says (PNG 3, 11.2.1).
+struct PngHeader {
+    width: u64,
+    height: u64,
+    bits_per_texel: u64,
+}
+
+impl PngHeader {
+    fn read(bytes: &[u8]) -> Option<Self> {
+        let side = |at: usize| Some(u32::from_be_bytes(*bytes.get(at..)?.first_chunk()?).into());
+        let (depth, color) = (*bytes.get(24)?, *bytes.get(25)?);
+        let channels = match color {
+            2 => 3,
+            4 => 2,
+            6 => 4,
+            _ => 1,
+        };
+        Some(Self { width: side(16)?, height: side(20)?, bits_per_texel: u64::from(depth) * channels })
+    }
+
+    /// Checks that a file of `length` bytes can hold the texels: a byte of deflate makes 1032 at most (RFC 1951: a match of 258
+    /// bytes takes two bits).
+    fn check_length(&self, length: u64) -> Result<(), DecodeError> {
+        let row = self.width.saturating_mul(self.bits_per_texel).div_ceil(8).saturating_add(1);
+        let expected = row.saturating_mul(self.height);
+        if expected <= length.saturating_mul(1032) {
+            return Ok(());
+        }
+        let what = format!("{length} bytes cannot hold {} x {} texels", self.width, self.height);
+        Err(DecodeError::Truncated { format: Format::Png, what })
+    }
 }
 
 fn side_limits() -> Limits {
@@ -114,6 +143,9 @@ fn raster(format: Format, mut decoder: impl ImageDecoder, limit: u64) -> Result<
     let mut limits = side_limits();
     limits.max_alloc = Some(decoder.total_bytes().saturating_add(SIDE_MEMORY));
     decoder.set_limits(limits).map_err(failed)?;
+    // The WebP decoder holds planes or colour codes beside the texels.
+    let copies = if format == Format::WebP { 3 } else { 1 };
+    memory::check(decoder.total_bytes().saturating_mul(copies))?;
     let decoded = DynamicImage::from_decoder(decoder).map_err(failed)?;
     let channels = decoded.color().channel_count().into();
     let samples = match decoded {

@@ -1,6 +1,7 @@
 //! Why an image could not be decoded.
 
 use super::Format;
+use crate::memory::OutOfMemory;
 use crate::texture::ktx2::ReadError;
 
 /// Why an image could not be decoded. The caller adds the file's name.
@@ -45,7 +46,7 @@ pub enum DecodeError {
         limit: u64,
     },
     /// The EXR file has no such layer or channel.
-    #[error("there is no layer or channel \"{asked}\": the file has {}", available.join(", "))]
+    #[error("there is no layer or channel \"{asked}\": the file has {}", listed(available.iter().map(String::as_str)))]
     MissingLayer {
         /// The layer that was asked for.
         asked: String,
@@ -60,6 +61,9 @@ pub enum DecodeError {
         /// Which kind.
         what: String,
     },
+    /// There is no memory for the image.
+    #[error(transparent)]
+    OutOfMemory(#[from] OutOfMemory),
     /// A KTX2 file was refused.
     #[error(transparent)]
     Ktx2(#[from] ReadError),
@@ -67,22 +71,68 @@ pub enum DecodeError {
 
 impl DecodeError {
     pub(super) fn malformed(format: Format, what: impl ToString) -> DecodeError {
-        let what = what.to_string();
-        DecodeError::Malformed { format, what }
+        DecodeError::Malformed { format, what: brief(&what.to_string()) }
     }
 
     pub(super) fn unsupported(format: Format, what: impl ToString) -> DecodeError {
-        let what = what.to_string();
-        DecodeError::Unsupported { format, what }
+        DecodeError::Unsupported { format, what: brief(&what.to_string()) }
+    }
+
+    /// Whether the image may be decoded when there is more memory.
+    pub fn is_out_of_memory(&self) -> bool {
+        matches!(self, DecodeError::OutOfMemory(_) | DecodeError::Ktx2(ReadError::OutOfMemory(_)))
     }
 
     /// A reader's error on an in-memory file: the only kind that tells of the file's length is
     /// the unexpected end.
     pub(super) fn from_io(format: Format, error: &std::io::Error) -> DecodeError {
-        let what = error.to_string();
+        let what = brief(&error.to_string());
         match error.kind() {
             std::io::ErrorKind::UnexpectedEof => DecodeError::Truncated { format, what },
             _ => DecodeError::Malformed { format, what },
         }
+    }
+}
+
+/// Longest quotation of a decoder in a message, in characters.
+const LONGEST: usize = 300;
+
+/// The words of a decoder as one line. Some decoders write several, and some repeat what the file holds, however long.
+fn brief(words: &str) -> String {
+    let mut line = words.split_whitespace().collect::<Vec<_>>().join(" ");
+    if let Some((end, _)) = line.char_indices().nth(LONGEST) {
+        line.truncate(end);
+        line += "...";
+    }
+    line
+}
+
+/// The first of `names`, with commas, and how many more there are.
+pub(super) fn listed<'a>(names: impl ExactSizeIterator<Item = &'a str>) -> String {
+    const MOST: usize = 20;
+    let more = names.len().saturating_sub(MOST);
+    let names: Vec<String> = names.take(MOST).map(brief).collect();
+    match more {
+        0 => names.join(", "),
+        more => format!("{} and {more} more", names.join(", ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_of_decoders_become_one_short_line() {
+        assert_eq!(brief("Unknown marker\n 0xFF12\tfound "), "Unknown marker 0xFF12 found");
+        let long = brief(&"ä".repeat(10_000));
+        assert_eq!(long, format!("{}...", "ä".repeat(LONGEST)));
+    }
+
+    #[test]
+    fn long_lists_are_cut() {
+        assert_eq!(listed(["R", "G"].into_iter()), "R, G");
+        let many = vec!["x"; 60_000];
+        assert!(listed(many.into_iter()).ends_with(", x and 59980 more"));
     }
 }

@@ -16,7 +16,9 @@ use ::exr::meta::header::Header;
 use ::exr::prelude::f16;
 
 use super::decode::texels;
+use super::error::listed;
 use super::{DecodeError, Format, Image, Samples};
+use crate::memory;
 
 const FORMAT: Format = Format::Exr;
 
@@ -27,6 +29,7 @@ struct Choice {
 }
 
 pub(super) fn decode(bytes: &[u8], limit: u64, layer: Option<&str>) -> Result<Image, DecodeError> {
+    check_attributes(bytes)?;
     let reader = block::read(Cursor::new(bytes), false).map_err(failed)?;
     // The crate walks the blocks of every part, so the size of every part has to be sane.
     for header in reader.headers() {
@@ -36,7 +39,6 @@ pub(super) fn decode(bytes: &[u8], limit: u64, layer: Option<&str>) -> Result<Im
     let header = choice.header_of(reader.headers())?.clone();
     let (width, height) = (header.layer_size.0, header.layer_size.1);
     let channels = choice.channels.len();
-    let mut samples = vec![0.0; width * height * channels];
     // The crate asks for one chunk for each block of the level, so when none comes twice, all came.
     let mut seen = BTreeSet::new();
 
@@ -47,6 +49,9 @@ pub(super) fn decode(bytes: &[u8], limit: u64, layer: Option<&str>) -> Result<Im
             block.layer == choice.header && level.0 == 0 && level.1 == 0
         })
         .map_err(failed)?;
+    // By now it is known that there is an offset for every block. Decompressing holds one two or three times.
+    memory::check(block_bytes(&header).unwrap_or(u64::MAX).saturating_mul(3))?;
+    let mut samples = memory::filled(width * height * channels, 0.0)?;
     while let Some(chunk) = chunks.read_next_chunk() {
         let chunk = chunk.map_err(failed)?;
         let block = UncompressedBlock::decompress_chunk(chunk, &meta, false).map_err(failed)?;
@@ -97,15 +102,52 @@ const BLOCK_MEMORY: u64 = 64 << 20;
 fn check_size(header: &Header, limit: u64) -> Result<(), DecodeError> {
     let size = header.layer_size;
     texels(FORMAT, size.0 as u64, size.1 as u64, limit)?;
-    let block = header.max_block_pixel_size();
-    let bytes = (block.0 as u64)
-        .checked_mul(block.1 as u64)
-        .and_then(|texels| texels.checked_mul(header.channels.bytes_per_pixel as u64));
+    let bytes = block_bytes(header);
     // One tile may hold the whole image: 4 floats a texel.
     let most = limit.saturating_mul(16).max(BLOCK_MEMORY);
     if bytes.is_none_or(|bytes| bytes > most) {
+        let block = header.max_block_pixel_size();
         let what = format!("blocks of {} x {} texels", block.0, block.1);
         return Err(DecodeError::unsupported(FORMAT, what));
+    }
+    Ok(())
+}
+
+/// Bytes of the largest block of a part.
+fn block_bytes(header: &Header) -> Option<u64> {
+    let block = header.max_block_pixel_size();
+    let texels = (block.0 as u64).checked_mul(block.1 as u64)?;
+    texels.checked_mul(header.channels.bytes_per_pixel as u64)
+}
+
+/// Attributes of all parts together, beyond which a file is refused. The crate holds each in 2 kB; renderers write about 50.
+const MOST_ATTRIBUTES: usize = 10_000;
+
+/// Counts the attributes of all headers before the crate reads them (OpenEXR file layout, "Header"). What is cut off there is
+/// the crate's to tell.
+fn check_attributes(bytes: &[u8]) -> Result<(), DecodeError> {
+    let after_text = |rest: &'_ [u8]| rest.iter().position(|&byte| byte == 0).map(|end| end + 1);
+    let (mut at, mut count) = (8, 0);
+    while let Some(&first) = bytes.get(at) {
+        if first == 0 {
+            // The end of a header; where several parts are, one more ends them all.
+            at += 1;
+            let has_parts = bytes.get(5).is_some_and(|flags| flags & 0x10 != 0);
+            if !has_parts || bytes.get(at) == Some(&0) {
+                break;
+            }
+            continue;
+        }
+        count += 1;
+        if count > MOST_ATTRIBUTES {
+            return Err(DecodeError::unsupported(FORMAT, format!("more than {MOST_ATTRIBUTES} attributes")));
+        }
+        for _ in ["name", "type"] {
+            let Some(length) = after_text(&bytes[at..]) else { return Ok(()) };
+            at += length;
+        }
+        let Some(length) = bytes.get(at..).and_then(|rest| rest.first_chunk()) else { return Ok(()) };
+        at = at.saturating_add(4).saturating_add(u32::from_le_bytes(*length) as usize);
     }
     Ok(())
 }
@@ -173,8 +215,8 @@ fn choose(headers: &[Header], asked: Option<&str>) -> Result<Choice, DecodeError
     };
     let members: Vec<&Channel> = channels.iter().filter(|c| c.layer == layer).collect();
     let set = image_channels(&members).ok_or_else(|| {
-        let names: Vec<&str> = members.iter().map(|c| c.name.as_str()).collect();
-        let what = format!("the layer \"{layer}\" has the channels {}: name one", names.join(", "));
+        let names = listed(members.iter().map(|c| c.name.as_str()));
+        let what = format!("the layer \"{layer}\" has the channels {names}: name one");
         DecodeError::unsupported(FORMAT, what)
     })?;
     let header = set.first().map_or(0, |c| c.header);
@@ -194,9 +236,9 @@ fn single(channels: &[Channel], asked: &str) -> Result<Choice, DecodeError> {
     if let Some(found) = channels.iter().find(|c| full_name(c) == asked) {
         return Ok(Choice { header: found.header, channels: vec![found.index] });
     }
-    let mut available: Vec<String> = Vec::new();
+    let (mut available, mut layers) = (Vec::new(), BTreeSet::new());
     for channel in channels {
-        if !channel.layer.is_empty() && !available.contains(&channel.layer) {
+        if !channel.layer.is_empty() && layers.insert(&channel.layer) {
             available.push(channel.layer.clone());
         }
         available.push(full_name(channel));

@@ -143,3 +143,35 @@ fn the_largest_level_of_a_mip_mapped_file_is_read() {
     assert_eq!(found.sample(7, 7, 0), Some(863.0));
     assert_eq!(found.sample(0, 0, 0), Some(800.0));
 }
+
+/// The header of a scan-line file up to its attributes.
+const EXR_START: &[u8] = b"\x76\x2f\x31\x01\x02\0\0\0";
+
+#[test]
+fn messages_name_some_of_many_channels() {
+    let names: Vec<String> = (0..5000).map(|i| format!("a rather long name of a channel {i}")).collect();
+    let channels = names.iter().map(|name| (name.as_str(), FlatSamples::F32(vec![0.5]))).collect();
+    let file = exr((1, 1), encoding(Compression::Uncompressed, Blocks::ScanLines), vec![(None, channels)]);
+    for layer in [None, Some("absent")] {
+        let error = read(&file, layer).unwrap_err().to_string();
+        assert!(error.len() < 2000 && error.contains("more"), "{} bytes: {error:.100}", error.len());
+    }
+}
+
+#[test]
+fn more_attributes_than_anybody_writes_are_refused_unread() {
+    let mut file = EXR_START.to_vec();
+    for i in 0..300_000 {
+        file.extend(format!("{i}\0int\0\x04\0\0\0\0\0\0\0").bytes());
+    }
+    file.extend([0; 100]);
+    let error = read(&file, None).unwrap_err();
+    assert!(matches!(&error, DecodeError::Unsupported { what, .. } if what.contains("attributes")), "{error}");
+}
+
+#[test]
+fn attributes_of_all_parts_count_and_few_do_not() {
+    let layers = || ["a", "b", "c"].map(|name| (Some(name), channels(&["Y"], 0))).to_vec();
+    let file = exr(SIZE, encoding(Compression::Uncompressed, Blocks::ScanLines), layers());
+    assert!(read(&file, Some("c")).is_ok());
+}

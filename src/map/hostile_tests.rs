@@ -122,6 +122,31 @@ fn dimensions_are_bounded_before_anything_is_allocated() {
     assert!(matches!(found, Err(DecodeError::TooLarge { .. })), "{found:?}");
 }
 
+/// 74 bytes that claim 16384 x 16384 texels of 64 bits.
+#[test]
+fn a_png_too_short_for_its_size_is_refused_before_anything_is_allocated() {
+    for (color, depth, side) in [(6u8, 16u8, 16384u32), (0, 1, 16384), (3, 8, 4000)] {
+        let png = Png { size: (1, 1), color: 0, depth: 8, interlaced: false, chunks: &[] };
+        let mut file = png.encode(|_, _, _| 0);
+        for at in [16, 20] {
+            file[at..at + 4].copy_from_slice(&side.to_be_bytes());
+        }
+        file[24..26].copy_from_slice(&[depth, color]);
+        let found = decode(&file, &DecodeOptions::default());
+        let is_short = |what: &str| what.contains("cannot hold");
+        assert!(matches!(&found, Err(DecodeError::Truncated { what, .. }) if is_short(what)), "{found:?}");
+    }
+}
+
+/// The best that deflate does is allowed for.
+#[test]
+fn a_large_png_of_one_colour_is_read() {
+    let png = Png { size: (3000, 3000), color: 6, depth: 16, interlaced: false, chunks: &[] };
+    let file = png.encode(|_, _, _| 0x5555);
+    assert!(file.len() < 100_000);
+    assert!(decode(&file, &DecodeOptions::default()).is_ok());
+}
+
 #[test]
 fn no_texels_are_refused() {
     let png = Png { size: (0, 3), color: 0, depth: 8, interlaced: false, chunks: &[] };

@@ -7,6 +7,7 @@ use ::tiff::{ColorType, TiffError};
 
 use super::decode::texels;
 use super::{DecodeError, Format, Image, Samples};
+use crate::memory;
 
 const FORMAT: Format = Format::Tiff;
 
@@ -28,9 +29,17 @@ pub(super) fn decode(bytes: &[u8], limit: u64) -> Result<Image, DecodeError> {
     limits.decoding_buffer_size = texels.saturating_mul(channels * 8);
     limits.intermediate_buffer_size = limits.decoding_buffer_size.max(1 << 20);
     let mut decoder = decoder.with_limits(limits);
+    let samples = texels as u64 * channels as u64;
+    memory::check(samples * u64::from(color.bit_depth() / 8))?;
     let mut values = DecodingResult::U8(Vec::new());
     let layout = decoder.read_image_to_buffer(&mut values).map_err(failed)?;
     let planar = layout.planes > 1;
+    // What is widened, narrowed or interleaved is there twice meanwhile.
+    match values {
+        DecodingResult::F16(_) | DecodingResult::F64(_) => memory::check(4 * samples)?,
+        _ if planar => memory::check(samples * u64::from(color.bit_depth() / 8))?,
+        _ => {}
+    }
     let samples = match values {
         DecodingResult::U8(values) => interleave(values, channels, planar).map(Samples::U8),
         DecodingResult::U16(values) => interleave(values, channels, planar).map(Samples::U16),

@@ -3,9 +3,11 @@
 use std::io;
 use std::path::PathBuf;
 
-use crate::bake::{BakeError, JobError, PublishError, SourceError};
+use crate::bake::{BakeError, ContainerError, GridError, JobError, PublishError, SourceError};
 use crate::config::ValueError;
 use crate::gltf::document::DocumentError;
+use crate::memory::OutOfMemory;
+use crate::texture::EncodeError;
 
 /// Why a job fails. The caller adds the asset's name.
 #[derive(Debug, thiserror::Error)]
@@ -22,6 +24,9 @@ pub enum RunError {
     /// Its outputs cannot be written.
     #[error(transparent)]
     Publish(#[from] PublishError),
+    /// There is no memory for the document.
+    #[error(transparent)]
+    OutOfMemory(#[from] OutOfMemory),
     /// Settings of a plan that make no sense.
     #[error(transparent)]
     Value(#[from] ValueError),
@@ -61,17 +66,10 @@ pub enum RunError {
 impl RunError {
     /// Whether trying again may help: something was busy or away, not missing or wrong.
     pub fn is_passing(&self) -> bool {
-        let error = match self {
-            Self::Changed { .. } => return true,
-            Self::Read(error)
-            | Self::Bake(BakeError::Source(SourceError::Read { error, .. }))
-            | Self::Bake(BakeError::Job(JobError::Source { error: SourceError::Read { error, .. }, .. })) => {
-                Some(error)
-            }
-            Self::Publish(error) => error.io(),
-            _ => None,
-        };
-        error.is_some_and(|e| {
+        if matches!(self, Self::Changed { .. }) || self.is_out_of_memory() {
+            return true;
+        }
+        self.io().is_some_and(|e| {
             use io::ErrorKind as Kind;
             matches!(
                 e.kind(),
@@ -84,5 +82,31 @@ impl RunError {
                     | Kind::HostUnreachable
             )
         })
+    }
+
+    /// Whether there was no memory for the job, which may be there when it runs alone.
+    pub fn is_out_of_memory(&self) -> bool {
+        match self {
+            Self::OutOfMemory(_)
+            | Self::Bake(BakeError::Job(
+                JobError::Grid(GridError::OutOfMemory(_)) | JobError::Encode(EncodeError::OutOfMemory(_)),
+            )) => true,
+            Self::Bake(BakeError::Job(JobError::Decode { error, .. })) => error.is_out_of_memory(),
+            other => other.io().is_some_and(|error| error.kind() == io::ErrorKind::OutOfMemory),
+        }
+    }
+
+    /// The system's error, if there is one.
+    fn io(&self) -> Option<&io::Error> {
+        match self {
+            Self::Read(error)
+            | Self::Bake(BakeError::Source(SourceError::Read { error, .. }))
+            | Self::Bake(BakeError::Container(ContainerError::Source(SourceError::Read { error, .. })))
+            | Self::Bake(BakeError::Job(JobError::Source { error: SourceError::Read { error, .. }, .. })) => {
+                Some(error)
+            }
+            Self::Publish(error) => error.io(),
+            _ => None,
+        }
     }
 }

@@ -12,6 +12,7 @@ use crate::bake::{Settings, Survey, hash_file, read_file, survey};
 use crate::config::Values;
 use crate::digest::digest;
 use crate::gltf::document::{Container, Document};
+use crate::memory;
 
 /// The bake of one asset. Paths are relative to the working folder, if the command line's are.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -68,6 +69,12 @@ pub enum OutputKind {
     Folder,
 }
 
+/// Parses a document, once there is memory for the copies of a .glb's chunks that a bake makes.
+pub(super) fn parsed(bytes: &[u8]) -> Result<Document, RunError> {
+    memory::check(3 * bytes.len() as u64)?;
+    Ok(Document::parse(bytes)?)
+}
+
 impl Job {
     /// Plans the bake of `source` into the folder `output` with `settings`: reads and hashes its files, and decodes none.
     ///
@@ -75,7 +82,7 @@ impl Job {
     /// [`RunError`] where the document cannot be read or understood.
     pub fn new(source: &Path, output: &Path, settings: &Map<String, Value>) -> Result<Self, RunError> {
         let bytes = read_file(source).map_err(RunError::Read)?;
-        let document = Document::parse(&bytes)?;
+        let document = parsed(&bytes)?;
         let survey = survey(&document)?;
         let stem = stem(source);
         // Without what has no meaning, such as a slash at the end.

@@ -3,10 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use super::error::RunError;
-use super::job::{Job, JobInput, JobOutput, folded};
+use super::job::{Job, JobInput, JobOutput, folded, parsed};
 use crate::bake::{read_file, survey};
 use crate::digest::digest;
-use crate::gltf::document::Document;
 
 /// A job below `in/<id>` and `out/<id>`.
 #[derive(Clone, Debug)]
@@ -32,7 +31,7 @@ impl Job {
         if Some(digest(&bytes).as_str()) != planned {
             return Err(RunError::Changed { path: self.source.clone() });
         }
-        let survey = survey(&Document::parse(&bytes)?)?;
+        let survey = survey(&parsed(&bytes)?)?;
         let (from, to) = (Path::new("in").join(&self.id), Path::new("out").join(&self.id));
         let source = from.join(self.source.file_name().unwrap_or_default().to_string_lossy().as_ref());
         let names = [source.clone()].into_iter().chain(survey.files.iter().map(|file| from.join(file)));

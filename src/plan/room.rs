@@ -1,8 +1,14 @@
 //! Memory of jobs that are baked side by side.
 
+use std::io::BufReader;
+use std::path::Path;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
+use imagesize::ImageSize;
+
 use super::job::{Job, JobInput};
+use crate::bake::kept_bytes;
+use crate::input_file::open_file;
 
 /// What jobs that are baked at a time may take together. It bounds memory on machines with many cores, where a job per thread
 /// would take more than there is; threads without a job of their own help with those of others.
@@ -31,6 +37,11 @@ impl Room {
         self.take(memory(job))
     }
 
+    /// Waits until no other job is baked.
+    pub fn enter_alone(&self) -> Seat<'_> {
+        self.take(self.total)
+    }
+
     fn take(&self, bytes: u64) -> Seat<'_> {
         let bytes = bytes.min(self.total);
         let is_full = |free: &mut u64| *free < bytes;
@@ -49,6 +60,13 @@ pub struct Seat<'r> {
     bytes: u64,
 }
 
+impl Seat<'_> {
+    /// Whether no other job is baked meanwhile.
+    pub fn is_alone(&self) -> bool {
+        self.bytes == self.room.total
+    }
+}
+
 impl Drop for Seat<'_> {
     fn drop(&mut self) {
         *self.room.free() += self.bytes;
@@ -57,18 +75,23 @@ impl Drop for Seat<'_> {
 }
 
 /// About what a bake of `job` takes at the default quality: its maps are baked one after another, and the largest takes
-/// most. Levels are kept up to level 1 of 4096^2, lobes up to level 1 of 8192^2. With `rdo` a level is held as RGBA8
-/// beside three copies of its blocks.
+/// most, for its images and for what is kept of its levels.
 fn memory(job: &Job) -> u64 {
-    let texels = |input: &JobInput| match imagesize::size(&input.path) {
-        Ok(size) => size.width as u64 * size.height as u64,
+    let texels = |input: &JobInput| match size(&input.path) {
+        Some(size) => (size.width as u64).saturating_mul(size.height as u64),
         // Images inside of it, of two bytes a texel.
-        Err(_) if input.path == job.source => input.bytes / 2,
-        Err(_) => 0,
+        None if input.path == job.source => input.bytes / 2,
+        None => 0,
     };
-    let largest = job.inputs.iter().map(texels).max().unwrap_or(0);
-    let rewritten = if job.settings.contains_key("rdo") { 7 * largest } else { 0 };
-    12 * largest.min(1 << 24) + 8 * largest.min(1 << 26) + 5 * largest + rewritten
+    // A header that lies may claim any number.
+    let largest = job.inputs.iter().map(texels).max().unwrap_or(0).min(1 << 40);
+    kept_bytes(largest, job.settings.contains_key("rdo")) + 5 * largest
+}
+
+/// Returns the size of an image from its header; `None` for every other file.
+fn size(path: &Path) -> Option<ImageSize> {
+    let (file, _) = open_file(path).ok()?;
+    imagesize::reader_size(BufReader::new(file)).ok()
 }
 
 #[cfg(test)]

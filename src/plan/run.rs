@@ -6,14 +6,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
 use super::error::RunError;
-use super::job::{Job, beside};
+use super::job::{Job, beside, parsed};
 use super::restore::{Found, Lookup, restore};
 use super::room::Room;
 use crate::bake::report::AssetReport;
-use crate::bake::{Baked, Files, Places, Source, bake, publish, read_file};
+use crate::bake::{Baked, Files, Places, Settings, Source, bake, publish, read_file};
 use crate::cache::{CacheError, Entry, Warn};
 use crate::digest::digest;
-use crate::gltf::document::{Container, Document};
+use crate::gltf::document::Container;
 
 /// What a job did.
 #[derive(Clone, Debug)]
@@ -116,12 +116,24 @@ pub fn finish(job: &Job, prepared: Prepared, places: &mut Places, warn: Warn<'_>
 
 fn baked(job: &Job, room: &Room, advance: &dyn Fn(f32)) -> Result<Baked, RunError> {
     let settings = job.typed_settings()?;
-    let _seat = room.enter(job);
+    let seat = room.enter(job);
+    match attempt(job, &settings, advance) {
+        // What others took meanwhile may be enough.
+        Err(error) if error.is_out_of_memory() && !seat.is_alone() => {
+            drop(seat);
+            let _seat = room.enter_alone();
+            attempt(job, &settings, advance)
+        }
+        ended => ended,
+    }
+}
+
+fn attempt(job: &Job, settings: &Settings, advance: &dyn Fn(f32)) -> Result<Baked, RunError> {
     let inputs = Inputs::new(job);
     let result: Result<_, RunError> = (|| {
-        let document = Document::parse(&inputs.document().map_err(RunError::Read)?)?;
+        let document = parsed(&inputs.document().map_err(RunError::Read)?)?;
         let stem = job.stem();
-        Ok(bake(&Source { stem: &stem, document: &document, files: &inputs }, &settings, advance)?)
+        Ok(bake(&Source { stem: &stem, document: &document, files: &inputs }, settings, advance)?)
     })();
     // Whatever else went wrong, half of a file that was being written explains it.
     match inputs.changed() {

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use super::uastc::{self, Effort, Metric};
 use super::{Format, Target};
+use crate::memory::OutOfMemory;
 use crate::simd::dispatch;
 
 /// Why a level cannot be encoded.
@@ -28,6 +29,9 @@ pub enum EncodeError {
         /// What the encoder said.
         reason: String,
     },
+    /// There is no memory for a level.
+    #[error(transparent)]
+    OutOfMemory(#[from] OutOfMemory),
     /// The PNG encoder refused.
     #[error("the PNG of a level of {width} x {height} cannot be written: {reason}; leave it out with `--gltf strict`")]
     Png {

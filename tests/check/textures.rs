@@ -54,8 +54,9 @@ fn level_0(file: &[u8]) -> (usize, usize) {
 }
 
 fn write(format: Format, size: u32, levels: &[Vec<u8>], keys: &[Key]) -> Vec<u8> {
-    let levels: Vec<_> = levels.iter().map(|level| StoredLevel::new(level.clone(), format, Effort::Fast)).collect();
-    Ktx2Writer { format, width: size, height: size, levels, keys }.into_bytes()
+    let levels: Vec<_> =
+        levels.iter().map(|level| StoredLevel::new(level.clone(), format, Effort::Fast).unwrap()).collect();
+    Ktx2Writer { format, width: size, height: size, levels, keys }.into_bytes().unwrap()
 }
 
 fn normals(texel: [f32; 4], format: Format) -> Vec<u8> {

@@ -16,5 +16,6 @@ mod rdo;
 mod render;
 mod survival;
 mod transcripts;
+mod trust;
 mod validator;
 mod watch;

@@ -58,7 +58,7 @@ fn errors(image: &Image) -> Result<[f64; COLUMNS], Failure> {
     let settings =
         Settings { model: Model::Anisotropic, target: Target::Float, provenance: false, ..Settings::default() };
     let baked = bake_map(&Relief::Normals(map()?), Some(&own), &settings)?;
-    let files: Vec<_> = baked.textures.iter().map(|t| (t.content, t.chain.to_ktx2(&[]))).collect();
+    let files: Vec<_> = baked.textures.iter().map(|t| (t.content, t.chain.to_ktx2(&[]).unwrap())).collect();
     let mut sums = [0.0; COLUMNS];
     for level in LEVELS {
         let of = |content| -> Result<Option<Image>, Failure> {

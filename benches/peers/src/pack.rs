@@ -28,9 +28,9 @@ pub fn measure(image: &Path, out: &Path) -> Result<Value, Failure> {
             texels = halved(&texels, sizes[finer], (width, height));
         }
         let blocks = Encoder::Basisu(0, Interface::Plain).blocks(&texels, width, height)?;
-        levels.push(StoredLevel::new(blocks, Format::UastcRgb, Effort::Fast));
+        levels.push(StoredLevel::new(blocks, Format::UastcRgb, Effort::Fast).unwrap());
     }
-    let file = Ktx2Writer { format: Format::UastcRgb, width, height, levels, keys: &[] }.into_bytes();
+    let file = Ktx2Writer { format: Format::UastcRgb, width, height, levels, keys: &[] }.into_bytes().unwrap();
     std::fs::write(out, &file)?;
     Ok(json!({ "bytes": file.len() }))
 }

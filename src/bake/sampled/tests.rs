@@ -37,7 +37,7 @@ fn texels_are_those_of_the_encoded_texture() {
                     row: &values,
                     wrap: [Wrap::Repeat; 2],
                 };
-                let file = chain.to_ktx2(&[]);
+                let file = chain.to_ktx2(&[]).unwrap();
                 let file = Ktx2::parse(&file).unwrap();
                 for (level, &size) in sizes.iter().enumerate() {
                     let image = file.decode_level(level as u32).unwrap();

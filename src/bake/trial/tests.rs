@@ -167,7 +167,7 @@ fn errors_are_those_of_the_baked_files() {
             let size = (64 >> level, 64 >> level);
             let of = |content| {
                 let chain = &baked.textures.iter().find(|t| t.content == content).unwrap().chain;
-                Ktx2::parse(&chain.to_ktx2(&[])).unwrap().decode_level(level as u32).unwrap()
+                Ktx2::parse(&chain.to_ktx2(&[]).unwrap()).unwrap().decode_level(level as u32).unwrap()
             };
             let decoded = Decoded {
                 normal: of(Content::Normal),

@@ -78,7 +78,7 @@ fn what_was_not_used_for_longest_goes_first() {
     let second = cache.entry("4567").expect("an entry").expect("an entry");
     let old = SystemTime::now() - 2 * MARK_AGE;
     for entry in WalkDir::new(folder.path()).into_iter().flatten().filter(|e| e.file_type().is_file()) {
-        File::open(entry.path()).and_then(|f| f.set_modified(old)).expect("a file");
+        fs::File::open(entry.path()).and_then(|f| f.set_modified(old)).expect("a file");
     }
     cache.touch("0123", &first);
     let total: u64 = WalkDir::new(folder.path())

@@ -12,11 +12,23 @@ use crate::map::Samples;
 const GLOBAL_HEADER: usize = 20;
 const IMAGE_ENTRY: usize = 20;
 
+/// Bytes of a UASTC block.
+const BLOCK: usize = 16;
+
+/// Rows of blocks that are transcoded at a time: the transcoder holds them twice.
+const BAND: u32 = 16;
+
 /// Decodes the UASTC blocks of a level of `size` texels and keeps `channels` of its RGBA.
-pub(super) fn uastc(payload: &[u8], size: (u32, u32), channels: &[usize]) -> Option<Samples> {
-    // With RGBA declared, all four come back as they are.
-    let file = container(None, &[3], &[], payload, size)?;
-    transcode(&file, size, channels)
+pub(super) fn uastc(payload: &[u8], (width, height): (u32, u32), channels: &[usize]) -> Option<Samples> {
+    let mut values = Vec::with_capacity(width as usize * height as usize * channels.len());
+    let bands = payload.chunks(width.div_ceil(4) as usize * BLOCK * BAND as usize);
+    for (first, blocks) in (0..height).step_by(4 * BAND as usize).zip(bands) {
+        let size = (width, (height - first).min(4 * BAND));
+        // With RGBA declared, all four come back as they are.
+        let file = container(None, &[3], &[], blocks, size)?;
+        keep(&transcode(&file, size)?, channels, &mut values);
+    }
+    Some(Samples::U8(values))
 }
 
 /// Decodes level `level` of `levels`, of `size` texels, from its slices and the file's codebooks,
@@ -52,24 +64,27 @@ pub(super) fn etc1s(
     let samples: &[u8] = if has_alpha { &[0, 15] } else { &[0] };
     let scheme = Some(SupercompressionScheme::BasisLZ);
     let file = container(scheme, samples, &global, slices, size)?;
-    transcode(&file, size, channels)
-}
-
-fn transcode(file: &[u8], size: (u32, u32), channels: &[usize]) -> Option<Samples> {
-    let transcoder = Transcoder::new(file).ok()?;
-    let rgba = transcoder.transcode(0, TargetFormat::Rgba32, DecodeFlags::NONE).ok()?;
-    let (texels, _) = rgba.as_chunks::<4>();
-    if texels.len() as u64 != u64::from(size.0) * u64::from(size.1) {
-        return None;
-    }
+    let rgba = transcode(&file, size)?;
     if channels.len() == 4 {
         return Some(Samples::U8(rgba));
     }
-    let mut values = Vec::with_capacity(texels.len() * channels.len());
-    for texel in texels {
+    let mut values = Vec::with_capacity(rgba.len() / 4 * channels.len());
+    keep(&rgba, channels, &mut values);
+    Some(Samples::U8(values))
+}
+
+/// The texels of the one level of `file` as RGBA.
+fn transcode(file: &[u8], size: (u32, u32)) -> Option<Vec<u8>> {
+    let transcoder = Transcoder::new(file).ok()?;
+    let rgba = transcoder.transcode(0, TargetFormat::Rgba32, DecodeFlags::NONE).ok()?;
+    (rgba.len() as u64 == 4 * u64::from(size.0) * u64::from(size.1)).then_some(rgba)
+}
+
+/// Appends `channels` of each texel to `values`.
+fn keep(rgba: &[u8], channels: &[usize], values: &mut Vec<u8>) {
+    for texel in rgba.as_chunks::<4>().0 {
         values.extend(channels.iter().map(|&c| texel[c]));
     }
-    Some(Samples::U8(values))
 }
 
 /// A KTX2 file of one level. `samples` are the descriptor's channel identifiers.

@@ -1,5 +1,7 @@
 //! Why a KTX2 file could not be read.
 
+use crate::memory::OutOfMemory;
+
 /// Why a KTX2 file could not be read. The caller adds the file's name.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
@@ -51,6 +53,9 @@ pub enum ReadError {
         /// See [`Ktx2::with_max_texels`](super::Ktx2::with_max_texels).
         limit: u64,
     },
+    /// There is no memory for a level.
+    #[error(transparent)]
+    OutOfMemory(#[from] OutOfMemory),
     /// There is no such level.
     #[error("the KTX2 file has {count} levels, and level {asked} was asked for")]
     NoLevel {

@@ -95,6 +95,23 @@ impl Coding {
         }
     }
 
+    /// Bytes that a level of `width` x `height` texels takes at most while it is decoded, beside its payload.
+    pub(super) fn decoded_bytes(&self, width: u32, height: u32) -> u64 {
+        let of_texel = match self {
+            Coding::Texels(Texel { channels, values: Values::Unorm8, .. }) => u64::from(*channels),
+            Coding::Texels(Texel { channels, values: Values::Unorm16, .. }) => 2 * u64::from(*channels),
+            Coding::Texels(texel) => 4 * u64::from(texel.channels),
+            // Unsigned ones are decoded to floats and rounded to 16 bits.
+            Coding::Blocks(kind @ (BlockFormat::Bc4 { .. } | BlockFormat::Bc5 { .. })) => 6 * kind.channels() as u64,
+            Coding::Blocks(kind @ BlockFormat::Bc6h { .. }) => 4 * kind.channels() as u64,
+            Coding::Blocks(kind) => kind.channels() as u64,
+            Coding::Uastc(channels) => channels.len() as u64,
+            // All four channels, and those that are kept.
+            Coding::Etc1s(channels) => 4 + channels.len() as u64,
+        };
+        u64::from(width) * u64::from(height) * of_texel
+    }
+
     pub(super) fn channels(&self) -> u32 {
         match self {
             Coding::Texels(texel) => texel.channels,

@@ -3,12 +3,14 @@
 //! Section numbers are those of the KTX File Format Specification, version 2.0.
 
 use std::borrow::Cow;
+use std::io;
 
 use ktx2::{Header, ParseError, Reader, SupercompressionScheme, dfd};
 
 use super::formats::{Coding, block_of};
 use super::{ReadError, basis, blocks, inflate, texels};
 use crate::map::{Image, Samples};
+use crate::memory::{self, OutOfMemory};
 
 /// A parsed KTX2 file. Parsing allocates nothing that a hostile header could make large.
 pub struct Ktx2<'a> {
@@ -129,14 +131,20 @@ impl<'a> Ktx2<'a> {
                 return Err(ReadError::Unsupported { what });
             }
             None => return Ok(Cow::Borrowed(stored)),
-            Some(SupercompressionScheme::Zstandard) => inflate::zstd(stored, expected),
+            Some(SupercompressionScheme::Zstandard) => match inflate::declared(stored) {
+                Some(found) if found != expected => return Err(ReadError::LevelLength { level, expected, found }),
+                _ => inflate::zstd(stored, expected),
+            },
             Some(SupercompressionScheme::ZLIB) => inflate::zlib(stored, expected),
             Some(other) => {
                 let what = format!("supercompression scheme {}", other.value());
                 return Err(ReadError::Unsupported { what });
             }
         };
-        let inflated = inflated.map_err(|error| ReadError::Compression { level, what: error.to_string() })?;
+        let inflated = inflated.map_err(|error| match error.kind() {
+            io::ErrorKind::OutOfMemory => OutOfMemory { bytes: expected }.into(),
+            _ => ReadError::Compression { level, what: error.to_string() },
+        })?;
         if inflated.len() as u64 != expected {
             return Err(ReadError::LevelLength { level, expected, found: inflated.len() as u64 });
         }
@@ -181,6 +189,7 @@ impl<'a> Ktx2<'a> {
         let (width, height) = self.level_size(level);
         // The size is checked here for ETC1S, which has no payload of a known length.
         self.check_texels(level)?;
+        memory::check(coding.decoded_bytes(width, height))?;
         let samples = match &coding {
             Coding::Etc1s(channels) => {
                 let (_, stored) = self.stored(level)?;

@@ -96,6 +96,26 @@ fn bombs_and_wrong_lengths_are_refused() {
     assert!(matches!(refused, Err(ReadError::Unsupported { .. })));
 }
 
+#[test]
+fn frames_that_declare_another_length_are_not_decompressed() {
+    let decode = |file: File| Ktx2::parse(&file.encode()).unwrap().decode_level(0);
+    let declaring = |length: usize| ::zstd::bulk::compress(&vec![0; length], 3).unwrap();
+    for found in [255, 64 << 20] {
+        let file = compressed(SupercompressionScheme::Zstandard, declaring(found), 256);
+        assert_eq!(decode(file), Err(ReadError::LevelLength { level: 0, expected: 256, found: found as u64 }));
+    }
+    let parts = [declaring(100), declaring(156)].concat();
+    assert!(decode(compressed(SupercompressionScheme::Zstandard, parts, 256)).is_ok());
+    // One byte of zlib makes 1032 at most.
+    let level = (zlib(&[0; 100]), 1 << 26);
+    let file = File {
+        levels: vec![level],
+        scheme: Some(SupercompressionScheme::ZLIB),
+        ..plain(Format::R8_UNORM, (8192, 8192), &[])
+    };
+    assert!(matches!(decode(file), Err(ReadError::Compression { what, .. }) if what.contains("at most")));
+}
+
 /// Overwrites the header's word at `at` (KTX 2.0, section 3).
 fn with_word(file: &[u8], at: usize, value: u32) -> Vec<u8> {
     let mut file = file.to_vec();

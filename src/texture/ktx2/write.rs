@@ -1,6 +1,6 @@
 //! The container writer. KTX File Format Specification 2.0, sections named at the line.
 
-use std::io::Write;
+use std::io::{self, Write};
 use std::mem;
 use std::num::NonZeroU8;
 
@@ -9,6 +9,7 @@ use ::ktx2::{ColorModel, ColorPrimaries, Header, Index, LevelIndex, Supercompres
 use zstd::stream::write::Encoder;
 use zstd::zstd_safe::{CParameter, Strategy};
 
+use crate::memory::{self, OutOfMemory};
 use crate::texture::Format;
 use crate::texture::uastc::Effort;
 
@@ -31,9 +32,12 @@ pub struct StoredLevel {
 
 impl StoredLevel {
     /// Of a level as [`crate::texture::encode`] returns it; zstd searches as long as `effort` says.
-    pub fn new(level: Vec<u8>, format: Format, effort: Effort) -> Self {
-        let mut storing = Storing::new(level.len(), format, effort);
-        storing.push(&level);
+    ///
+    /// # Errors
+    /// [`OutOfMemory`].
+    pub fn new(level: Vec<u8>, format: Format, effort: Effort) -> Result<Self, OutOfMemory> {
+        let mut storing = Storing::new(level.len(), format, effort)?;
+        storing.push(&level)?;
         storing.finish()
     }
 }
@@ -49,44 +53,57 @@ enum Stored {
     Zstd(Encoder<'static, Vec<u8>>),
 }
 
-/// Why errors of the zstd encoder are none of the caller's: it writes to memory as many bytes as it was told.
-const TO_MEMORY: &str = "compressing to memory has no way to fail";
-
 impl Storing {
     /// Of a level that [`crate::texture::encode`] makes `uncompressed` bytes of; zstd searches as long as `effort` says.
-    pub fn new(uncompressed: usize, format: Format, effort: Effort) -> Self {
-        let zstd = || {
-            // Room is memory only where it is written to, and what grows is copied.
-            let mut encoder = Encoder::new(Vec::with_capacity(uncompressed), zstd_level(effort))?;
+    ///
+    /// # Errors
+    /// [`OutOfMemory`].
+    pub fn new(uncompressed: usize, format: Format, effort: Effort) -> Result<Self, OutOfMemory> {
+        // Room is memory only where it is written to, and what grows is copied.
+        let room = memory::with_capacity(uncompressed)?;
+        let zstd = |room| {
+            let mut encoder = Encoder::new(room, zstd_level(effort))?;
             if effort == Effort::Fast {
                 encoder.set_parameter(CParameter::Strategy(Strategy::ZSTD_fast))?;
             }
             encoder.set_pledged_src_size(Some(uncompressed as u64))?;
-            Ok::<_, std::io::Error>(encoder)
+            Ok(encoder)
         };
         let stored = match format {
-            Format::UastcRgb => Stored::Zstd(zstd().expect(TO_MEMORY)),
-            _ => Stored::Plain(Vec::with_capacity(uncompressed)),
+            Format::UastcRgb => Stored::Zstd(zstd(room).map_err(refused(uncompressed))?),
+            _ => Stored::Plain(room),
         };
-        Self { stored, uncompressed }
+        Ok(Self { stored, uncompressed })
     }
 
     /// Adds the next rows of blocks.
-    pub fn push(&mut self, band: &[u8]) {
+    ///
+    /// # Errors
+    /// [`OutOfMemory`].
+    pub fn push(&mut self, band: &[u8]) -> Result<(), OutOfMemory> {
         match &mut self.stored {
             Stored::Plain(bytes) => bytes.extend_from_slice(band),
-            Stored::Zstd(encoder) => encoder.write_all(band).expect(TO_MEMORY),
+            Stored::Zstd(encoder) => encoder.write_all(band).map_err(refused(self.uncompressed))?,
         }
+        Ok(())
     }
 
     /// The level, all of whose bytes have been added.
-    pub fn finish(self) -> StoredLevel {
+    ///
+    /// # Errors
+    /// [`OutOfMemory`].
+    pub fn finish(self) -> Result<StoredLevel, OutOfMemory> {
         let bytes = match self.stored {
             Stored::Plain(bytes) => bytes,
-            Stored::Zstd(encoder) => encoder.finish().expect(TO_MEMORY),
+            Stored::Zstd(encoder) => encoder.finish().map_err(refused(self.uncompressed))?,
         };
-        StoredLevel { bytes, uncompressed: self.uncompressed }
+        Ok(StoredLevel { bytes, uncompressed: self.uncompressed })
     }
+}
+
+/// What an error of the zstd encoder means, which writes as many bytes to memory as it was told: its own memory was refused.
+fn refused(uncompressed: usize) -> impl Fn(io::Error) -> OutOfMemory {
+    move |_| OutOfMemory { bytes: uncompressed as u64 }
 }
 
 /// A KTX2 file to be written: a 2-D texture with a full chain of levels.
@@ -117,7 +134,10 @@ fn zstd_level(effort: Effort) -> i32 {
 
 impl Ktx2Writer<'_> {
     /// The bytes of the file.
-    pub fn into_bytes(self) -> Vec<u8> {
+    ///
+    /// # Errors
+    /// [`OutOfMemory`].
+    pub fn into_bytes(self) -> Result<Vec<u8>, OutOfMemory> {
         let Self { format, width, height, mut levels, keys } = self;
         let supercompressed = format == Format::UastcRgb;
         let (descriptor, type_size) = data_format_descriptor(format);
@@ -162,6 +182,8 @@ impl Ktx2Writer<'_> {
         // Level 0, which comes last, is most of the file: what comes before it is put there, so that new memory need not be cleared for all.
         let mut file = levels.first_mut().map(|level| mem::take(&mut level.bytes)).unwrap_or_default();
         let (length, start) = (file.len(), end - file.len());
+        // The smaller levels, and level 0 once more where it has to move.
+        memory::check((start + end) as u64)?;
         let mut before = Vec::with_capacity(start);
         before.extend_from_slice(&header.as_bytes());
         for level in index.iter().rev() {
@@ -176,7 +198,7 @@ impl Ktx2Writer<'_> {
         file.resize(end, 0);
         file.copy_within(..length, start);
         file[..start].copy_from_slice(&before);
-        file
+        Ok(file)
     }
 }
 

@@ -19,10 +19,10 @@ fn texture(format: Format, width: u32, height: u32, keys: &[Key]) -> Option<Vec<
     let sizes = level_sizes(width, height);
     let levels = sizes.iter().map(|&(width, height)| {
         let level = encode(&Texels { width, height, row: &row }, format, Metric::Rgb, Effort::Fast)?;
-        Ok(StoredLevel::new(level, format, Effort::Fast))
+        Ok(StoredLevel::new(level, format, Effort::Fast).unwrap())
     });
     let levels = levels.collect::<Result<Vec<_>, EncodeError>>().ok()?;
-    Some(Ktx2Writer { format, width, height, levels, keys }.into_bytes())
+    Some(Ktx2Writer { format, width, height, levels, keys }.into_bytes().unwrap())
 }
 
 #[test]

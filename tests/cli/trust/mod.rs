@@ -1,0 +1,3 @@
+//! What strangers' files may not do.
+
+mod decoders;
