@@ -15,6 +15,7 @@ pub mod cli;
 pub mod compare;
 pub mod config;
 mod digest;
+mod foreign;
 pub mod gltf;
 mod input_file;
 pub mod inspect;

@@ -1,11 +1,13 @@
 //! An asset baked: all its jobs, and the document that refers to their textures.
 
-use std::collections::BTreeSet;
-use std::path::PathBuf;
+use std::collections::{BTreeSet, HashSet};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use rayon::prelude::*;
 use serde_json::Value;
 
+use super::compact::compact;
 use super::container::{self, ContainerError};
 use super::extension::{EXTENSION, Extension, RangedTexture};
 use super::geometry::Geometry;
@@ -14,13 +16,15 @@ use super::names::Names;
 use super::plan::{PlanError, plan};
 use super::provenance::DocumentProvenance;
 use super::pyramids::Range;
+use super::reader::Reader;
 use super::report::{AssetReport, LayerReport, TextureReport};
 use super::settings::{Form, Settings};
 use super::source::{Source, SourceError};
-use crate::gltf::document::{Container, Document, DocumentError};
+use crate::gltf::document::{Container, Document, DocumentError, check_version};
+use crate::gltf::extensions::declare;
 use crate::gltf::json::JsonError;
 use crate::gltf::material::{MaterialError, materials};
-use crate::gltf::rewrite::{NewImage, NewTexture, add_textures, declare};
+use crate::gltf::rewrite::{NewImage, NewTexture, add_textures};
 use crate::gltf::texture::ImageLocation;
 use crate::gltf::uri::{encode_path, relative_path};
 use crate::texture::EncodeError;
@@ -50,6 +54,15 @@ pub enum BakeError {
     /// The container asked for.
     #[error(transparent)]
     Container(#[from] ContainerError),
+    /// A number of the vendor extension that JSON does not have.
+    #[error(
+        "{pointer}: expected finite numbers, found infinity or NaN in what the bumps and meshes make of them; \
+         bake with `--frame unit`"
+    )]
+    NotFinite {
+        /// JSON pointer of the extension.
+        pointer: String,
+    },
 }
 
 /// A file to be written beside the document.
@@ -82,16 +95,21 @@ pub struct Baked {
 /// [`BakeError`] for the first thing that is wrong with the asset; nothing is half done.
 pub fn bake(source: &Source<'_>, settings: &Settings, advance: &dyn Fn(f32)) -> Result<Baked, BakeError> {
     let root: Value = source.document.json().value("")?.unwrap_or_default();
+    check_version(&root)?;
     let materials = materials(&root).into_iter().collect::<Result<Vec<_>, _>>()?;
     // References that cannot be followed are an error before any work is done.
-    container::files(source.document.json())?;
-    source.check_buffers()?;
-    let geometry = Geometry::new(&root, source, settings)?;
+    let paths = container::files(source.document.json())?;
+    let paths: Vec<PathBuf> = paths.into_iter().filter(|path| source.files.is_missing(path)).collect();
+    if !paths.is_empty() {
+        return Err(SourceError::Missing { paths }.into());
+    }
+    let reader = Reader::new(source, &root, settings.glb || Geometry::is_needed(settings))?;
+    let geometry = Geometry::new(&reader, settings);
     let flat: Vec<LayerReport> = materials.iter().filter(|m| m.layers.is_empty()).map(LayerReport::flat).collect();
     let plans = plan(&root, materials, settings, &geometry)?;
-    let mut assembly = Assembly::new(source, settings)?;
+    let mut assembly = Assembly::new(&reader, settings)?;
     for (done, plan) in plans.iter().enumerate() {
-        assembly.add(job::run(plan, source, &geometry, settings)?)?;
+        assembly.add(job::run(plan, &reader, &geometry, settings)?)?;
         advance((done + 1) as f32 / plans.len() as f32);
     }
     assembly.report.layers.extend(flat);
@@ -110,12 +128,12 @@ fn untouched(source: &Source<'_>, report: AssetReport) -> Result<Baked, BakeErro
 
 /// The textures of all jobs, on their way into the document.
 struct Assembly<'a> {
-    source: &'a Source<'a>,
+    reader: &'a Reader<'a>,
     settings: &'a Settings,
     document: Document,
     names: Names,
     /// Images that textures tell of.
-    told: BTreeSet<ImageLocation>,
+    told: BTreeSet<Arc<ImageLocation>>,
     textures: Vec<NewTexture>,
     ranges: Vec<Option<Range>>,
     /// The BIN chunk that became a file.
@@ -129,11 +147,12 @@ struct Assembly<'a> {
 }
 
 impl<'a> Assembly<'a> {
-    fn new(source: &'a Source<'a>, settings: &'a Settings) -> Result<Self, BakeError> {
+    fn new(reader: &'a Reader<'a>, settings: &'a Settings) -> Result<Self, BakeError> {
+        let source = reader.source;
         let (document, bin) =
-            if settings.glb { (container::to_glb(source)?, None) } else { container::to_gltf(source)? };
+            if settings.glb { (container::to_glb(reader)?, None) } else { container::to_gltf(source)? };
         Ok(Self {
-            source,
+            reader,
             settings,
             document,
             names: Names::new(source.stem),
@@ -182,7 +201,8 @@ impl<'a> Assembly<'a> {
         if self.settings.provenance {
             self.told.extend(texture.sources.iter().map(|(location, _)| location.clone()));
         }
-        let path = self.names.unique(&stem(&texture), texture.content.name());
+        let path = self.names.unique(&texture.stem, texture.content.name());
+        let name = path.rsplit('/').next().unwrap_or(&path).to_owned();
         let chain = texture.chain;
         self.report.textures.push(TextureReport {
             path: format!("{path}.ktx2"),
@@ -201,7 +221,7 @@ impl<'a> Assembly<'a> {
             (None, _) => None,
         };
         self.ranges.push(texture.range);
-        self.textures.push(NewTexture { ktx2, source, sampler: texture.sampler, slots: texture.slots });
+        self.textures.push(NewTexture { name, ktx2, source, sampler: texture.sampler, slots: texture.slots });
         Ok(())
     }
 
@@ -218,8 +238,10 @@ impl<'a> Assembly<'a> {
     }
 
     fn provenance(&self, texture: &JobTexture) -> Provenance {
-        let source =
-            |(location, blake3): &(_, String)| SourceDigest { uri: describe(location), blake3: blake3.clone() };
+        let source = |(location, blake3): &(Arc<ImageLocation>, String)| SourceDigest {
+            uri: describe(location),
+            blake3: blake3.clone(),
+        };
         Provenance {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             content: texture.content.name().to_owned(),
@@ -232,8 +254,8 @@ impl<'a> Assembly<'a> {
     fn finish(mut self) -> Result<Baked, BakeError> {
         let json = self.document.json_mut();
         if self.settings.provenance && !self.textures.is_empty() {
-            let told: Vec<PathBuf> = self.told.iter().filter_map(file).collect();
-            DocumentProvenance::new(self.source, |path| told.iter().any(|told| told == path))?.write(json)?;
+            let told: BTreeSet<PathBuf> = self.told.iter().filter_map(|location| file(location)).collect();
+            DocumentProvenance::new(self.reader, |path| told.contains(path))?.write(json)?;
         }
         // First, so that textures of the material's own lobe count as needed.
         for pyramid in &self.pyramids {
@@ -248,6 +270,8 @@ impl<'a> Assembly<'a> {
         for pointer in &self.anisotropies {
             json.set(&format!("{pointer}/anisotropyStrength"), &1)?;
             json.remove(&format!("{pointer}/anisotropyRotation"))?;
+        }
+        if !self.anisotropies.is_empty() {
             declare(json, "KHR_materials_anisotropy", false)?;
         }
         for pointer in &self.circles {
@@ -267,18 +291,26 @@ impl<'a> Assembly<'a> {
                 &pyramid.mapping,
                 pyramid.unfolded.clone(),
             );
+            if !extension.is_finite() {
+                return Err(BakeError::NotFinite { pointer: pyramid.pointer.clone() });
+            }
             json.set(&pyramid.pointer, &extension)?;
+        }
+        if !self.pyramids.is_empty() {
             declare(json, EXTENSION, false)?;
         }
+        let source = self.reader.source;
         if self.settings.glb {
-            container::embed_images(&mut self.document, self.source)?;
+            container::embed_images(&mut self.document, source)?;
+            container::compact_glb(&mut self.document, source.document)?;
         }
-        if let Some(mut bin) = self.bin {
-            container::trim_views(self.document.json_mut(), self.source.document.json(), &mut bin.bytes)?;
-            self.files.push(bin);
+        if let Some(NewFile { path, bytes }) = self.bin {
+            let bytes = compact(self.document.json_mut(), source.document.json(), bytes)?;
+            self.files.extend(bytes.map(|bytes| NewFile { path, bytes }));
         }
         let mut copies = container::files(self.document.json())?;
-        copies.retain(|copy| !self.files.iter().any(|file| file.path == *copy));
+        let made: HashSet<&Path> = self.files.iter().map(|file| file.path.as_path()).collect();
+        copies.retain(|copy| !made.contains(copy.as_path()));
         self.report.layers.sort_by_key(|layer| (layer.index, layer.layer));
         Ok(Baked {
             document: self.document.to_bytes()?,
@@ -295,18 +327,5 @@ fn file(location: &ImageLocation) -> Option<PathBuf> {
     match location {
         ImageLocation::Uri(uri) => relative_path(uri).ok(),
         ImageLocation::BufferView(_) => None,
-    }
-}
-
-/// The part of a texture's name that tells what it was made from.
-fn stem(texture: &JobTexture) -> String {
-    match &texture.named_after {
-        Ok(ImageLocation::Uri(uri)) if uri.starts_with("data:") => "image".to_owned(),
-        Ok(ImageLocation::Uri(uri)) => {
-            let path = relative_path(uri).unwrap_or_else(|_| PathBuf::from(uri));
-            path.file_stem().map_or_else(|| "image".to_owned(), |stem| stem.to_string_lossy().into_owned())
-        }
-        Ok(ImageLocation::BufferView(view)) => format!("image{view}"),
-        Err(material) => material.clone(),
     }
 }

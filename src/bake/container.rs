@@ -1,13 +1,16 @@
 //! The output document: a copy of the source in the container asked for.
 
+use std::collections::HashSet;
 use std::path::PathBuf;
 
 use serde::Deserialize;
 use serde_json::{Value, json};
 
 use super::asset::NewFile;
+use super::compact::compact;
+use super::reader::Reader;
 use super::source::{Source, SourceError};
-use crate::gltf::document::{Container, Document, DocumentError};
+use crate::gltf::document::{Container, Document, DocumentError, holds_buffer_0};
 use crate::gltf::json::{Json, JsonError};
 use crate::gltf::uri::{Uri, UriError, encode_path};
 
@@ -40,13 +43,15 @@ pub enum ContainerError {
     },
 }
 
-/// The document as a .gltf. The BIN chunk of a .glb becomes a file of its own, which is returned with its path.
+/// The document as a .gltf. The BIN chunk of a .glb becomes a file of its own, which is returned with its path, if it is
+/// buffer 0.
 pub fn to_gltf(source: &Source<'_>) -> Result<(Document, Option<NewFile>), ContainerError> {
     if source.document.container() == Container::Gltf {
         return Ok((source.document.clone(), None));
     }
     let mut json = source.document.json().clone();
-    let Some(bin) = source.document.bin() else {
+    let root = json.value("")?.unwrap_or_default();
+    let Some(bin) = source.document.bin().filter(|_| holds_buffer_0(&root)) else {
         return Ok((Document::gltf(json), None));
     };
     let path = format!("{}.roughcast/{}.bin", source.stem, source.stem);
@@ -56,12 +61,18 @@ pub fn to_gltf(source: &Source<'_>) -> Result<(Document, Option<NewFile>), Conta
     Ok((Document::gltf(json), Some(NewFile { path: PathBuf::from(path), bytes })))
 }
 
-/// The document as a .glb, with every buffer in its BIN chunk.
-pub fn to_glb(source: &Source<'_>) -> Result<Document, ContainerError> {
+/// The document as a .glb, with every buffer in its BIN chunk. `reader` holds them all.
+pub fn to_glb(reader: &Reader<'_>) -> Result<Document, ContainerError> {
+    let source = reader.source;
     let json = source.document.json();
     let uris = buffer_uris(json)?;
     if source.document.container() == Container::Glb && uris.iter().all(Option::is_none) {
-        return Ok(source.document.clone());
+        let mut document = source.document.clone();
+        if uris.is_empty() {
+            // A BIN chunk without a buffer is nobody's.
+            document.set_bin(None)?;
+        }
+        return Ok(document);
     }
     let mut json = json.clone();
     let views: Vec<Value> = json.read("/bufferViews")?.unwrap_or_default();
@@ -73,7 +84,7 @@ pub fn to_glb(source: &Source<'_>) -> Result<Document, ContainerError> {
     for index in 0..uris.len() {
         bin.resize(bin.len().next_multiple_of(4), 0);
         starts.push(bin.len());
-        bin.extend_from_slice(&source.buffer(index)?);
+        bin.extend_from_slice(reader.buffer(index)?);
     }
     for (index, view) in views.iter().enumerate() {
         let number = |key: &str| view.get(key).and_then(Value::as_u64).and_then(|n| usize::try_from(n).ok());
@@ -99,47 +110,17 @@ pub fn to_glb(source: &Source<'_>) -> Result<Document, ContainerError> {
     Ok(Document::glb(json, Some(bin)))
 }
 
-/// Removes buffer views from the end of `json` as long as they held images of `source` that were baked and nothing refers
-/// to them any more, and their bytes from `bin`, which is buffer 0. Views before one in use stay, since extensions may
-/// number them in ways of their own.
-pub fn trim_views(json: &mut Json, source: &Json, bin: &mut Vec<u8>) -> Result<(), ContainerError> {
-    let root: Value = json.value("")?.unwrap_or_default();
-    let views = root.get("bufferViews").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
-    let mut used = Vec::new();
-    for (key, value) in root.as_object().into_iter().flatten().filter(|(key, _)| *key != "bufferViews") {
-        view_references(key, value, &mut used);
-    }
-    let of_images = image_views(source)?;
-    let is_free = |view: usize| of_images.contains(&view) && !used.contains(&view);
-    let kept = (0..views.len()).rev().find(|view| !is_free(*view)).map_or(0, |last| last + 1);
-    if kept == views.len() || views.iter().any(|v| v.get("extensions").is_some()) {
-        return Ok(());
-    }
-    let end = |view: &Value| {
-        let number = |key: &str| view.get(key).and_then(Value::as_u64).unwrap_or(0);
-        if number("buffer") == 0 { number("byteOffset").saturating_add(number("byteLength")) } else { 0 }
-    };
-    let length = views[..kept].iter().map(end).max().unwrap_or(0);
-    let length = usize::try_from(length).map_or(bin.len(), |length| length.min(bin.len()));
-    if kept == 0 || length == 0 {
-        return Ok(());
-    }
-    json.retain("/bufferViews", |index| index < kept)?;
-    json.set("/buffers/0/byteLength", &length)?;
-    bin.truncate(length);
-    Ok(())
-}
-
-/// Numbers of buffer views in `value`, which is the member `key` of some object: whatever has that name.
-fn view_references(key: &str, value: &Value, found: &mut Vec<usize>) {
-    match value {
-        Value::Object(members) => members.iter().for_each(|(key, member)| view_references(key, member, found)),
-        Value::Array(elements) => elements.iter().for_each(|element| view_references(key, element, found)),
-        _ if key == "bufferView" => {
-            found.extend(value.as_u64().map(|view| usize::try_from(view).unwrap_or(usize::MAX)));
+/// Takes what only replaced images of `source` needed out of the BIN chunk of a .glb: see [`compact`].
+pub fn compact_glb(document: &mut Document, source: &Document) -> Result<(), ContainerError> {
+    let root: Value = document.json().value("")?.unwrap_or_default();
+    if let Some(bin) = document.bin().filter(|_| holds_buffer_0(&root)).map(<[u8]>::to_vec) {
+        let length = bin.len();
+        let bin = compact(document.json_mut(), source.json(), bin)?;
+        if bin.as_ref().is_none_or(|bin| bin.len() < length) {
+            document.set_bin(bin.as_deref())?;
         }
-        _ => {}
     }
+    Ok(())
 }
 
 /// Adds `bytes` to the BIN chunk of a .glb; returns the index of a buffer view of them.
@@ -180,14 +161,14 @@ pub fn buffer_files(json: &Json) -> Result<Vec<PathBuf>, ContainerError> {
 }
 
 fn named(lists: &[(&str, Vec<Option<String>>)]) -> Result<Vec<PathBuf>, ContainerError> {
-    let mut files = Vec::new();
+    let (mut files, mut seen) = (Vec::new(), HashSet::new());
     for (array, uris) in lists {
         for (index, uri) in uris.iter().enumerate() {
             let Some(uri) = uri else { continue };
             let parsed =
                 Uri::parse(uri).map_err(|error| ContainerError::Uri { pointer: format!("{array}[{index}]"), error })?;
             if let Uri::Path(path) = parsed
-                && !files.contains(&path)
+                && seen.insert(path.clone())
             {
                 files.push(path);
             }
@@ -206,66 +187,7 @@ fn image_uris(json: &Json) -> Result<Vec<Option<String>>, JsonError> {
     Ok(images.into_iter().map(|i| i.uri).collect())
 }
 
-/// The buffer views that images name.
-fn image_views(json: &Json) -> Result<Vec<usize>, JsonError> {
-    #[derive(Deserialize)]
-    #[serde(rename_all = "camelCase")]
-    struct Image {
-        buffer_view: Option<usize>,
-    }
-    let images: Vec<Image> = json.read("/images")?.unwrap_or_default();
-    Ok(images.into_iter().filter_map(|i| i.buffer_view).collect())
-}
-
 fn buffer_uris(json: &Json) -> Result<Vec<Option<String>>, JsonError> {
     let buffers: Vec<Named> = json.read("/buffers")?.unwrap_or_default();
     Ok(buffers.into_iter().map(|b| b.uri).collect())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn trimmed(json: &Value, length: usize) -> (Value, usize) {
-        let before = json!({ "images": [{ "bufferView": 1 }, { "bufferView": 2 }] });
-        let before = Json::parse(before.to_string().as_bytes()).unwrap();
-        let mut json = Json::parse(json.to_string().as_bytes()).unwrap();
-        let mut bin = vec![0; length];
-        trim_views(&mut json, &before, &mut bin).unwrap();
-        (json.value("").unwrap().unwrap(), bin.len())
-    }
-
-    fn document(last_image: &Value) -> Value {
-        json!({
-            "accessors": [{ "bufferView": 0 }],
-            "images": [{ "uri": "new.png" }, last_image],
-            "buffers": [{ "byteLength": 300 }],
-            "bufferViews": [
-                { "buffer": 0, "byteLength": 100 },
-                { "buffer": 0, "byteOffset": 100, "byteLength": 120 },
-                { "buffer": 0, "byteOffset": 220, "byteLength": 80 },
-            ],
-        })
-    }
-
-    #[test]
-    fn views_of_replaced_images_go_with_their_bytes() {
-        let (json, length) = trimmed(&document(&json!({ "uri": "other.png" })), 300);
-        assert_eq!(json["bufferViews"].as_array().unwrap().len(), 1);
-        assert_eq!((&json["buffers"][0]["byteLength"], length), (&json!(100), 100));
-    }
-
-    #[test]
-    fn views_before_one_in_use_stay() {
-        let before = document(&json!({ "bufferView": 2 }));
-        assert_eq!(trimmed(&before, 300), (before, 300));
-        // A view that was never an image's may be a table's.
-        let mut tables = document(&json!({ "uri": "other.png" }));
-        let views = tables["bufferViews"].as_array_mut().unwrap();
-        views.push(json!({ "buffer": 0, "byteOffset": 300, "byteLength": 20 }));
-        assert_eq!(trimmed(&tables, 320), (tables, 320));
-        let mut compressed = document(&json!({ "uri": "other.png" }));
-        compressed["bufferViews"][0]["extensions"] = json!({ "EXT_meshopt_compression": { "buffer": 1 } });
-        assert_eq!(trimmed(&compressed, 300), (compressed, 300));
-    }
 }

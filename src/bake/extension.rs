@@ -56,6 +56,12 @@ struct Anisotropy {
 }
 
 impl Unfolded {
+    fn factors(&self) -> [f32; 3] {
+        let (strength, rotation) =
+            self.anisotropy.as_ref().map_or((0.0, 0.0), |a| (a.anisotropy_strength, a.anisotropy_rotation));
+        [self.roughness_factor, strength, rotation]
+    }
+
     /// As `layer` says, whose textures stay in the document.
     pub fn new(layer: &Layer) -> Self {
         Self {
@@ -139,6 +145,19 @@ impl Extension {
             main_direction,
             unfolded,
         }
+    }
+}
+
+impl Extension {
+    /// Whether all numbers are ones that JSON has: others would be written as `null`.
+    pub fn is_finite(&self) -> bool {
+        let ranges =
+            [Some(&self.offset_min), Some(&self.offset_max), self.roughness_min.as_ref(), self.roughness_max.as_ref()];
+        let own = self.unfolded.as_ref().map_or([0.0; 3], Unfolded::factors);
+        let direction = self.main_direction.unwrap_or_default();
+        let mut all =
+            ranges.into_iter().flatten().flatten().chain(&own).chain(&direction).chain([&self.correction_factor]);
+        all.all(|number| number.is_finite())
     }
 }
 

@@ -1,17 +1,19 @@
 //! Names of output files: stable, readable, and unlike each other on every file system.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 
 /// Gives out paths in the folder `<stem>.roughcast`, relative to the document.
 pub struct Names {
     folder: String,
     taken: BTreeSet<String>,
+    /// The last number of each name, so that many of one name do not try all numbers again.
+    last: HashMap<String, u32>,
 }
 
 impl Names {
     /// For the asset whose file is called `stem` without its extension.
     pub fn new(stem: &str) -> Self {
-        Self { folder: format!("{stem}.roughcast"), taken: BTreeSet::new() }
+        Self { folder: format!("{stem}.roughcast"), taken: BTreeSet::new(), last: HashMap::new() }
     }
 
     /// `<folder>/<stem>.<content>`, numbered from the second of its kind on; without an extension.
@@ -22,7 +24,9 @@ impl Names {
             _ => format!("{stem}.{content}-{number}"),
         };
         // Case-insensitive file systems see one file where names differ by case only.
-        let number = (1..).find(|n| self.taken.insert(name(*n).to_lowercase())).unwrap_or(1);
+        let last = self.last.entry(name(1).to_lowercase()).or_insert(0);
+        let number = (*last + 1..).find(|n| self.taken.insert(name(*n).to_lowercase())).unwrap_or(1);
+        *last = number;
         format!("{}/{}", self.folder, name(number))
     }
 }
@@ -43,5 +47,14 @@ mod tests {
         assert_eq!(names.unique("brass", "normal"), "helmet.roughcast/brass.normal-2");
         assert_eq!(names.unique("Brass", "roughness"), "helmet.roughcast/Brass.roughness");
         assert_eq!(names.unique("a/b:c*", "normal"), "helmet.roughcast/a_b_c_.normal");
+        assert_eq!(names.unique("BRASS", "normal"), "helmet.roughcast/BRASS.normal-3");
+    }
+
+    /// Each would try all numbers before its own: 5 * 10^9 of them.
+    #[test]
+    fn many_textures_of_one_name_are_numbered_one_after_the_other() {
+        let mut names = Names::new("helmet");
+        let last = (0..100_000).map(|_| names.unique("image", "normal")).last();
+        assert_eq!(last.as_deref(), Some("helmet.roughcast/image.normal-100000"));
     }
 }

@@ -1,5 +1,9 @@
 //! What is to be baked: bumps grouped by their map, and under each the lobes that they roughen.
 
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+use std::sync::Arc;
+
 use serde_json::Value;
 
 use super::geometry::Geometry;
@@ -8,13 +12,13 @@ use crate::bump::{Frame, Wrap};
 use crate::gltf::geometry::Layout;
 use crate::gltf::material::{BumpSource, Layer, LayerKind, Material, TextureUse};
 use crate::gltf::rewrite::Slot;
-use crate::gltf::texture::{ImageLocation, TextureError, TextureSource, texture_source};
+use crate::gltf::texture::{ImageLocation, TextureError, TextureSource, Textures};
 
 /// A bump map and all layers that use it.
 #[derive(Debug)]
 pub struct ReliefPlan {
     /// Where the map is.
-    pub source: TextureSource,
+    pub source: Arc<TextureSource>,
     /// How it is read.
     pub kind: ReliefKind,
     /// Its uses.
@@ -60,9 +64,18 @@ pub struct LayerPlan {
 #[derive(Clone, Debug, PartialEq)]
 pub struct OwnTextures {
     /// Green is roughness.
-    pub roughness: Option<TextureSource>,
+    pub roughness: Option<Arc<TextureSource>>,
     /// Direction and strength.
-    pub anisotropy: Option<TextureSource>,
+    pub anisotropy: Option<Arc<TextureSource>>,
+}
+
+/// What a layer's folded lobe depends on, besides its bumps. Layers with equal keys share their textures.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct FoldKey {
+    kind: LayerKind,
+    textures: [Option<usize>; 2],
+    factors: [u32; 2],
+    anisotropy: Option<[u32; 2]>,
 }
 
 /// A material that cannot be planned.
@@ -85,6 +98,8 @@ pub fn plan(
     geometry: &Geometry<'_>,
 ) -> Result<Vec<ReliefPlan>, PlanError> {
     let mut reliefs: Vec<ReliefPlan> = Vec::new();
+    let mut places: HashMap<_, usize> = HashMap::new();
+    let mut textures = Textures::of(root);
     for Material { index, name, layers } in materials {
         for layer in layers {
             let failed = |part| {
@@ -92,19 +107,47 @@ pub fn plan(
                 move |error| PlanError { material, part, error }
             };
             let bumps = layer.bumps.texture().clone();
-            let source = texture_source(root, bumps.texture).map_err(failed("normal or height texture"))?;
+            let source = textures.get(bumps.texture).map_err(failed("normal or height texture"))?;
             let layout = geometry.layout(index, &bumps.mapping);
             let mut notes = Vec::new();
             let (kind, slope_scale) = read_as(&layer.bumps, &source, settings, layout.as_ref(), &mut notes);
-            let own = textures_of_lobe(root, &layer, &source).map_err(failed("roughness or anisotropy texture"))?;
+            let own =
+                textures_of_lobe(&mut textures, &layer, &source).map_err(failed("roughness or anisotropy texture"))?;
             let plan = LayerPlan { material: index, name: name.clone(), layer, slope_scale, layout, own, notes };
-            match reliefs.iter_mut().find(|r| r.source.is_same(&source) && r.kind == kind) {
-                Some(relief) => relief.layers.push(plan),
-                None => reliefs.push(ReliefPlan { source, kind, layers: vec![plan] }),
+            match places.entry((address(&source), kind.key())) {
+                Entry::Occupied(place) => reliefs[*place.get()].layers.push(plan),
+                Entry::Vacant(place) => {
+                    place.insert(reliefs.len());
+                    reliefs.push(ReliefPlan { source, kind, layers: vec![plan] });
+                }
             }
         }
     }
     Ok(reliefs)
+}
+
+/// What tells a texture from others, of those that [`Textures`] returned.
+fn address(texture: &Arc<TextureSource>) -> usize {
+    Arc::as_ptr(texture).addr()
+}
+
+/// What tells a finite number from others: 0 and -0 are one.
+fn bits(number: f32) -> u32 {
+    (number + 0.0).to_bits()
+}
+
+/// What tells a [`ReliefKind`] from others: nothing of normals.
+type KindKey = Option<([u32; 2], bool, [Wrap; 2])>;
+
+impl ReliefKind {
+    fn key(&self) -> KindKey {
+        match *self {
+            Self::Normals => None,
+            Self::Heights { slope_per_repeat, square_texels, wrap } => {
+                Some((slope_per_repeat.map(bits), square_texels, wrap))
+            }
+        }
+    }
 }
 
 fn read_as(
@@ -137,7 +180,7 @@ fn read_as(
 
 /// The textures of the layer's own lobe. The inner error says why bumps cannot be folded into them texel by texel.
 fn textures_of_lobe(
-    root: &Value,
+    textures: &mut Textures<'_>,
     layer: &Layer,
     bumps: &TextureSource,
 ) -> Result<Result<OwnTextures, String>, TextureError> {
@@ -148,7 +191,7 @@ fn textures_of_lobe(
     });
     let mut read = |what: &str, texture: Option<&TextureUse>| {
         let Some(texture) = texture else { return Ok(None) };
-        let source = texture_source(root, texture.texture)?;
+        let source = textures.get(texture.texture)?;
         if !texture.mapping.is_same(mapping) {
             reason = Some(format!(
                 "the {what} texture has other texture coordinates or another KHR_texture_transform than the bumps: \
@@ -212,26 +255,25 @@ impl LayerPlan {
         Slot { pointer: self.pointer(member), mapping: self.layer.bumps.texture().mapping.clone() }
     }
 
-    /// Whether `other` asks for the same folded lobe.
-    pub fn folds_like(&self, other: &Self) -> bool {
-        let location = |t: &Option<TextureSource>| t.as_ref().map(|t| (t.location.clone(), t.sampler));
-        let textures = |own: &Result<OwnTextures, String>| {
-            own.as_ref().ok().map(|own| (location(&own.roughness), location(&own.anisotropy)))
-        };
-        let factors = |plan: &Self| {
-            let anisotropy = plan.layer.anisotropy.as_ref().map(|a| (a.strength, a.rotation));
-            (plan.layer.kind, plan.layer.roughness_factor, plan.slope_scale, anisotropy)
-        };
-        self.own.is_ok() && textures(&self.own) == textures(&other.own) && factors(self) == factors(other)
+    /// What tells the layer's folded lobe from others'; `None` where nothing can be folded.
+    pub fn fold_key(&self) -> Option<FoldKey> {
+        let own = self.own.as_ref().ok()?;
+        let anisotropy = self.layer.anisotropy.as_ref().map(|a| [bits(a.strength), bits(a.rotation)]);
+        Some(FoldKey {
+            kind: self.layer.kind,
+            textures: [&own.roughness, &own.anisotropy].map(|texture| texture.as_ref().map(address)),
+            factors: [bits(self.layer.roughness_factor), bits(self.slope_scale)],
+            anisotropy,
+        })
     }
 
     /// The layer's own textures, of roughness and of anisotropy.
     pub fn own_textures(&self) -> [Option<&TextureSource>; 2] {
-        self.own.as_ref().map_or([None; 2], |own| [own.roughness.as_ref(), own.anisotropy.as_ref()])
+        self.own.as_ref().map_or([None; 2], |own| [own.roughness.as_deref(), own.anisotropy.as_deref()])
     }
 
     /// Where the layer's own textures are.
-    pub fn own_locations(&self) -> Vec<&ImageLocation> {
+    pub fn own_locations(&self) -> Vec<&Arc<ImageLocation>> {
         self.own_textures().into_iter().flatten().map(|t| &t.location).collect()
     }
 }

@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use super::asset::BakeError;
 use super::container;
-use super::source::Source;
+use super::reader::Reader;
 use crate::digest::digest;
 use crate::gltf::document::Document;
 use crate::gltf::json::Json;
@@ -30,21 +30,21 @@ impl DocumentProvenance {
     /// Where it stands: glTF keeps `extras` for applications, and engines pass over them.
     pub const PLACE: &str = "/asset/extras/roughcast";
 
-    /// Of what is baked from `source`, without the files that `is_told` says textures tell of.
+    /// Records what is baked from the source of `reader`, without the files that `is_told` says textures tell of.
     ///
     /// # Errors
     /// [`BakeError`] where the document cannot be written. Files that cannot be read are left out.
-    pub fn new(source: &Source<'_>, is_told: impl Fn(&Path) -> bool) -> Result<Self, BakeError> {
+    pub fn new(reader: &Reader<'_>, is_told: impl Fn(&Path) -> bool) -> Result<Self, BakeError> {
         let mut files = Vec::new();
-        for path in container::files(source.document.json())? {
+        for path in container::files(reader.source.document.json())? {
             if !is_told(&path)
-                && let Ok(bytes) = source.files.read(&path)
+                && let Some(blake3) = reader.digest(&path)
             {
                 let names: Vec<_> = path.iter().map(OsStr::to_string_lossy).collect();
-                files.push(SourceDigest { uri: encode_path(&names.join("/")), blake3: digest(&bytes) });
+                files.push(SourceDigest { uri: encode_path(&names.join("/")), blake3 });
             }
         }
-        let document = digest(&source.document.to_bytes()?);
+        let document = digest(&reader.source.document.to_bytes()?);
         Ok(Self { version: env!("CARGO_PKG_VERSION").to_owned(), document, files })
     }
 

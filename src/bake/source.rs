@@ -3,8 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use serde::Deserialize;
-
+use crate::foreign::Foreign;
 use crate::gltf::document::{Document, DocumentError};
 use crate::gltf::texture::ImageLocation;
 use crate::gltf::uri::{Uri, UriError};
@@ -27,6 +26,11 @@ pub trait Files: Sync {
 
     /// Takes note of the BLAKE3, in hexadecimal, of what [`Self::read_to_hash`] read.
     fn hashed(&self, _path: &Path, _blake3: &str) {}
+
+    /// Whether there is no file, as far as that is known without reading it.
+    fn is_missing(&self, _path: &Path) -> bool {
+        false
+    }
 }
 
 impl<F: Fn(&Path) -> io::Result<Vec<u8>> + Sync> Files for F {
@@ -60,6 +64,20 @@ pub enum SourceError {
         /// The system's error.
         error: io::Error,
     },
+    /// Files that are not there.
+    #[error("{}", missing(paths))]
+    Missing {
+        /// Relative to the document, in its order.
+        paths: Vec<PathBuf>,
+    },
+    /// A file that holds something else than bytes of a buffer.
+    #[error("expected the bytes of a buffer at {}, found {found}", path.display())]
+    Foreign {
+        /// Relative to the document.
+        path: PathBuf,
+        /// What it is.
+        found: Foreign,
+    },
     /// A buffer view leads nowhere.
     #[error(transparent)]
     Document(#[from] DocumentError),
@@ -83,8 +101,25 @@ pub enum SourceError {
     },
 }
 
+/// Files that an error names before it only counts the others.
+const MOST_NAMED: usize = 10;
+
+/// The message about missing files: the first few by name, the others by number.
+fn missing(paths: &[PathBuf]) -> String {
+    let names: Vec<String> = paths.iter().take(MOST_NAMED).map(|path| path.display().to_string()).collect();
+    let names = names.join(", ");
+    match paths.len() {
+        0 | 1 => format!("expected a readable file at {names}, found none; put it there or fix the URI"),
+        count => {
+            let more = count.saturating_sub(MOST_NAMED);
+            let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+            format!("expected readable files at {names}{more}, found none; put them there or fix their URIs")
+        }
+    }
+}
+
 /// Largest data URI that is decoded: more than any texture of the largest size allowed.
-const MAX_DATA_URI: usize = 2 << 30;
+pub(super) const MAX_DATA_URI: usize = 2 << 30;
 
 impl Source<'_> {
     /// The bytes that `uri` names.
@@ -92,27 +127,14 @@ impl Source<'_> {
         self.uri_by(uri, |path| self.files.read(path))
     }
 
-    fn uri_by(&self, uri: &str, read: impl Fn(&Path) -> io::Result<Vec<u8>>) -> Result<Vec<u8>, SourceError> {
+    pub(super) fn uri_by(
+        &self,
+        uri: &str,
+        read: impl Fn(&Path) -> io::Result<Vec<u8>>,
+    ) -> Result<Vec<u8>, SourceError> {
         match Uri::parse(uri)? {
             Uri::Data(data) => Ok(data.decode(MAX_DATA_URI)?),
             Uri::Path(path) => read(&path).map_err(|error| SourceError::Read { path, error }),
-        }
-    }
-
-    /// The bytes of an image file, for a caller who tells [`Self::hashed`] of them.
-    pub fn image_to_hash(&self, location: &ImageLocation) -> Result<Vec<u8>, SourceError> {
-        match location {
-            ImageLocation::Uri(uri) => self.uri_by(uri, |path| self.files.read_to_hash(path)),
-            ImageLocation::BufferView(_) => self.image(location),
-        }
-    }
-
-    /// Takes note of the BLAKE3, in hexadecimal, of what [`Self::image_to_hash`] read.
-    pub fn hashed(&self, location: &ImageLocation, blake3: &str) {
-        if let ImageLocation::Uri(uri) = location
-            && let Ok(Uri::Path(path)) = Uri::parse(uri)
-        {
-            self.files.hashed(&path, blake3);
         }
     }
 
@@ -140,26 +162,5 @@ impl Source<'_> {
             }
             None => Err(SourceError::NoBuffer { buffer: index }),
         }
-    }
-
-    /// Checks that every buffer that is there holds the bytes that it declares. A buffer without data is legal: it may be
-    /// the fallback of compressed ones.
-    pub fn check_buffers(&self) -> Result<(), SourceError> {
-        #[derive(Deserialize)]
-        #[serde(rename_all = "camelCase")]
-        struct Buffer {
-            uri: Option<String>,
-            byte_length: usize,
-        }
-        let buffers: Vec<Buffer> =
-            self.document.json().read("/buffers").map_err(DocumentError::from)?.unwrap_or_default();
-        for (index, Buffer { uri, byte_length: expected }) in buffers.iter().enumerate() {
-            let has_bytes = uri.is_some() || (index == 0 && self.document.bin().is_some());
-            let found = if has_bytes { self.buffer(index)?.len() } else { *expected };
-            if found < *expected {
-                return Err(SourceError::ShortBuffer { buffer: index, expected: *expected, found });
-            }
-        }
-        Ok(())
     }
 }

@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use super::asset::BakeError;
 use super::container;
-use crate::gltf::document::{Container, Document};
+use crate::gltf::document::{Container, Document, check_version};
 use crate::gltf::json::Json;
 use crate::gltf::material::materials;
 
@@ -30,6 +30,7 @@ pub struct Survey {
 pub fn survey(document: &Document) -> Result<Survey, BakeError> {
     let json: &Json = document.json();
     let root: Value = json.value("")?.unwrap_or_default();
+    check_version(&root)?;
     let materials = materials(&root).into_iter().collect::<Result<Vec<_>, _>>()?;
     Ok(Survey {
         files: container::files(json)?,

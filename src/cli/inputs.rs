@@ -112,6 +112,10 @@ pub fn find(arguments: &[PathBuf], output: &Path) -> (Vec<Input>, Vec<InputError
     (inputs, errors)
 }
 
+/// Extensions of scenes in other formats, from which tools export glTF.
+const SCENES: [&str; 16] =
+    ["3ds", "abc", "blend", "c4d", "dae", "fbx", "ma", "max", "mb", "obj", "ply", "stl", "usd", "usda", "usdc", "usdz"];
+
 fn find_one(argument: &Path, output: &Path) -> Result<(Vec<Input>, Vec<InputError>), InputError> {
     let path = argument.to_owned();
     let facts =
@@ -126,7 +130,13 @@ fn find_one(argument: &Path, output: &Path) -> Result<(Vec<Input>, Vec<InputErro
         if !is_asset(argument) {
             let found = argument.extension().map_or_else(
                 || "a file without extension".to_owned(),
-                |e| format!("a .{} file (bare maps are for `roughcast map`)", e.to_string_lossy()),
+                |e| {
+                    let extension = e.to_string_lossy();
+                    let is_scene = SCENES.iter().any(|scene| extension.eq_ignore_ascii_case(scene));
+                    let remedy =
+                        if is_scene { "export the scene as glTF 2.0" } else { "bare maps are for `roughcast map`" };
+                    format!("a .{extension} file ({remedy})")
+                },
             );
             return Err(InputError::NotAnAsset { path, found });
         }

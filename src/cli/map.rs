@@ -197,7 +197,8 @@ fn bake(args: &Args, settings: &Settings) -> Result<Written, MapCommandError> {
             let mut load = |path: &PathBuf| {
                 let bytes = read(path)?;
                 let image = decoded(path, &bytes, None, settings, decode_colours)?;
-                image.check_finite().map_err(|error| MapCommandError::Map { path: path.clone(), error })?;
+                let failed = |error| MapCommandError::Map { path: path.clone(), error };
+                let image = image.into_finite_colours().map_err(failed)?;
                 sources.push(source_digest(path, &bytes));
                 Ok::<_, MapCommandError>(image)
             };

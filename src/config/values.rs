@@ -5,6 +5,7 @@ use serde_json::{Map, Value};
 
 use crate::bake::{Form, Model, Profile, Settings, View};
 use crate::bump::Frame;
+use crate::gltf::material::MAX_HEIGHT_SCALE;
 use crate::lobe::Family;
 use crate::roughness::Distribution;
 use crate::texture::Target;
@@ -169,7 +170,9 @@ impl Values {
             value => Ok(value),
         };
         let max_error = within("max-error", self.max_error, "a number from 0 to 1", |x| (0.0..=1.0).contains(&x))?;
-        let height_scale = within("height-scale", self.height_scale, "a finite number", |_| true)?;
+        let height_scale = within("height-scale", self.height_scale, "a number from -1000000 to 1000000", |x| {
+            x.abs() <= f64::from(MAX_HEIGHT_SCALE)
+        })?;
         let rdo = within("rdo", self.rdo, "a number above 0, up to 6", |x| 0.0 < x && x <= 6.0)?;
         Ok(Settings {
             profile: self.profile.unwrap_or_default(),

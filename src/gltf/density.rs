@@ -1,9 +1,8 @@
 //! How densely textures lie on the surfaces of the scenes: the size of a texel in scene units.
 
-use serde_json::Value;
-
 use super::material::Mapping;
-use super::scene::{BadNode, Metric, Placement, Unsteady, has_moving_coordinates, product};
+use super::meshes::Meshes;
+use super::scene::{BadNode, Metric, Placement, Unsteady, product};
 use super::triangles::{Accessors, Vertex, cross, length, minus, tangents};
 
 /// Why no one can tell how large the texels of a material get.
@@ -53,19 +52,19 @@ pub struct Density {
 /// # Errors
 /// [`NoDensity`] when some triangle may be larger than the document tells.
 pub fn density<'a>(
-    root: &Value,
+    meshes: &Meshes<'_>,
     placements: &[Placement],
     material: usize,
     mapping: &Mapping,
     size: (u32, u32),
     buffer: &dyn Fn(usize) -> Option<&'a [u8]>,
 ) -> Result<Density, NoDensity> {
-    if has_moving_coordinates(root, material) {
+    if meshes.has_moving_coordinates(material) {
         return Err(NoDensity::MovingCoordinates);
     }
     let (mut sums, mut failure) = (Sums::default(), None);
     let is_complete =
-        Accessors { root, buffer }.visit_material(material, mapping, |mesh, triangle| match placements.get(mesh) {
+        Accessors { meshes, buffer }.visit_material(material, mapping, |mesh, triangle| match placements.get(mesh) {
             None | Some(Placement::Absent) => failure = failure.or(Some(NoDensity::InNoScene { mesh })),
             Some(Placement::Unsteady(reason)) => {
                 failure = failure.or(Some(NoDensity::Unsteady { mesh, reason: *reason }));

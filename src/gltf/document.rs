@@ -2,18 +2,21 @@
 
 mod error;
 mod glb;
+mod kind;
 #[cfg(test)]
 mod tests;
 
 use std::ops::Range;
 
 use serde::Deserialize;
-use serde_json::json;
+use serde::de::DeserializeOwned;
+use serde_json::{Value, json};
 
-use super::json::Json;
+use super::json::{Json, JsonError};
 use glb::{Chunks, MAGIC};
 
 pub use error::DocumentError;
+pub use kind::check_version;
 
 /// The two forms a glTF asset is stored in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -53,10 +56,12 @@ impl Document {
     /// Reads a file of either form; which one, its first four bytes tell.
     ///
     /// # Errors
-    /// [`DocumentError::Json`] if the JSON is not well formed, and for a GLB whatever is wrong with
-    /// its version, lengths and chunks. What the JSON means is not looked at.
+    /// [`DocumentError::Json`] if the JSON is not well formed, [`DocumentError::NotGltf`] and [`DocumentError::Foreign`]
+    /// for other files, and for a GLB whatever is wrong with its version, lengths and chunks. What the JSON means is not
+    /// looked at: see [`check_version`].
     pub fn parse(bytes: &[u8]) -> Result<Document, DocumentError> {
         if !bytes.starts_with(MAGIC) {
+            kind::check_text(bytes)?;
             return Ok(Document::gltf(Json::parse(bytes)?));
         }
         let (json, chunks) = Chunks::parse(bytes)?;
@@ -88,9 +93,19 @@ impl Document {
         &mut self.json
     }
 
-    /// The BIN chunk of a GLB with its padding: up to 3 bytes more than buffer 0 declares.
+    /// The BIN chunk of a GLB with its padding: up to 3 bytes more than buffer 0 declares. Whether buffer 0 is stored in it
+    /// is for [`holds_buffer_0`] to say.
     pub fn bin(&self) -> Option<&[u8]> {
         self.chunks.as_ref()?.bin()
+    }
+
+    /// Replaces the BIN chunk of a GLB, padded to a multiple of 4, or removes it; other chunks stay.
+    ///
+    /// # Errors
+    /// [`DocumentError::NotGlb`].
+    pub fn set_bin(&mut self, bin: Option<&[u8]>) -> Result<(), DocumentError> {
+        self.chunks.as_mut().ok_or(DocumentError::NotGlb)?.set_bin(bin);
+        Ok(())
     }
 
     /// The file. Without edits, these are the bytes it was read from; in a GLB an edit of the JSON
@@ -148,15 +163,42 @@ impl Document {
         let view: BufferView = self.json.read(&pointer)?.ok_or(DocumentError::Missing { pointer })?;
         let pointer = format!("/buffers/{}", view.buffer);
         let buffer: Buffer = self.json.read(&pointer)?.ok_or(DocumentError::Missing { pointer })?;
-        match view.byte_offset.checked_add(view.byte_length) {
-            Some(end) if end <= buffer.byte_length => Ok((view.buffer, view.byte_offset..end)),
-            _ => Err(DocumentError::ViewOutside {
-                view: index,
-                offset: view.byte_offset,
-                length: view.byte_length,
-                buffer: view.buffer,
-                buffer_length: buffer.byte_length,
-            }),
-        }
+        range(index, &view, &buffer)
     }
+}
+
+/// [`Document::buffer_view`] of a document whose JSON is `root`, which need not be read again for each view.
+///
+/// # Errors
+/// As there.
+pub fn view_range(root: &Value, index: usize) -> Result<(usize, Range<usize>), DocumentError> {
+    let view: BufferView = element(root, "bufferViews", index)?;
+    let buffer: Buffer = element(root, "buffers", view.buffer)?;
+    range(index, &view, &buffer)
+}
+
+fn element<T: DeserializeOwned>(root: &Value, array: &str, index: usize) -> Result<T, DocumentError> {
+    let pointer = || format!("/{array}/{index}");
+    let element = root.get(array).and_then(|array| array.get(index));
+    let element = element.ok_or_else(|| DocumentError::Missing { pointer: pointer() })?;
+    T::deserialize(element).map_err(|source| JsonError::Read { pointer: pointer(), source }.into())
+}
+
+fn range(index: usize, view: &BufferView, buffer: &Buffer) -> Result<(usize, Range<usize>), DocumentError> {
+    match view.byte_offset.checked_add(view.byte_length) {
+        Some(end) if end <= buffer.byte_length => Ok((view.buffer, view.byte_offset..end)),
+        _ => Err(DocumentError::ViewOutside {
+            view: index,
+            offset: view.byte_offset,
+            length: view.byte_length,
+            buffer: view.buffer,
+            buffer_length: buffer.byte_length,
+        }),
+    }
+}
+
+/// Whether the BIN chunk of a GLB holds buffer 0 of `root`, its JSON: a first buffer with a `uri` is stored elsewhere, and
+/// the chunk is then nobody's (glTF 2.0, section 4.4.3.3).
+pub fn holds_buffer_0(root: &Value) -> bool {
+    root.pointer("/buffers/0").is_some_and(|buffer| buffer.get("uri").is_none())
 }

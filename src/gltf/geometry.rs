@@ -1,9 +1,10 @@
 //! How a material lies on its meshes: the lengths of p_u and p_v and the turn of the tangent (paper, "The Local
 //! Coordinate System").
 
-use serde_json::Value;
+use std::ops::RangeInclusive;
 
 use super::material::Mapping;
+use super::meshes::Meshes;
 use super::triangles::{Accessors, Vertex, cross, dot, length, minus, tangents};
 
 /// How texture coordinates lie on the triangles of a material, averaged over their area in mesh space.
@@ -18,17 +19,21 @@ pub struct Layout {
     pub turn_deviation: f32,
 }
 
+/// Units per repeat that a layout may have. Beyond, offsets in mesh units and their squares leave the range of floats.
+const UNITS: RangeInclusive<f32> = 1e-9..=1e9;
+
 /// Measures the triangles that use material `material`. `main_direction` is m, in mesh space; `buffer` returns the bytes
-/// of a buffer. `None` when no triangle has positions and the texture coordinates of `mapping`, or all are degenerate.
+/// of a buffer. `None` when no triangle has positions and the texture coordinates of `mapping`, when all are degenerate, or
+/// when a repeat is shorter than 1e-9 units or longer than 1e9.
 pub fn layout<'a>(
-    root: &Value,
+    meshes: &Meshes<'_>,
     material: usize,
     mapping: &Mapping,
     main_direction: [f32; 3],
     buffer: &dyn Fn(usize) -> Option<&'a [u8]>,
 ) -> Option<Layout> {
     let mut sums = Sums::default();
-    Accessors { root, buffer }.visit_material(material, mapping, |_, triangle| {
+    Accessors { meshes, buffer }.visit_material(material, mapping, |_, triangle| {
         sums.add(triangle, main_direction.map(f64::from));
     });
     sums.layout()
@@ -79,6 +84,9 @@ impl Sums {
             return None;
         }
         let units_per_repeat = self.lengths.map(|l| (l / self.area) as f32);
+        if !units_per_repeat.iter().all(|units| UNITS.contains(units)) {
+            return None;
+        }
         let [x, y] = self.turn.map(|t| t / self.turn_area.max(f64::MIN_POSITIVE));
         let mean = (x * x + y * y).sqrt();
         let turn = if mean > 0.0 { [(x / mean) as f32, (y / mean) as f32] } else { [1.0, 0.0] };
@@ -91,7 +99,7 @@ impl Sums {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use serde_json::json;
+    use serde_json::{Value, json};
 
     /// A quad of 4 x 2 units in the plane z = 0, facing +z, its texture repeated twice across; u runs along +x, or
     /// turned by a quarter along +y.
@@ -127,7 +135,7 @@ mod tests {
     }
 
     fn measure(root: &Value, bytes: &[u8], mapping: &Mapping) -> Option<Layout> {
-        layout(root, 0, mapping, [0.0, 1.0, 0.0], &|_| Some(bytes))
+        layout(&Meshes::of(root), 0, mapping, [0.0, 1.0, 0.0], &|_| Some(bytes))
     }
 
     #[test]
@@ -153,6 +161,24 @@ mod tests {
         let (root, bytes) = quad(true);
         let layout = measure(&root, &bytes, &Mapping::default()).unwrap();
         assert!((layout.turn[0]).abs() < 1e-6 && (layout.turn[1] - 1.0).abs() < 1e-6, "{layout:?}");
+    }
+
+    /// Vectors that overlap, numbers that are none, and lengths that leave no room for squares.
+    #[test]
+    fn what_makes_no_lengths_is_not_there() {
+        let (root, bytes) = quad(false);
+        for stride in [1, 2, 4, 10, 13] {
+            let mut root = root.clone();
+            root["bufferViews"][0]["byteStride"] = json!(stride);
+            assert_eq!(measure(&root, &bytes, &Mapping::default()), None, "stride {stride}");
+        }
+        for x in [f32::NAN, f32::INFINITY, 3e38, 1e12] {
+            let mut bytes = bytes.clone();
+            for vertex in 0..4 {
+                bytes[12 * vertex..12 * vertex + 4].copy_from_slice(&(x * vertex as f32).to_le_bytes());
+            }
+            assert_eq!(measure(&root, &bytes, &Mapping::default()), None, "{x}");
+        }
     }
 
     #[test]

@@ -171,7 +171,7 @@ impl Json {
     ///
     /// # Errors
     /// [`JsonError::NotAnArray`], and [`JsonError::Pointer`] for a malformed pointer.
-    pub fn retain(&mut self, pointer: &str, mut keep: impl FnMut(usize) -> bool) -> Result<(), JsonError> {
+    pub fn retain(&mut self, pointer: &str, keep: impl FnMut(usize) -> bool) -> Result<(), JsonError> {
         let steps = steps(pointer)?;
         if self.text(pointer).is_none() {
             return Ok(());
@@ -180,9 +180,7 @@ impl Json {
         let Some(array) = node.open()?.filter(|container| !container.object) else {
             return Err(JsonError::NotAnArray { pointer: pointer.to_owned() });
         };
-        for index in (0..array.entries.len()).rev().filter(|&index| !keep(index)) {
-            array.remove(index);
-        }
+        array.retain(keep);
         Ok(())
     }
 

@@ -71,12 +71,20 @@ struct RawTransform {
     scale: Option<[f64; 2]>,
 }
 
+/// Largest magnitude of `normalTexture.scale`: the fourth power of a slope so scaled is still a float. Scales below
+/// 1e-6, whose reciprocals' squares are none, count as 0: such bumps are flat.
+const MAX_NORMAL_SCALE: f32 = 1e4;
+const MIN_NORMAL_SCALE: f32 = 1e-6;
+
+/// Largest magnitude of the scale of a height texture.
+pub const MAX_HEIGHT_SCALE: f32 = 1e6;
+
 /// Where a layer's bumps come from.
 #[derive(Clone, Debug, PartialEq)]
 pub enum BumpSource {
-    /// A normal texture and its `scale`.
+    /// A normal texture and its `scale`, whose magnitude is 0 or from 1e-6 to 1e4.
     Normals(TextureUse, f32),
-    /// A height texture and its scale (`extras.roughcast.heightTexture`).
+    /// A height texture and its scale (`extras.roughcast.heightTexture`), whose magnitude is at most [`MAX_HEIGHT_SCALE`].
     Heights(TextureUse, f32),
 }
 
@@ -171,12 +179,9 @@ impl Material {
         let part = |part, value| Part { index, name, part, value };
         let extension = |key: &str| value.get("extensions").and_then(|e| e.get(key));
 
-        let normal: Option<RawTexture> = part("normalTexture", value.get("normalTexture")).read()?;
-        let height: Option<RawTexture> = part(
-            "extras.roughcast.heightTexture",
-            value.get("extras").and_then(|e| e.get("roughcast")).and_then(|r| r.get("heightTexture")),
-        )
-        .read()?;
+        let normal = part("normalTexture", value.get("normalTexture")).read_bumps(MAX_NORMAL_SCALE)?;
+        let height = value.get("extras").and_then(|e| e.get("roughcast")).and_then(|r| r.get("heightTexture"));
+        let height = part("extras.roughcast.heightTexture", height).read_bumps(MAX_HEIGHT_SCALE)?;
         let occlusion: Option<RawTexture> = part("occlusionTexture", value.get("occlusionTexture")).read()?;
         let surface: RawSurface =
             part("pbrMetallicRoughness", value.get("pbrMetallicRoughness")).read()?.unwrap_or_default();
@@ -184,6 +189,9 @@ impl Material {
             part("KHR_materials_anisotropy", extension("KHR_materials_anisotropy")).read()?;
         let coat: Option<RawClearcoat> =
             part("KHR_materials_clearcoat", extension("KHR_materials_clearcoat")).read()?;
+
+        let coat_normal = extension("KHR_materials_clearcoat").and_then(|coat| coat.get("clearcoatNormalTexture"));
+        let coat_normal = part("clearcoatNormalTexture", coat_normal).read_bumps(MAX_NORMAL_SCALE)?;
 
         let mut layers = Vec::new();
         let bumps = match (normal, height) {
@@ -206,7 +214,7 @@ impl Material {
                 has_other_workflow: extension("KHR_materials_pbrSpecularGlossiness").is_some(),
             });
         }
-        if let Some((coat, normal)) = coat.and_then(|c| c.clearcoat_normal_texture.clone().map(|n| (c, n))) {
+        if let Some((coat, normal)) = coat.zip(coat_normal) {
             layers.push(Layer {
                 kind: LayerKind::Clearcoat,
                 bumps: normal.normals(),
@@ -231,17 +239,26 @@ struct Part<'a> {
 }
 
 impl Part<'_> {
-    fn read<T: DeserializeOwned>(self) -> Result<Option<T>, MaterialError> {
-        let failed = |reason: String| MaterialError {
-            index: self.index,
-            name: self.name.unwrap_or_default().to_owned(),
-            part: self.part,
-            reason,
-        };
+    fn read<T: DeserializeOwned>(&self) -> Result<Option<T>, MaterialError> {
         match self.value {
-            Some(value) if !fits_f32(value) => Err(failed("a number beyond the range of floats".to_owned())),
-            value => value.map(T::deserialize).transpose().map_err(|reason| failed(reason.to_string())),
+            Some(value) if !fits_f32(value) => Err(self.failed("a number beyond the range of floats".to_owned())),
+            value => value.map(T::deserialize).transpose().map_err(|reason| self.failed(reason.to_string())),
         }
+    }
+
+    /// A texture of bumps, whose scale is at most `most`.
+    fn read_bumps(&self, most: f32) -> Result<Option<RawTexture>, MaterialError> {
+        let texture: Option<RawTexture> = self.read()?;
+        match texture.as_ref().and_then(|texture| texture.scale) {
+            Some(scale) if scale.abs() > most => {
+                Err(self.failed(format!("its scale is {scale:e}, and the most that is read is {most}")))
+            }
+            _ => Ok(texture),
+        }
+    }
+
+    fn failed(&self, reason: String) -> MaterialError {
+        MaterialError { index: self.index, name: self.name.unwrap_or_default().to_owned(), part: self.part, reason }
     }
 }
 
@@ -282,6 +299,7 @@ impl RawTexture {
 
     fn normals(self) -> BumpSource {
         let scale = self.scale.unwrap_or(1.0);
+        let scale = if scale.abs() < MIN_NORMAL_SCALE { 0.0 } else { scale };
         BumpSource::Normals(self.into_use(), scale)
     }
 
@@ -317,5 +335,4 @@ struct RawClearcoat {
     #[serde(default)]
     clearcoat_roughness_factor: f32,
     clearcoat_roughness_texture: Option<RawTexture>,
-    clearcoat_normal_texture: Option<RawTexture>,
 }

@@ -2,9 +2,11 @@
 
 pub mod density;
 pub mod document;
+pub mod extensions;
 pub mod geometry;
 pub mod json;
 pub mod material;
+pub mod meshes;
 pub mod rewrite;
 pub mod scene;
 pub mod texture;

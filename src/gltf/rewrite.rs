@@ -1,11 +1,21 @@
 //! Pointing materials at new textures, in place where nothing else needs the old one.
 
-use std::collections::BTreeMap;
+mod freed;
+mod images;
+#[cfg(test)]
+mod tests;
 
-use serde_json::{Value, json};
+use std::collections::BTreeSet;
 
+use serde_json::{Map, Value, json};
+
+use super::extensions::{declare, names, withdraw};
 use super::json::{Json, JsonError};
 use super::material::Mapping;
+use freed::Freed;
+use images::{Placed, place_images, remove_images};
+
+const BASISU: &str = "KHR_texture_basisu";
 
 /// An image to add to the document.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,6 +34,8 @@ pub enum NewImage {
 /// A texture to add to the document.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NewTexture {
+    /// What it and its images are called, where they have no name.
+    pub name: String,
     /// The KTX2 file.
     pub ktx2: NewImage,
     /// What the core `source` names; nothing in the strict form.
@@ -45,91 +57,87 @@ pub struct Slot {
 
 /// Adds `textures` to the document and points their slots at them; returns their indices.
 ///
-/// A texture and its images are overwritten in place when all references to them move to the same new texture, so that
-/// no orphans stay behind; otherwise new objects are appended and the old ones kept.
+/// An old texture is overwritten in place when all references to it move, and so are its images when no other texture
+/// names them; images that are then left over are removed. What something else refers to is kept, and new objects are
+/// appended. Names of old objects stay, and extensions that no texture has any more are no longer declared.
 ///
 /// # Errors
 /// [`JsonError`] when the document does not have the shape of a glTF.
 pub fn add_textures(json: &mut Json, textures: &[NewTexture]) -> Result<Vec<usize>, JsonError> {
-    let root = json.value("")?.unwrap_or_default();
-    let mut free = FreeObjects::of(&root, textures);
-    let mut indices = Vec::with_capacity(textures.len());
-    for (new, replaced) in textures.iter().zip(free.replaced.clone()) {
-        let ktx2 = free.place_image(json, &new.ktx2)?;
-        let source = match &new.source {
-            None => None,
-            Some(image) if *image == new.ktx2 => Some(ktx2),
-            Some(image) => Some(free.place_image(json, image)?),
-        };
-        indices.push(place_texture(json, new, replaced, ktx2, source)?);
+    if textures.is_empty() {
+        return Ok(Vec::new());
     }
-    for (new, index) in textures.iter().zip(&indices) {
+    let root = json.value("")?.unwrap_or_default();
+    let mut freed = Freed::of(&root, textures);
+    let images = place_images(json, &root, textures, &mut freed)?;
+    let mut indices = Vec::with_capacity(textures.len());
+    for ((new, replaced), placed) in textures.iter().zip(&freed.replaced).zip(&images) {
+        for index in replaced {
+            overwrite_texture(json, &root, *index, &new.name, placed)?;
+        }
+        indices.push(match replaced.first() {
+            Some(index) => *index,
+            None => push_texture(json, new, placed)?,
+        });
+    }
+    for ((new, index), replaced) in textures.iter().zip(&indices).zip(&freed.replaced) {
         for slot in &new.slots {
-            point(json, slot, *index)?;
+            point(json, &root, slot, *index, replaced)?;
         }
     }
-    if !textures.is_empty() {
-        declare(json, "KHR_texture_basisu", textures.iter().any(|t| t.source.is_none()))?;
-    }
+    declare(json, BASISU, textures.iter().any(|t| t.source.is_none()))?;
+    remove_images(json, &freed.images)?;
+    let replaced = freed.replaced.iter().flatten().filter_map(|index| root.pointer(&format!("/textures/{index}")));
+    withdraw_extensions(json, replaced)?;
     Ok(indices)
 }
 
-/// Adds `name` to `extensionsUsed` and, if `required`, to `extensionsRequired`, once.
-///
-/// # Errors
-/// [`JsonError`] when either is not an array.
-pub fn declare(json: &mut Json, name: &str, required: bool) -> Result<(), JsonError> {
-    let lists = [Some("/extensionsUsed"), required.then_some("/extensionsRequired")];
-    for list in lists.into_iter().flatten() {
-        let names: Vec<String> = json.read(list)?.unwrap_or_default();
-        if !names.iter().any(|n| n == name) {
-            json.push(list, name)?;
-        }
+fn push_texture(json: &mut Json, new: &NewTexture, placed: &Placed) -> Result<usize, JsonError> {
+    let mut texture = Map::new();
+    texture.insert("name".into(), json!(new.name));
+    if let Some(sampler) = new.sampler {
+        texture.insert("sampler".into(), json!(sampler));
     }
-    Ok(())
+    if let Some(source) = placed.source {
+        texture.insert("source".into(), json!(source));
+    }
+    texture.insert("extensions".into(), json!({ BASISU: { "source": placed.ktx2 } }));
+    json.push("/textures", &Value::Object(texture))
 }
 
-fn place_texture(
+fn overwrite_texture(
     json: &mut Json,
-    new: &NewTexture,
-    replaced: Option<usize>,
-    ktx2: usize,
-    source: Option<usize>,
-) -> Result<usize, JsonError> {
-    let Some(index) = replaced else {
-        let mut texture = serde_json::Map::new();
-        if let Some(sampler) = new.sampler {
-            texture.insert("sampler".into(), json!(sampler));
-        }
-        if let Some(source) = source {
-            texture.insert("source".into(), json!(source));
-        }
-        texture.insert("extensions".into(), json!({ "KHR_texture_basisu": { "source": ktx2 } }));
-        return json.push("/textures", &Value::Object(texture));
-    };
+    root: &Value,
+    index: usize,
+    name: &str,
+    placed: &Placed,
+) -> Result<(), JsonError> {
     let at = format!("/textures/{index}");
-    match source {
+    let old = root.get("textures").and_then(|textures| textures.get(index)).unwrap_or(&Value::Null);
+    match placed.source {
         Some(source) => json.set(&format!("{at}/source"), &source)?,
         None => {
             json.remove(&format!("{at}/source"))?;
         }
     }
     // Other forms of the old image would win over the new one in engines that know them.
-    let extensions: serde_json::Map<String, Value> = json.read(&format!("{at}/extensions"))?.unwrap_or_default();
-    for (name, extension) in extensions {
-        if extension.get("source").is_some() && name != "KHR_texture_basisu" {
-            let name = name.replace('~', "~0").replace('/', "~1");
-            json.remove(&format!("{at}/extensions/{name}"))?;
-        }
+    for other in sources_of(old).filter(|name| *name != BASISU) {
+        json.remove(&format!("{at}/extensions/{}", escaped(other)))?;
     }
-    json.set(&format!("{at}/extensions/KHR_texture_basisu"), &json!({ "source": ktx2 }))?;
-    Ok(index)
+    json.set(&format!("{at}/extensions/{BASISU}"), &json!({ "source": placed.ktx2 }))?;
+    if old.get("name").is_none() {
+        json.set(&format!("{at}/name"), name)?;
+    }
+    Ok(())
 }
 
-fn point(json: &mut Json, slot: &Slot, texture: usize) -> Result<(), JsonError> {
+/// Points `slot` at the new texture `texture`, unless it refers to another of the old ones that were overwritten with it.
+fn point(json: &mut Json, root: &Value, slot: &Slot, texture: usize, overwritten: &[usize]) -> Result<(), JsonError> {
     let index = format!("{}/index", slot.pointer);
-    if json.text(&index).is_some() {
-        return json.set(&index, &texture);
+    if let Some(old) = root.pointer(&index) {
+        let old = old.as_u64().and_then(|old| usize::try_from(old).ok());
+        let is_there = old.is_some_and(|old| overwritten.contains(&old));
+        return if is_there { Ok(()) } else { json.set(&index, &texture) };
     }
     let mut info = json!({ "index": texture });
     if slot.mapping.tex_coord != 0 {
@@ -141,82 +149,38 @@ fn point(json: &mut Json, slot: &Slot, texture: usize) -> Result<(), JsonError> 
     json.set(&slot.pointer, &info)
 }
 
-/// Objects that no one needs once the slots have moved.
-struct FreeObjects {
-    /// For each new texture the old one that it takes the place of.
-    replaced: Vec<Option<usize>>,
-    /// Images of replaced textures.
-    images: Vec<usize>,
+/// Withdraws the extensions of the textures `replaced` that no object of the document has any more, and requires
+/// `KHR_texture_basisu` no longer where every texture has an image without it.
+fn withdraw_extensions<'v>(json: &mut Json, replaced: impl Iterator<Item = &'v Value>) -> Result<(), JsonError> {
+    let root = json.value("")?.unwrap_or_default();
+    let mut gone = BTreeSet::new();
+    let mut was_strict = false;
+    for old in replaced {
+        gone.extend(sources_of(old));
+        was_strict |= is_strict(old);
+    }
+    let left = names(&root);
+    gone.retain(|name| !left.contains(name));
+    let textures = root.get("textures").and_then(Value::as_array);
+    let is_optional = was_strict && !textures.into_iter().flatten().any(is_strict);
+    withdraw(json, "/extensionsUsed", |name| gone.contains(name))?;
+    withdraw(json, "/extensionsRequired", |name| gone.contains(name) || (is_optional && name == BASISU))
 }
 
-impl FreeObjects {
-    fn of(root: &Value, textures: &[NewTexture]) -> Self {
-        // Which new texture each reference of a material moves to, if any.
-        let mut moves: BTreeMap<usize, Vec<Option<usize>>> = BTreeMap::new();
-        for (pointer, old) in references(root) {
-            let new = textures.iter().position(|t| t.slots.iter().any(|s| s.pointer == pointer));
-            moves.entry(old).or_default().push(new);
-        }
-        let mut replaced = vec![None; textures.len()];
-        for (old, targets) in &moves {
-            if let Some(new) = targets[0].filter(|new| targets.iter().all(|t| *t == Some(*new))) {
-                replaced[new].get_or_insert(*old);
-            }
-        }
-        let list = root.get("textures").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
-        let in_use: Vec<usize> = list
-            .iter()
-            .enumerate()
-            .filter(|(index, _)| !replaced.contains(&Some(*index)))
-            .flat_map(|(_, texture)| images_of(texture))
-            .collect();
-        let mut images: Vec<usize> = replaced
-            .iter()
-            .flatten()
-            .filter_map(|index| list.get(*index))
-            .flat_map(images_of)
-            .filter(|image| !in_use.contains(image))
-            .collect();
-        images.sort_unstable();
-        images.dedup();
-        images.reverse();
-        Self { replaced, images }
-    }
-
-    /// Writes `image` over a free one, lowest index first, or appends it; returns its index.
-    fn place_image(&mut self, json: &mut Json, image: &NewImage) -> Result<usize, JsonError> {
-        let Some(index) = self.images.pop() else {
-            return match image {
-                NewImage::File(uri) => json.push("/images", &json!({ "uri": uri })),
-                NewImage::BufferView { view, mime } => {
-                    json.push("/images", &json!({ "bufferView": view, "mimeType": mime }))
-                }
-            };
-        };
-        let at = format!("/images/{index}");
-        match image {
-            // Without a media type: `image/ktx2` would make validators warn, and the dual form fail in some.
-            NewImage::File(uri) => {
-                json.remove(&format!("{at}/bufferView"))?;
-                json.remove(&format!("{at}/mimeType"))?;
-                json.set(&format!("{at}/uri"), uri)?;
-            }
-            NewImage::BufferView { view, mime } => {
-                json.remove(&format!("{at}/uri"))?;
-                json.set(&format!("{at}/bufferView"), view)?;
-                json.set(&format!("{at}/mimeType"), mime)?;
-            }
-        }
-        Ok(index)
-    }
+/// A member's name as a step of a JSON Pointer.
+fn escaped(name: &str) -> String {
+    name.replace('~', "~0").replace('/', "~1")
 }
 
-/// Images that a texture names, whatever the extension.
-fn images_of(texture: &Value) -> Vec<usize> {
-    let extensions = texture.get("extensions").and_then(Value::as_object);
-    let sources = extensions.into_iter().flat_map(|e| e.values()).filter_map(|e| e.get("source"));
-    let all = texture.get("source").into_iter().chain(sources);
-    all.filter_map(Value::as_u64).filter_map(|i| usize::try_from(i).ok()).collect()
+/// Whether `KHR_texture_basisu` alone gives `texture` an image.
+fn is_strict(texture: &Value) -> bool {
+    texture.get("source").is_none() && sources_of(texture).any(|name| name == BASISU)
+}
+
+/// The extensions through which `texture` names images.
+fn sources_of(texture: &Value) -> impl Iterator<Item = &str> {
+    let extensions = texture.get("extensions").and_then(Value::as_object).into_iter().flatten();
+    extensions.filter(|(_, extension)| extension.get("source").is_some()).map(|(name, _)| name.as_str())
 }
 
 /// Pointers of all objects that may be a `textureInfo`, with the texture that each names: whatever has an `index`, so
@@ -229,8 +193,7 @@ pub(crate) fn references(root: &Value) -> Vec<(String, usize)> {
                     found.push((pointer.to_owned(), usize::try_from(index).unwrap_or(usize::MAX)));
                 }
                 for (key, member) in members {
-                    let key = key.replace('~', "~0").replace('/', "~1");
-                    walk(member, &format!("{pointer}/{key}"), found);
+                    walk(member, &format!("{pointer}/{}", escaped(key)), found);
                 }
             }
             Value::Array(elements) => {

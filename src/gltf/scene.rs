@@ -91,9 +91,9 @@ fn has_targets(mesh: &Value) -> bool {
     primitives.into_iter().flatten().any(|primitive| primitive.get("targets").is_some())
 }
 
-/// Whether an animation changes the scale or the turn of a texture transform of material `material`.
-pub fn has_moving_coordinates(root: &Value, material: usize) -> bool {
-    Motion::of(root).mapped.contains(&material)
+/// The materials of which an animation changes the scale or the turn of a texture transform.
+pub fn moving_coordinates(root: &Value) -> BTreeSet<usize> {
+    Motion::of(root).mapped
 }
 
 impl Placement {

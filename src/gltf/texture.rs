@@ -1,8 +1,13 @@
 //! The textures, images and samplers of a glTF document.
 
+use std::collections::{HashMap, HashSet};
+use std::path::Path;
+use std::sync::Arc;
+
 use serde::Deserialize;
 use serde_json::Value;
 
+use super::uri::relative_path;
 use crate::bump::Wrap;
 
 /// Extensions through which a texture names an image other than its core `source`, most faithful first.
@@ -42,7 +47,7 @@ pub enum TextureError {
 }
 
 /// Where the bytes of an image are.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum ImageLocation {
     /// A URI: relative to the document, or `data:`.
     Uri(String),
@@ -56,9 +61,11 @@ pub struct TextureSource {
     /// Index into `images`.
     pub image: usize,
     /// Where its bytes are.
-    pub location: ImageLocation,
+    pub location: Arc<ImageLocation>,
     /// Where the bytes of its other forms are, which are not read.
-    pub other_forms: Vec<ImageLocation>,
+    pub other_forms: Vec<Arc<ImageLocation>>,
+    /// The name of the image, else of the texture.
+    pub name: Option<String>,
     /// Index into `samplers`.
     pub sampler: Option<usize>,
     /// Wrap modes across and down.
@@ -68,38 +75,113 @@ pub struct TextureSource {
 }
 
 impl TextureSource {
-    /// Whether both read the same image in the same way.
-    pub fn is_same(&self, other: &Self) -> bool {
-        self.location == other.location && self.sampler == other.sampler
+    /// The part of a file name that tells which image it is: the name of its file, else its own.
+    pub fn stem(&self) -> String {
+        let named = || self.name.as_deref().map(without_extension).filter(|name| !name.is_empty());
+        match &*self.location {
+            ImageLocation::Uri(uri) if uri.starts_with("data:") => named().unwrap_or("image").to_owned(),
+            ImageLocation::Uri(uri) => {
+                let path = relative_path(uri).unwrap_or_else(|_| uri.into());
+                path.file_stem().map_or_else(|| "image".to_owned(), |stem| stem.to_string_lossy().into_owned())
+            }
+            ImageLocation::BufferView(view) => named().map_or_else(|| format!("image{view}"), str::to_owned),
+        }
     }
 }
 
-/// Reads texture `texture` of `root`, the document's JSON.
-///
-/// A core `source` is preferred: where there is a second image, it is a lossy form of the first.
+/// An image's name without the extension of an image file, which exporters leave in names.
+fn without_extension(name: &str) -> &str {
+    const EXTENSIONS: [&str; 9] = ["png", "jpg", "jpeg", "webp", "ktx2", "tga", "tif", "tiff", "exr"];
+    let extension = Path::new(name).extension().and_then(|e| e.to_str());
+    let is_image = |extension: &&str| EXTENSIONS.iter().any(|e| extension.eq_ignore_ascii_case(e));
+    extension.filter(is_image).map_or(name, |extension| &name[..name.len() - extension.len() - 1])
+}
+
+/// The textures of a document. Each is read once and shared by all who use it, with the URI of its image, which may hold
+/// megabytes of data.
+pub struct Textures<'r> {
+    root: &'r Value,
+    by_index: HashMap<usize, Arc<TextureSource>>,
+    /// Textures by the address of their image's location, which no other image shares, and their sampler.
+    by_content: HashMap<(usize, Option<usize>), Arc<TextureSource>>,
+    images: HashMap<usize, Arc<ImageLocation>>,
+    locations: HashSet<Arc<ImageLocation>>,
+}
+
+impl<'r> Textures<'r> {
+    /// The textures of `root`, the document's JSON.
+    pub fn of(root: &'r Value) -> Self {
+        Self {
+            root,
+            by_index: HashMap::new(),
+            by_content: HashMap::new(),
+            images: HashMap::new(),
+            locations: HashSet::new(),
+        }
+    }
+
+    /// Reads texture `texture`. A core `source` is preferred: where there is a second image, it is a lossy form of the
+    /// first. Textures that read the same image in the same way are one.
+    ///
+    /// # Errors
+    /// [`TextureError`] for references that lead nowhere.
+    pub fn get(&mut self, texture: usize) -> Result<Arc<TextureSource>, TextureError> {
+        if let Some(known) = self.by_index.get(&texture) {
+            return Ok(known.clone());
+        }
+        let source = self.read(texture)?;
+        let key = (Arc::as_ptr(&source.location).addr(), source.sampler);
+        let shared = self.by_content.entry(key).or_insert_with(|| Arc::new(source)).clone();
+        self.by_index.insert(texture, shared.clone());
+        Ok(shared)
+    }
+
+    fn read(&mut self, texture: usize) -> Result<TextureSource, TextureError> {
+        let raw: RawTexture = object(self.root, "textures", texture)?;
+        let sources = SOURCE_EXTENSIONS.iter().filter_map(|name| raw.extensions.get(name)?.get("source")?.as_u64());
+        let mut images = raw.source.into_iter().chain(sources.map(|i| usize::try_from(i).unwrap_or(usize::MAX)));
+        let image = images.next().ok_or(TextureError::NoSource { texture })?;
+        let location = self.location(image)?;
+        let other_forms = images.filter(|i| *i != image).map(|i| self.location(i)).collect::<Result<_, _>>()?;
+        let modes = match raw.sampler {
+            None => RawSampler::default(),
+            Some(sampler) => object(self.root, "samplers", sampler)?,
+        };
+        let name = |array: &str, index: usize| self.root.get(array)?.get(index)?.get("name")?.as_str();
+        let name = name("images", image).filter(|name| !name.is_empty()).or_else(|| name("textures", texture));
+        Ok(TextureSource {
+            image,
+            location,
+            other_forms,
+            name: name.map(str::to_owned),
+            sampler: raw.sampler,
+            wrap: [wrap_mode(modes.wrap_s), wrap_mode(modes.wrap_t)],
+            // NEAREST and LINEAR.
+            samples_mips: !matches!(modes.min_filter, Some(9728 | 9729)),
+        })
+    }
+
+    /// Where the bytes of an image are; images with the same bytes share it.
+    fn location(&mut self, image: usize) -> Result<Arc<ImageLocation>, TextureError> {
+        if let Some(known) = self.images.get(&image) {
+            return Ok(known.clone());
+        }
+        let location = Arc::new(image_location(self.root, image)?);
+        let shared = self.locations.get(&location).cloned().unwrap_or_else(|| {
+            self.locations.insert(location.clone());
+            location
+        });
+        self.images.insert(image, shared.clone());
+        Ok(shared)
+    }
+}
+
+/// Reads texture `texture` of `root`, the document's JSON, as [`Textures::get`] does.
 ///
 /// # Errors
 /// [`TextureError`] for references that lead nowhere.
-pub fn texture_source(root: &Value, texture: usize) -> Result<TextureSource, TextureError> {
-    let raw: RawTexture = object(root, "textures", texture)?;
-    let from_extensions = SOURCE_EXTENSIONS.iter().filter_map(|name| raw.extensions.get(name)?.get("source")?.as_u64());
-    let mut images = raw.source.into_iter().chain(from_extensions.map(|i| usize::try_from(i).unwrap_or(usize::MAX)));
-    let image = images.next().ok_or(TextureError::NoSource { texture })?;
-    let location = image_location(root, image)?;
-    let other_forms = images.filter(|i| *i != image).map(|i| image_location(root, i)).collect::<Result<_, _>>()?;
-    let modes = match raw.sampler {
-        None => RawSampler::default(),
-        Some(sampler) => object(root, "samplers", sampler)?,
-    };
-    Ok(TextureSource {
-        image,
-        location,
-        other_forms,
-        sampler: raw.sampler,
-        wrap: [wrap_mode(modes.wrap_s), wrap_mode(modes.wrap_t)],
-        // NEAREST and LINEAR.
-        samples_mips: !matches!(modes.min_filter, Some(9728 | 9729)),
-    })
+pub fn texture_source(root: &Value, texture: usize) -> Result<Arc<TextureSource>, TextureError> {
+    Textures::of(root).get(texture)
 }
 
 fn image_location(root: &Value, image: usize) -> Result<ImageLocation, TextureError> {
@@ -154,4 +236,42 @@ struct RawSampler {
 struct RawImage {
     uri: Option<String>,
     buffer_view: Option<usize>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn stems_are_names_that_people_gave() {
+        let stem = |image: Value, texture: Value| {
+            let root = json!({ "images": [image], "textures": [texture] });
+            texture_source(&root, 0).unwrap().stem()
+        };
+        let unnamed = json!({ "source": 0 });
+        let named = json!({ "source": 0, "name": "Bricks" });
+        assert_eq!(stem(json!({ "uri": "maps/wall%20n.png", "name": "w" }), named.clone()), "wall n");
+        assert_eq!(stem(json!({ "bufferView": 3, "name": "wall.v2.PNG" }), named.clone()), "wall.v2");
+        assert_eq!(stem(json!({ "bufferView": 3, "name": "wall.v2" }), named.clone()), "wall.v2");
+        assert_eq!(stem(json!({ "bufferView": 3, "name": "" }), named.clone()), "Bricks");
+        assert_eq!(stem(json!({ "bufferView": 3, "name": ".png" }), unnamed.clone()), ".png");
+        assert_eq!(stem(json!({ "bufferView": 3 }), unnamed.clone()), "image3");
+        assert_eq!(stem(json!({ "uri": "data:,x", "name": "peel" }), unnamed.clone()), "peel");
+        assert_eq!(stem(json!({ "uri": "data:,x" }), unnamed), "image");
+    }
+
+    #[test]
+    fn textures_of_one_image_and_sampler_are_one() {
+        let root = json!({
+            "images": [{ "uri": "a.png" }, { "uri": "b.png" }, { "uri": "a.png" }],
+            "samplers": [{}],
+            "textures": [{ "source": 0 }, { "source": 2 }, { "source": 1 }, { "source": 0, "sampler": 0 }],
+        });
+        let mut textures = Textures::of(&root);
+        let all: Vec<_> = (0..4).map(|i| textures.get(i).unwrap()).collect();
+        assert!(Arc::ptr_eq(&all[0], &all[1]) && Arc::ptr_eq(&all[0], &textures.get(0).unwrap()));
+        assert!(!Arc::ptr_eq(&all[0], &all[2]) && !Arc::ptr_eq(&all[0], &all[3]));
+        assert!(Arc::ptr_eq(&all[0].location, &all[3].location));
+    }
 }

@@ -1,15 +1,18 @@
 //! The triangles of a material, read with every index checked: what is not there is not visited.
 
+use std::sync::atomic::Ordering;
+
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 use serde_json::Value;
 
 use super::material::Mapping;
+use super::meshes::Meshes;
 
 /// The accessors of a document.
 pub struct Accessors<'r, 'a> {
     /// The document.
-    pub root: &'r Value,
+    pub meshes: &'r Meshes<'r>,
     /// The bytes of a buffer.
     pub buffer: &'r dyn Fn(usize) -> Option<&'a [u8]>,
 }
@@ -58,7 +61,7 @@ struct Elements<'a> {
     count: usize,
 }
 
-/// Most triangles that are visited for one material: primitives may repeat accessors, so a small file can name many.
+/// Most triangles that are visited for one material.
 const MAX_TRIANGLES: usize = 1 << 28;
 
 impl<'a> Accessors<'_, 'a> {
@@ -71,17 +74,16 @@ impl<'a> Accessors<'_, 'a> {
         mut visit: impl FnMut(usize, [Vertex; 3]),
     ) -> bool {
         let transform = mapping.uv();
-        let meshes = self.root.get("meshes").and_then(Value::as_array);
-        let (mut is_complete, mut left) = (true, MAX_TRIANGLES);
-        for (mesh, value) in meshes.into_iter().flatten().enumerate() {
-            let primitives = value.get("primitives").and_then(Value::as_array);
-            for primitive in primitives.into_iter().flatten().filter(|p| uses(p, material)) {
-                let read = self.visit_primitive(primitive, transform.tex_coord, &mut left, |triangle| {
-                    visit(mesh, triangle.map(|v| Vertex { uv: transform.apply(v.uv), ..v }));
-                });
-                is_complete &= read.is_some();
-            }
+        let all = self.meshes.left.load(Ordering::Relaxed);
+        let most = all.min(MAX_TRIANGLES);
+        let (mut is_complete, mut left) = (true, most);
+        for &(mesh, primitive) in self.meshes.primitives(material) {
+            let read = self.visit_primitive(primitive, transform.tex_coord, &mut left, |triangle| {
+                visit(mesh, triangle.map(|v| Vertex { uv: transform.apply(v.uv), ..v }));
+            });
+            is_complete &= read.is_some();
         }
+        self.meshes.left.store(all - (most - left), Ordering::Relaxed);
         is_complete
     }
 
@@ -124,14 +126,21 @@ impl<'a> Accessors<'_, 'a> {
     }
 
     fn elements(&self, accessor: u64, components: usize) -> Option<Elements<'a>> {
-        let object = |array: &str, index: u64| self.root.get(array)?.get(usize::try_from(index).ok()?);
+        let object = |array: &str, index: u64| self.meshes.root.get(array)?.get(usize::try_from(index).ok()?);
         let accessor = Accessor::deserialize(object("accessors", accessor)?).ok()?;
         let view = BufferView::deserialize(object("bufferViews", accessor.buffer_view as u64)?).ok()?;
         let bytes = (self.buffer)(view.buffer)?;
         let bytes = bytes.get(view.byte_offset..)?.get(..view.byte_length)?.get(accessor.byte_offset..)?;
-        let stride = view.byte_stride.unwrap_or(components * component_bytes(accessor.component_type)?);
-        // A stride of 0, and counts beyond the bytes, would make small files take long.
-        if stride == 0 || accessor.count > bytes.len() / stride + 1 || accessor.sparse.is_some() {
+        let component = component_bytes(accessor.component_type)?;
+        let element = components * component;
+        let stride = view.byte_stride.unwrap_or(element);
+        // Elements that overlap, or whose components are not aligned, hold no vectors (glTF 2.0, section 3.6.2.4); counts
+        // beyond the bytes would make small files take long.
+        if stride < element
+            || !stride.is_multiple_of(component)
+            || accessor.count > bytes.len() / stride + 1
+            || accessor.sparse.is_some()
+        {
             return None;
         }
         let Accessor { component_type, normalized, count, .. } = accessor;
@@ -162,7 +171,7 @@ impl Elements<'_> {
                 _ => return None,
             };
         }
-        Some(vector)
+        vector.iter().all(|value: &f64| value.is_finite()).then_some(vector)
     }
 
     fn scaled(&self, integer: f64, one: f64) -> f64 {
@@ -177,13 +186,6 @@ impl Elements<'_> {
             _ => None,
         }
     }
-}
-
-/// Whether a primitive is drawn with the material, by itself or in one of its `KHR_materials_variants`.
-fn uses(primitive: &Value, material: usize) -> bool {
-    let is_it = |value: &Value| value.get("material").and_then(Value::as_u64) == Some(material as u64);
-    let mappings = primitive.pointer("/extensions/KHR_materials_variants/mappings").and_then(Value::as_array);
-    is_it(primitive) || mappings.into_iter().flatten().any(is_it)
 }
 
 /// glTF 2.0, section 3.7.2.1: modes with triangles; the others are points and lines.

@@ -1,9 +1,8 @@
 //! The turn of the tangent frame against a main direction, texel by texel: for meshes on which it is not the same
 //! everywhere (paper, "The Local Coordinate System", 3).
 
-use serde_json::Value;
-
 use super::material::Mapping;
+use super::meshes::Meshes;
 use super::triangles::{Accessors, Vertex, cross, dot, length, minus, tangents};
 use crate::bump::FrameTransform;
 
@@ -28,7 +27,7 @@ const GUTTER: u32 = 16;
 /// The turn map of `width` x `height` texels for material `material`; `main_direction` is m in mesh space. `None` when no
 /// triangle can be read, or when they repeat the map so often that it cannot have one turn per texel.
 pub fn turn_map<'a>(
-    root: &Value,
+    meshes: &Meshes<'_>,
     material: usize,
     mapping: &Mapping,
     main_direction: [f32; 3],
@@ -41,7 +40,7 @@ pub fn turn_map<'a>(
         sums: vec![Sum::default(); width as usize * height as usize],
         visits: 0.0,
     };
-    Accessors { root, buffer }.visit_material(material, mapping, |_, triangle| {
+    Accessors { meshes, buffer }.visit_material(material, mapping, |_, triangle| {
         raster.draw(triangle, main_direction.map(f64::from));
     });
     let has_frame = raster.sums.iter().any(|sum| sum.count > 0.0);
@@ -185,7 +184,7 @@ fn nearest_frame([a, b, c, d]: [f32; 4]) -> FrameTransform {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use serde_json::json;
+    use serde_json::{Value, json};
 
     /// Two quads in z = 0 side by side on the map: on the left u runs along +x, on the right along +y.
     fn document(mirrored: bool) -> (Value, Vec<u8>) {
@@ -232,7 +231,7 @@ mod tests {
 
     fn turns(mirrored: bool) -> TurnMap {
         let (root, bytes) = document(mirrored);
-        turn_map(&root, 0, &Mapping::default(), [0.0, 1.0, 0.0], &|_| Some(&bytes), [8, 4]).unwrap()
+        turn_map(&Meshes::of(&root), 0, &Mapping::default(), [0.0, 1.0, 0.0], &|_| Some(&bytes), [8, 4]).unwrap()
     }
 
     #[test]
@@ -259,7 +258,7 @@ mod tests {
         let transform = json!({ "scale": [2.0, 1.0] });
         root["meshes"][0]["primitives"][0]["material"] = json!(3);
         let mapping = Mapping { tex_coord: 0, transform: Some(transform) };
-        let map = turn_map(&root, 3, &mapping, [0.0, 1.0, 0.0], &|_| Some(&bytes), [8, 4]).unwrap();
+        let map = turn_map(&Meshes::of(&root), 3, &mapping, [0.0, 1.0, 0.0], &|_| Some(&bytes), [8, 4]).unwrap();
         assert!(map.conflict > 0.5, "{}", map.conflict);
     }
 
@@ -268,8 +267,11 @@ mod tests {
         let (root, bytes) = document(false);
         for scale in [1e9, f64::MAX] {
             let mapping = Mapping { tex_coord: 0, transform: Some(json!({ "scale": [scale, scale] })) };
-            assert_eq!(turn_map(&root, 0, &mapping, [0.0, 1.0, 0.0], &|_| Some(&bytes), [64, 64]), None);
+            assert_eq!(turn_map(&Meshes::of(&root), 0, &mapping, [0.0, 1.0, 0.0], &|_| Some(&bytes), [64, 64]), None);
         }
-        assert_eq!(turn_map(&root, 1, &Mapping::default(), [0.0, 1.0, 0.0], &|_| Some(&bytes), [8, 4]), None);
+        assert_eq!(
+            turn_map(&Meshes::of(&root), 1, &Mapping::default(), [0.0, 1.0, 0.0], &|_| Some(&bytes), [8, 4]),
+            None
+        );
     }
 }

@@ -7,7 +7,7 @@ use serde_json::Value;
 use super::texture::{TextureFacts, inspect_texture};
 use crate::bake::{EXTENSION, Source};
 use crate::check::RoughnessPyramid;
-use crate::gltf::document::DocumentError;
+use crate::gltf::document::{DocumentError, check_version};
 use crate::gltf::rewrite::references;
 use crate::gltf::texture::ImageLocation;
 use crate::map::{DecodeOptions, Format, decode};
@@ -104,9 +104,10 @@ const SLOTS: [&str; 7] = [
 /// Reads the facts of the document of `source`. What is wrong inside is told among them.
 ///
 /// # Errors
-/// [`DocumentError`] when the JSON cannot be read as a tree.
+/// [`DocumentError`] when the JSON cannot be read as a tree, or is of another version than glTF 2.0.
 pub fn inspect_document(source: &Source<'_>) -> Result<DocumentFacts, DocumentError> {
     let root: Value = source.document.json().value("")?.unwrap_or_default();
+    check_version(&root)?;
     let texts = |key: &str| {
         let list = root.get(key).and_then(Value::as_array).into_iter().flatten();
         list.filter_map(Value::as_str).map(str::to_owned).collect()

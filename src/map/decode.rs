@@ -11,6 +11,7 @@ use image::{DynamicImage, ImageDecoder, ImageError, Limits};
 
 use super::{DecodeError, Format, Image, Samples, exr, jpeg, tiff};
 use crate::memory;
+use crate::foreign::Foreign;
 use crate::texture::ktx2::Ktx2;
 
 /// What to decode, and how much at most.
@@ -46,6 +47,9 @@ const SIDE_MEMORY: u64 = 64 << 20;
 /// # Errors
 /// See [`DecodeError`]. A truncated file is an error, not a half-filled picture.
 pub fn decode(bytes: &[u8], options: &DecodeOptions) -> Result<Image, DecodeError> {
+    if let Some(found) = Foreign::detect(bytes) {
+        return Err(DecodeError::Foreign { found });
+    }
     let format = Format::detect(bytes, options.extension.as_deref())
         .ok_or_else(|| DecodeError::UnknownFormat { start: bytes.iter().take(8).copied().collect() })?;
     // `exr` 1.74 panics on some hostile B44 blocks; no other decoder did in 10^7 changed files.

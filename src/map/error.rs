@@ -2,12 +2,19 @@
 
 use super::Format;
 use crate::memory::OutOfMemory;
+use crate::foreign::Foreign;
 use crate::texture::ktx2::ReadError;
 
 /// Why an image could not be decoded. The caller adds the file's name.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DecodeError {
+    /// The file holds nothing that could be an image.
+    #[error("expected PNG, JPEG, TIFF, WebP, HDR, EXR or KTX2, found {found}")]
+    Foreign {
+        /// What it is.
+        found: Foreign,
+    },
     /// The first bytes are no known format's.
     #[error(
         "unknown image format (the first bytes are {start:02x?}): expected PNG, JPEG, TIFF, WebP, \

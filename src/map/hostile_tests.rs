@@ -167,11 +167,13 @@ fn a_cut_png_is_called_truncated() {
 
 #[test]
 fn unknown_and_empty_files_are_named_so() {
-    for bytes in [&b""[..], b"RIFF", b"hello, world"] {
+    for bytes in [&b"RIFF"[..], b"hello, world"] {
         let found = decode(bytes, &DecodeOptions::default());
         let start = bytes[..bytes.len().min(8)].to_vec();
         assert_eq!(found, Err(DecodeError::UnknownFormat { start }));
     }
+    let message = decode(b"", &options("tga")).unwrap_err().to_string();
+    assert!(message.ends_with("found an empty file; copy or export it again"), "{message}");
 }
 
 /// With overflow checks, `exr` 1.74 panics on many a changed byte in a B44 block.

@@ -28,6 +28,10 @@ pub struct NormalMap {
     green_down: bool,
 }
 
+/// Largest and smallest magnitude of the largest component of a normal: squares of both, and 256 times them, are floats.
+const LONGEST: f64 = 1e9;
+const SHORTEST: f64 = 1e-9;
+
 impl NormalMap {
     /// Reads `image` as normals. `green_down` tells that y points down the image (DirectX convention); it is turned up.
     ///
@@ -53,7 +57,28 @@ impl NormalMap {
             NormalLayout::Auto => image.channels > 2 && !image.is_zero(2),
         };
         let signed = image.has_negative(2);
-        Ok(Self { image, has_z, signed, green_down })
+        let mut map = Self { image, has_z, signed, green_down };
+        map.shorten();
+        Ok(map)
+    }
+
+    /// Scales vectors so long or so short that their squares are no floats to a length of about 1. Only their direction
+    /// counts.
+    fn shorten(&mut self) {
+        let (channels, signed, has_z) = (self.image.channels as usize, self.signed, self.has_z);
+        let Samples::F32(samples) = &mut self.image.samples else { return };
+        samples.par_chunks_exact_mut(channels).for_each(|texel| {
+            // A z that is rebuilt makes short x and y what they should be.
+            let (vector, least) = if has_z { (&mut texel[..3], SHORTEST) } else { (&mut texel[..2], 0.0) };
+            let component = |sample: f32| if signed { f64::from(sample) } else { 2.0 * f64::from(sample) - 1.0 };
+            let longest = vector.iter().map(|sample| component(*sample).abs()).fold(0.0, f64::max);
+            if longest > 0.0 && !(least..=LONGEST).contains(&longest) {
+                for sample in vector {
+                    let scaled = component(*sample) / longest;
+                    *sample = (if signed { scaled } else { 0.5 * scaled + 0.5 }) as f32;
+                }
+            }
+        });
     }
 
     /// Columns.
@@ -190,6 +215,22 @@ mod tests {
     fn floats_without_a_negative_are_biased() {
         let normal = only_normal(image(3, Samples::F32(vec![0.5, 0.8, 0.9])), NormalLayout::Auto, false);
         assert!(close(normal, [0.0, 0.6, 0.8]));
+    }
+
+    /// One such texel would spoil every level.
+    #[test]
+    fn vectors_of_any_length_keep_their_direction() {
+        for length in [f32::MAX, 1e20, 1e-20, 1e-37] {
+            let texel = [-0.6 * length, 0.0, 0.8 * length];
+            let normal = only_normal(image(3, Samples::F32(texel.to_vec())), NormalLayout::Xyz, false);
+            assert!(close(normal, [-0.75, 0.0, 1.0]), "{length}: {normal:?}");
+        }
+        let long = only_normal(image(3, Samples::F32(vec![f32::MAX, 0.5, 0.5])), NormalLayout::Xyz, false);
+        assert!(close(long, [1.0, 0.0, 0.0]), "{long:?}");
+        let two = only_normal(image(2, Samples::F32(vec![-f32::MAX, 1.0])), NormalLayout::Xy, false);
+        assert!(close(two, [-1.0, 0.0, 0.0]), "{two:?}");
+        let usual = vec![-0.1, 0.2, 0.9];
+        assert_eq!(only_normal(image(3, Samples::F32(usual)), NormalLayout::Xyz, false), [-0.1, 0.2, 0.9]);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::{DecodeError, DecodeOptions, Format, Image, Samples, decode};
+use super::{DecodeError, DecodeOptions, Format, Image, MapError, Samples, decode};
 use crate::pyramid::Rows;
 
 impl Image {
@@ -21,6 +21,24 @@ impl Image {
             Samples::F32(v) => Samples::F32(expand(v)),
         };
         Self { channels: 4, samples, ..self }
+    }
+}
+
+/// Largest magnitude of a colour: the largest half float. glTF's roughness, metalness and occlusion are from 0 to 1, so that
+/// what lies beyond has no meaning; averages of it must stay numbers, whatever they are stored as.
+const LARGEST_COLOUR: f32 = 65504.0;
+
+impl Image {
+    /// The image with no colour beyond +-65504.
+    ///
+    /// # Errors
+    /// [`MapError::NotFinite`] when a sample is NaN or infinite.
+    pub fn into_finite_colours(mut self) -> Result<Self, MapError> {
+        self.check_finite()?;
+        if let Samples::F32(samples) = &mut self.samples {
+            samples.par_iter_mut().for_each(|sample| *sample = sample.clamp(-LARGEST_COLOUR, LARGEST_COLOUR));
+        }
+        Ok(self)
     }
 }
 
@@ -148,6 +166,14 @@ const fn unorm8() -> [f32; 256] {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn colours_beyond_half_floats_are_clamped() {
+        let image = |samples: Vec<f32>| Image { width: 2, height: 1, channels: 2, samples: Samples::F32(samples) };
+        let clamped = image(vec![f32::MAX, -1e30, 0.25, 7.0]).into_finite_colours();
+        assert_eq!(clamped, Ok(image(vec![65504.0, -65504.0, 0.25, 7.0])));
+        assert!(image(vec![0.0, f32::NAN, 0.0, 0.0]).into_finite_colours().is_err());
+    }
 
     #[test]
     fn greens_are_those_of_the_texels() {

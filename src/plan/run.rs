@@ -1,6 +1,7 @@
 //! Running a job: from the cache if it is there, else by baking; either way all declared outputs are there afterwards.
 
 use std::collections::BTreeMap;
+use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -207,6 +208,15 @@ impl Files for Inputs<'_> {
 
     fn hashed(&self, file: &Path, blake3: &str) {
         self.check(&beside(self.source, file), Some(blake3));
+    }
+
+    fn is_missing(&self, file: &Path) -> bool {
+        let path = beside(self.source, file);
+        let is_missing = matches!(fs::metadata(&path), Err(error) if error.kind() == io::ErrorKind::NotFound);
+        if is_missing {
+            self.check(&path, None);
+        }
+        is_missing
     }
 }
 

@@ -32,6 +32,17 @@ pub enum EncodeError {
     /// There is no memory for a level.
     #[error(transparent)]
     OutOfMemory(#[from] OutOfMemory),
+    /// Values that half floats do not hold.
+    #[error(
+        "expected values that half floats hold in a level of {width} x {height}, found some beyond +-65504 or none at all; \
+         use `--target basis`"
+    )]
+    NotFinite {
+        /// Columns of the level.
+        width: u32,
+        /// Rows of the level.
+        height: u32,
+    },
     /// The PNG encoder refused.
     #[error("the PNG of a level of {width} x {height} cannot be written: {reason}; leave it out with `--gltf strict`")]
     Png {
@@ -62,7 +73,9 @@ impl Texels<'_> {
         })
     }
 
-    fn to_half(&self, channels: usize) -> Vec<u8> {
+    /// # Errors
+    /// [`EncodeError::NotFinite`]: no file of ours holds infinities or NaN.
+    fn to_half(&self, channels: usize) -> Result<Vec<u8>, EncodeError> {
         let halves = self.convert(channels, |texels, out: &mut [f16]| {
             for (texel, out) in texels.iter().zip(out.chunks_exact_mut(channels)) {
                 for (half, value) in out.iter_mut().zip(texel) {
@@ -73,7 +86,10 @@ impl Texels<'_> {
                 }
             }
         });
-        halves.iter().flat_map(|h| h.to_le_bytes()).collect()
+        if halves.par_iter().any(|half| !half.is_finite()) {
+            return Err(EncodeError::NotFinite { width: self.width, height: self.height });
+        }
+        Ok(halves.iter().flat_map(|h| h.to_le_bytes()).collect())
     }
 
     fn convert<T: Clone + Default + Send>(
@@ -117,13 +133,13 @@ fn unorm8_row(texels: &[[f32; 4]], out: &mut [u8]) {
 /// The bytes of one level, not supercompressed. UASTC is fitted by `metric`, which other encoders do not know.
 ///
 /// # Errors
-/// [`EncodeError`] for block formats whose encoder is missing or fails.
+/// [`EncodeError`] for block formats whose encoder is missing or fails, and for values that half floats do not hold.
 pub fn encode(texels: &Texels<'_>, format: Format, metric: Metric, effort: Effort) -> Result<Vec<u8>, EncodeError> {
     match format {
         Format::UastcRgb => Ok(encode_uastc(texels, metric, effort)),
-        Format::R16Float => Ok(texels.to_half(1)),
-        Format::Rg16Float => Ok(texels.to_half(2)),
-        Format::Rgba16Float => Ok(texels.to_half(4)),
+        Format::R16Float => texels.to_half(1),
+        Format::Rg16Float => texels.to_half(2),
+        Format::Rgba16Float => texels.to_half(4),
         #[cfg(feature = "bc")]
         Format::Bc4 | Format::Bc5 | Format::Bc7 => super::bc::encode(texels, format, effort),
         #[cfg(not(feature = "bc"))]
@@ -191,6 +207,16 @@ mod tests {
         assert_eq!(halves, [-1.5, 2.0, 0.25, 1.0]);
         assert_eq!(encode(&texels, Format::Rg16Float, Metric::Rgb, Effort::Fast).unwrap(), bytes[..4]);
         assert_eq!(encode(&texels, Format::R16Float, Metric::Rgb, Effort::Fast).unwrap(), bytes[..2]);
+    }
+
+    #[test]
+    fn halves_are_finite_or_an_error() {
+        for value in [f32::NAN, f32::INFINITY, -1e5] {
+            let texels = Texels { width: 1, height: 1, row: &|_, out| out[0] = [0.0, value, 0.0, 0.0] };
+            let found = encode(&texels, Format::Rg16Float, Metric::Rgb, Effort::Fast);
+            assert_eq!(found, Err(EncodeError::NotFinite { width: 1, height: 1 }));
+            assert!(encode(&texels, Format::R16Float, Metric::Rgb, Effort::Fast).is_ok());
+        }
     }
 
     #[test]

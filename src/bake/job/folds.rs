@@ -1,5 +1,8 @@
 //! The job's textures of the portable profile that hold folded lobes.
 
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+
 use super::{Job, JobError, JobOutput, JobTexture, LayerOutcome};
 use crate::bake::base::{Base, BaseAnisotropy, BaseLevels, BaseRows};
 use crate::bake::bumps::Bumps;
@@ -34,14 +37,10 @@ impl Job<'_> {
         let mut normals = None;
         let mut normal_texture = None;
         let normal_encoding = Encoding::of_normals(self.settings).starting_at(self.first_level(layers, bumps.size()));
-        for (first, layer) in layers.iter().enumerate() {
-            let is_done = layers[..first].iter().any(|earlier| earlier.folds_like(layer));
-            if is_done {
-                continue;
-            }
-            let users: Vec<usize> =
-                (first..layers.len()).filter(|i| *i == first || layer.folds_like(&layers[*i])).collect();
-            let has_later = first + users.len() < layers.len();
+        let groups = groups(layers);
+        for (group, users) in groups.iter().enumerate() {
+            let layer = &layers[users[0]];
+            let has_later = group + 1 < groups.len();
             let Own { images, size: own_size, levels } =
                 own.take().map_or_else(|| self.own(layer, Some(relief)), Ok)?;
             let size = self.grid(&images, Some(relief))?;
@@ -102,7 +101,7 @@ impl Job<'_> {
                 fold.drop_all();
                 notes
             });
-            for user in &users {
+            for user in users {
                 let LayerOutcome {
                     report,
                     model: chosen,
@@ -140,21 +139,20 @@ impl Job<'_> {
             }
             let Some(folded) = folded else { continue };
             let [roughness, anisotropy] = layer.own_textures();
-            let own_location = roughness.map(|t| t.location.clone());
-            let named_after = own_location.ok_or_else(|| layer.name.clone());
+            let stem = roughness.map_or_else(|| layer.name.clone(), TextureSource::stem);
             let sources = self.hashed([&self.plan.source.location].into_iter().chain(layer.own_locations()));
             let texture = |content, chain, sampler, slots| JobTexture {
                 content,
                 chain,
                 range: None,
-                named_after: named_after.clone(),
+                stem: stem.clone(),
                 sources: sources.clone(),
                 slots,
                 sampler,
                 model,
                 lobe_errors: choice.as_ref().and_then(Choice::taken).map(|c| c.errors.clone()).unwrap_or_default(),
             };
-            let sampler = |own: Option<&TextureSource>| own.unwrap_or(&self.plan.source).sampler;
+            let sampler = |own: Option<&TextureSource>| own.map_or(self.plan.source.sampler, |own| own.sampler);
             output.textures.push(texture(
                 Content::Roughness,
                 folded.roughness,
@@ -176,7 +174,7 @@ impl Job<'_> {
                 content: Content::Normal,
                 chain,
                 range: None,
-                named_after: Ok(self.plan.source.location.clone()),
+                stem: self.plan.source.stem(),
                 sources: self.hashed([&self.plan.source.location]),
                 slots: layers.iter().map(LayerPlan::normal_slot).collect(),
                 sampler: self.plan.source.sampler,
@@ -218,6 +216,25 @@ impl Job<'_> {
         let roughness = own.roughness.as_ref().map(Rgba);
         BaseRows::new(width, height, roughness, layer.layer.roughness_factor, anisotropy, self.plan.source.wrap)
     }
+}
+
+/// The layers that share each folded lobe, in the order of their first. A layer that nothing can be folded into is alone.
+fn groups(layers: &[LayerPlan]) -> Vec<Vec<usize>> {
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    let mut places: HashMap<_, usize> = HashMap::new();
+    for (index, layer) in layers.iter().enumerate() {
+        match layer.fold_key().map(|key| places.entry(key)) {
+            Some(Entry::Occupied(place)) => {
+                let place = *place.get();
+                groups[place].push(index);
+                continue;
+            }
+            Some(Entry::Vacant(place)) => drop(place.insert(groups.len())),
+            None => {}
+        }
+        groups.push(vec![index]);
+    }
+    groups
 }
 
 /// A layer's own lobe.

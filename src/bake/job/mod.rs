@@ -6,8 +6,9 @@ mod pyramids;
 
 pub use error::JobError;
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use super::bumps::Bumps;
 use super::chain::{Chain, grid};
@@ -16,10 +17,10 @@ use super::geometry::Geometry;
 use super::notes;
 use super::plan::{LayerPlan, ReliefKind, ReliefPlan};
 use super::pyramids::Range;
+use super::reader::Reader;
 use super::relief::Relief;
 use super::report::{Content, LayerReport};
 use super::settings::{Model, Settings};
-use super::source::Source;
 use super::view::Finest;
 use crate::bump::Frame;
 use crate::digest::digest;
@@ -39,10 +40,10 @@ pub struct JobTexture {
     pub chain: Chain,
     /// What texels of 0 and 1 stand for, in the pyramid profile.
     pub range: Option<Range>,
-    /// The image that its file is named after; without one, the material is.
-    pub named_after: Result<ImageLocation, String>,
+    /// What its file is named after: an image, or the material that has none.
+    pub stem: String,
     /// Images that it was made from, each with the BLAKE3 of its file in hex; none without provenance.
-    pub sources: Vec<(ImageLocation, String)>,
+    pub sources: Vec<(Arc<ImageLocation>, String)>,
     /// References of materials to it.
     pub slots: Vec<Slot>,
     /// Index into `samplers`.
@@ -105,11 +106,11 @@ pub struct JobOutput {
 /// Bakes `plan`.
 pub fn run(
     plan: &ReliefPlan,
-    source: &Source<'_>,
+    reader: &Reader<'_>,
     geometry: &Geometry<'_>,
     settings: &Settings,
 ) -> Result<JobOutput, JobError> {
-    let job = Job { plan, source, settings, geometry, digests: Mutex::default() };
+    let job = Job { plan, reader, settings, geometry, digests: Mutex::default() };
     // Decoders have one thread each, and normals take the longest.
     let (relief, first) = rayon::join(|| job.relief(), || plan.layers.first().map(|layer| job.own(layer, None)));
     let (relief, mut relief_notes) = relief?;
@@ -168,11 +169,11 @@ type Decode = fn(&[u8], &DecodeOptions) -> Result<Image, DecodeError>;
 
 struct Job<'a> {
     plan: &'a ReliefPlan,
-    source: &'a Source<'a>,
+    reader: &'a Reader<'a>,
     settings: &'a Settings,
     geometry: &'a Geometry<'a>,
     /// BLAKE3 of each image file that was read, for provenance: of the bytes that are baked.
-    digests: Mutex<BTreeMap<ImageLocation, String>>,
+    digests: Mutex<BTreeMap<Arc<ImageLocation>, String>>,
 }
 
 impl Job<'_> {
@@ -214,17 +215,16 @@ impl Job<'_> {
     fn image(&self, texture: &TextureSource, material: &str) -> Result<Image, JobError> {
         let file = self.file(texture, material)?;
         let image = self.decoded(&file, texture, material, decode_colours)?;
-        image.check_finite().map_err(|error| JobError::Map {
+        image.into_finite_colours().map_err(|error| JobError::Map {
             material: material.to_owned(),
             texture: describe(&texture.location),
             error,
-        })?;
-        Ok(image)
+        })
     }
 
     /// The bytes of an image file, which [`Self::decoded`] must be given.
-    fn file(&self, texture: &TextureSource, material: &str) -> Result<Vec<u8>, JobError> {
-        self.source.image_to_hash(&texture.location).map_err(|error| JobError::Source {
+    fn file(&self, texture: &TextureSource, material: &str) -> Result<Cow<'_, [u8]>, JobError> {
+        self.reader.image_to_hash(&texture.location).map_err(|error| JobError::Source {
             material: material.to_owned(),
             texture: describe(&texture.location),
             error,
@@ -232,13 +232,16 @@ impl Job<'_> {
     }
 
     /// Those of `locations` that were read, with their digests.
-    fn hashed<'l>(&self, locations: impl IntoIterator<Item = &'l ImageLocation>) -> Vec<(ImageLocation, String)> {
+    fn hashed<'l>(
+        &self,
+        locations: impl IntoIterator<Item = &'l Arc<ImageLocation>>,
+    ) -> Vec<(Arc<ImageLocation>, String)> {
         let digests = self.digests.lock().unwrap_or_else(PoisonError::into_inner);
         locations.into_iter().filter_map(|l| Some((l.clone(), digests.get(l)?.clone()))).collect()
     }
 
     fn decoded(&self, file: &[u8], texture: &TextureSource, material: &str, decode: Decode) -> Result<Image, JobError> {
-        let extension = match &texture.location {
+        let extension = match &*texture.location {
             ImageLocation::Uri(uri) if !uri.starts_with("data:") => uri.rsplit_once('.').map(|(_, e)| e.to_owned()),
             _ => None,
         };
@@ -246,7 +249,7 @@ impl Job<'_> {
         let (material, described) = (|| material.to_owned(), || describe(&texture.location));
         let decode = || {
             // A form that cannot be read is no reason to fail: it is not needed.
-            let form_is_baked = |form| self.source.image(form).is_ok_and(|bytes| is_baked(&bytes));
+            let form_is_baked = |form: &Arc<ImageLocation>| self.reader.image(form).is_ok_and(|bytes| is_baked(&bytes));
             if is_baked(file) || texture.other_forms.iter().any(form_is_baked) {
                 return Err(JobError::AlreadyBaked { material: material(), texture: described() });
             }
@@ -258,7 +261,7 @@ impl Job<'_> {
         };
         // Decoders have one thread each.
         let (image, digest) = rayon::join(decode, || digest(file));
-        self.source.hashed(&texture.location, &digest);
+        self.reader.hashed(&texture.location, &digest);
         self.digests.lock().unwrap_or_else(PoisonError::into_inner).insert(texture.location.clone(), digest);
         image
     }

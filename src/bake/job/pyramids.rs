@@ -25,6 +25,7 @@ impl Job<'_> {
     /// Offsets and D or lambda_1 for the base layers.
     pub(super) fn pyramids(&self, relief: &Relief, bumps: &Bumps<'_>, output: &mut JobOutput) -> Result<(), JobError> {
         let mut made: Vec<(Reading, Quantity, usize, Made)> = Vec::new();
+        let first_offset = self.first_level(&self.plan.layers, bumps.size());
         for (index, layer) in self.plan.layers.iter().enumerate() {
             let outcome = &mut output.layers[index];
             if layer.layer.kind == LayerKind::Clearcoat {
@@ -46,7 +47,7 @@ impl Job<'_> {
             let lobe_errors = outcome.report.choice.as_ref().and_then(Choice::taken).map(|c| c.errors.clone());
             let mut find_or_make = |quantity: Quantity| {
                 let first = match quantity {
-                    Quantity::Offset => self.first_level(&self.plan.layers, bumps.size()),
+                    Quantity::Offset => first_offset,
                     Quantity::Factor | Quantity::Lambda1 => own_first,
                 };
                 if let Some((.., made)) = made.iter().find(|(r, q, f, _)| (r, *q, *f) == (&reading, quantity, first)) {
@@ -105,7 +106,7 @@ impl Job<'_> {
             content,
             chain,
             range: Some(range),
-            named_after: Ok(self.plan.source.location.clone()),
+            stem: self.plan.source.stem(),
             sources: self.hashed([&self.plan.source.location]),
             slots: Vec::new(),
             sampler: self.plan.source.sampler,

@@ -4,6 +4,7 @@ use serde_json::json;
 use super::*;
 use crate::gltf::density::density;
 use crate::gltf::material::Mapping;
+use crate::gltf::meshes::Meshes;
 use crate::gltf::scene::placements;
 
 const VIEW: View = View { nearest: 10.0, screen_height: 1000, fov: 90.0, aspect: 1.0, trim: false };
@@ -126,7 +127,7 @@ proptest! {
         });
         let size = 1 << 12;
         let placements = placements(&root).unwrap();
-        let density = density(&root, &placements, 0, &Mapping::default(), (size, size), &|_| Some(&bytes)).unwrap();
+        let density = density(&Meshes::of(&root), &placements, 0, &Mapping::default(), (size, size), &|_| Some(&bytes)).unwrap();
         let least = (view.units_per_pixel() / density.longest).log2();
         let level = sampled(&view, screen, view.nearest + further, [u, v], f64::from(size));
         // Grazing planes and rays past the horizon have no level.

@@ -181,7 +181,7 @@ impl Reader<'_> {
         let material = self.material.to_owned();
         let source = texture_source(self.root, index)
             .map_err(|error| RenderError::Reference { material: material.clone(), error })?;
-        let texture = match &source.location {
+        let texture = match &*source.location {
             ImageLocation::Uri(uri) => uri.chars().take(60).collect(),
             ImageLocation::BufferView(view) => format!("bufferViews[{view}]"),
         };

@@ -1,4 +1,4 @@
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::*;
 use crate::gltf::scene::placements;
@@ -29,7 +29,7 @@ fn quad() -> (Value, Vec<u8>) {
 }
 
 fn measure_with(root: &Value, bytes: &[u8], mapping: &Mapping, size: (u32, u32)) -> Result<f64, NoDensity> {
-    density(root, &placements(root)?, 0, mapping, size, &|_| Some(bytes)).map(|density| density.longest)
+    density(&Meshes::of(root), &placements(root)?, 0, mapping, size, &|_| Some(bytes)).map(|density| density.longest)
 }
 
 fn measure(root: &Value, bytes: &[u8]) -> Result<f64, NoDensity> {
@@ -50,7 +50,9 @@ fn a_quad_of_known_size() {
 #[test]
 fn slim_texels_count_as_far_as_anisotropic_filtering_follows() {
     let (root, bytes) = quad();
-    let measure = |size| density(&root, &placements(&root).unwrap(), 0, &Mapping::default(), size, &|_| Some(&bytes));
+    let measure = |size| {
+        density(&Meshes::of(&root), &placements(&root).unwrap(), 0, &Mapping::default(), size, &|_| Some(&bytes))
+    };
     assert_eq!(measure((64, 16)), Ok(Density { longest: 0.125, typical: 0.0625 }));
     let Density { longest, typical } = measure((4096, 64)).unwrap();
     assert!((longest - 16.0 * 2f64.sqrt() / 2048.0).abs() < 1e-12, "{longest}");

@@ -1,5 +1,6 @@
 //! What can be wrong with a glTF file before its meaning is read.
 
+use crate::foreign::Foreign;
 use crate::gltf::json::JsonError;
 
 /// Why a file is not a glTF asset, or cannot be edited or written.
@@ -9,6 +10,35 @@ pub enum DocumentError {
     /// The JSON is malformed, a value in it has a wrong type, or an edit of it failed.
     #[error("JSON: {0}")]
     Json(#[from] JsonError),
+    /// The file holds nothing that could be a document.
+    #[error("expected a glTF document, found {found}")]
+    Foreign {
+        /// What it is.
+        found: Foreign,
+    },
+    /// The file is neither a GLB nor a JSON object.
+    #[error("expected a GLB or a JSON object, found {found}; export the scene as glTF 2.0 (.glb or .gltf)")]
+    NotGltf {
+        /// What it is.
+        found: String,
+    },
+    /// The JSON does not say which glTF it is.
+    #[error(
+        "expected \"asset\" with \"version\": \"2.0\" as every glTF document has it, found {found}; \
+         export the scene as glTF 2.0 (.glb or .gltf)"
+    )]
+    NoVersion {
+        /// What is there instead.
+        found: String,
+    },
+    /// A document of another version of glTF.
+    #[error("expected glTF 2.0, found {found} as asset.{member}; export the scene as glTF 2.0 (.glb or .gltf)")]
+    OtherVersion {
+        /// `version` or `minVersion`.
+        member: &'static str,
+        /// Its value as JSON, cut to 32 characters.
+        found: String,
+    },
     /// The file ends before the length that its GLB header declares.
     #[error("expected {needed} bytes of GLB, found {found}; the file is cut short")]
     Truncated {

@@ -92,6 +92,16 @@ impl Chunks {
         Some(&first.data)
     }
 
+    /// Replaces the BIN chunk, padded with zeros to a multiple of 4, or removes it.
+    pub fn set_bin(&mut self, bin: Option<&[u8]>) {
+        if self.bin().is_some() {
+            self.chunks.remove(0);
+        }
+        if let Some(bin) = bin {
+            self.append_bin(bin);
+        }
+    }
+
     /// Appends to the BIN chunk, made if it is missing, and pads it with zeros to a multiple of 4.
     pub fn append_bin(&mut self, data: &[u8]) {
         if self.bin().is_none() {

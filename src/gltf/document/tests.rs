@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
-use super::{Container, Document, DocumentError};
+use super::{Container, Document, DocumentError, check_version};
 use crate::gltf::json::Json;
 
 const TEXT: &str = "{ \"asset\": {\"version\":\"2.0\"},\n\"buffers\":[{\"byteLength\":6 }], \"odd\":1.0e+00 }";
@@ -212,9 +212,54 @@ fn damage_is_named() {
             glb(&[chunk(b"BIN\0", b""), json.clone()]),
             "expected a JSON chunk first in the GLB, found BIN\\x00; the file is damaged",
         ),
-        (b"\x89PNG".to_vec(), "JSON: line 1, column 1: expected UTF-8, found other bytes; save the file as UTF-8"),
+        (b"{\"\xff\"}".to_vec(), "JSON: line 1, column 3: expected UTF-8, found other bytes; save the file as UTF-8"),
     ] {
         assert_eq!(message(&bytes), expected);
+    }
+}
+
+#[test]
+fn other_files_are_named_with_what_to_do() {
+    const EXPORT: &str = "; export the scene as glTF 2.0 (.glb or .gltf)";
+    for (bytes, found) in [
+        (&b"\x89PNG\r\n"[..], "a PNG image"),
+        (b"Kaydara FBX Binary  \0", "an FBX file"),
+        (b"# Blender 4.2\nv 0 0 0\n", "a text such as an OBJ file"),
+        (b"PXR-USDC\0", "a USD file"),
+        (b"null", "a file that starts with \"null\""),
+        (b"[]", "a file that starts with \"[]\""),
+        (b"\"x\"", "a file that starts with \"\\\"x\\\"\""),
+        (b"glT", "a file that starts with \"glT\""),
+        (b"\x01\x02", "a file that starts with \"\\x01\\x02\""),
+    ] {
+        assert_eq!(message(bytes), format!("expected a GLB or a JSON object, found {found}{EXPORT}"));
+    }
+    assert_eq!(message(b""), "expected a glTF document, found an empty file; copy or export it again");
+    let pointer = b"version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n";
+    let expected = "expected a glTF document, found a Git LFS pointer instead of the file; run `git lfs pull`";
+    assert_eq!(message(pointer), expected);
+}
+
+#[test]
+fn documents_of_other_versions_are_refused() {
+    let check = |asset: &str| check_version(&serde_json::from_str(asset).unwrap()).map_err(|e| e.to_string());
+    for fine in ["2.0", "2.1", "2.10"] {
+        assert_eq!(check(&format!(r#"{{"asset":{{"version":"{fine}","minVersion":"2.0"}}}}"#)), Ok(()));
+    }
+    for (text, found) in [
+        ("null", "JSON that is no object"),
+        ("[]", "JSON that is no object"),
+        ("{}", "no \"asset\""),
+        (r#"{"asset":{}}"#, "an \"asset\" without \"version\""),
+        (r#"{"asset":{"version":2.0}}"#, "the version 2.0"),
+        (r#"{"asset":{"version":"1.0"}}"#, "expected glTF 2.0, found \"1.0\" as asset.version"),
+        (r#"{"asset":{"version":"99"}}"#, "expected glTF 2.0, found \"99\" as asset.version"),
+        (r#"{"asset":{"version":"2."}}"#, "expected glTF 2.0, found \"2.\" as asset.version"),
+        (r#"{"asset":{"version":"2.0","minVersion":"2.1"}}"#, "found \"2.1\" as asset.minVersion"),
+        (r#"{"asset":{"version":"2.0","minVersion":2}}"#, "found 2 as asset.minVersion"),
+    ] {
+        let message = check(text).unwrap_err();
+        assert!(message.contains(found) && message.ends_with("(.glb or .gltf)"), "{message}");
     }
 }
 

@@ -148,6 +148,26 @@ impl Container {
         }
     }
 
+    /// Keeps the entries whose index `keep` accepts, as [`Self::remove`] would one by one.
+    pub fn retain(&mut self, mut keep: impl FnMut(usize) -> bool) {
+        let Some(first) = self.entries.first() else { return };
+        let lead = leading_blank(&first.head).to_owned();
+        let is_kept: Vec<bool> = (0..self.entries.len()).map(&mut keep).collect();
+        let tail = self.entries.last_mut().map(|last| std::mem::take(&mut last.tail)).unwrap_or_default();
+        let mut index = 0;
+        self.entries.retain(|_| {
+            index += 1;
+            is_kept[index - 1]
+        });
+        if let Some(first) = self.entries.first_mut() {
+            let own = leading_blank(&first.head).len();
+            first.head.replace_range(..own, &lead);
+        }
+        if let Some(last) = self.entries.last_mut() {
+            last.tail = tail;
+        }
+    }
+
     /// Takes out what one step of a pointer names: an element, or every member of that name.
     pub fn remove_all(&mut self, step: &str) -> bool {
         let before = self.entries.len();

@@ -1,0 +1,245 @@
+//! Reading what a bake needs of a document's files: each buffer once, for all images and meshes in it.
+
+use std::borrow::Cow;
+use std::collections::{BTreeMap, HashMap};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use serde::Deserialize;
+use serde_json::Value;
+
+use super::source::{MAX_DATA_URI, Source, SourceError};
+use crate::digest::digest;
+use crate::foreign::Foreign;
+use crate::gltf::document::{DocumentError, holds_buffer_0, view_range};
+use crate::gltf::json::JsonError;
+use crate::gltf::texture::ImageLocation;
+use crate::gltf::uri::Uri;
+
+/// A source whose buffers have been read and checked.
+pub struct Reader<'a> {
+    /// The document and its files.
+    pub source: &'a Source<'a>,
+    /// The document's JSON.
+    pub root: &'a Value,
+    buffers: Vec<Bytes<'a>>,
+    /// BLAKE3, in hexadecimal, of the files that buffers are.
+    digests: BTreeMap<PathBuf, String>,
+}
+
+/// The bytes of a buffer.
+enum Bytes<'a> {
+    /// No one has them. That is legal: the buffer may be the fallback of compressed ones.
+    Absent,
+    /// They are there, and nothing in the bake needs them.
+    Unneeded,
+    /// The BIN chunk.
+    Chunk(&'a [u8]),
+    /// A file, which several buffers may be, or a data URI.
+    Read(Arc<Vec<u8>>),
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+struct Buffer {
+    uri: Option<String>,
+    byte_length: usize,
+}
+
+impl<'a> Reader<'a> {
+    /// Reads every buffer of `source`, whose JSON is `root`, and checks that it holds the bytes that it declares. Keeps
+    /// those with images, or all of them if `keeps_all`.
+    ///
+    /// # Errors
+    /// [`SourceError`] for the first buffer that cannot be read or is too short.
+    pub fn new(source: &'a Source<'a>, root: &'a Value, keeps_all: bool) -> Result<Self, SourceError> {
+        let mut reader = Self { source, root, buffers: Vec::new(), digests: BTreeMap::new() };
+        let has_images = buffers_of_images(root);
+        let mut files: HashMap<PathBuf, (usize, Option<Arc<Vec<u8>>>)> = HashMap::new();
+        let list = root.get("buffers").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
+        for (index, value) in list.iter().enumerate() {
+            let wrong = |source| JsonError::Read { pointer: format!("/buffers/{index}"), source };
+            let buffer = Buffer::deserialize(value).map_err(|e| DocumentError::from(wrong(e)))?;
+            let is_needed = keeps_all || has_images.get(index) == Some(&true);
+            let keep = |bytes: Vec<u8>| (bytes.len(), is_needed.then(|| Arc::new(bytes)));
+            let (found, bytes) = match buffer.uri.as_deref().map(Uri::parse).transpose()? {
+                None => match source.document.bin().filter(|_| index == 0 && holds_buffer_0(root)) {
+                    Some(bin) => {
+                        reader.buffers.push(Bytes::Chunk(bin));
+                        check_length(index, buffer.byte_length, bin.len())?;
+                        continue;
+                    }
+                    None => {
+                        reader.buffers.push(Bytes::Absent);
+                        continue;
+                    }
+                },
+                Some(Uri::Data(data)) => keep(data.decode(MAX_DATA_URI)?),
+                Some(Uri::Path(path)) => match files.get(&path) {
+                    // A file that an earlier buffer did not need to keep is read a second time.
+                    Some((length, bytes)) if bytes.is_some() || !is_needed => (*length, bytes.clone()),
+                    _ => {
+                        let bytes = reader.read(&path)?;
+                        if let Some(found) = Foreign::detect(&bytes).filter(|_| bytes.len() < buffer.byte_length) {
+                            return Err(SourceError::Foreign { path, found });
+                        }
+                        let read = keep(bytes);
+                        files.insert(path, read.clone());
+                        read
+                    }
+                },
+            };
+            check_length(index, buffer.byte_length, found)?;
+            reader.buffers.push(bytes.map_or(Bytes::Unneeded, Bytes::Read));
+        }
+        Ok(reader)
+    }
+
+    /// Reads and hashes a file.
+    fn read(&mut self, path: &Path) -> Result<Vec<u8>, SourceError> {
+        let failed = |error: io::Error| SourceError::Read { path: path.to_owned(), error };
+        let bytes = self.source.files.read_to_hash(path).map_err(failed)?;
+        let digest = digest(&bytes);
+        self.source.files.hashed(path, &digest);
+        self.digests.insert(path.to_owned(), digest);
+        Ok(bytes)
+    }
+
+    /// The bytes of a buffer that is kept.
+    ///
+    /// # Errors
+    /// [`SourceError::NoBuffer`].
+    pub fn buffer(&self, index: usize) -> Result<&[u8], SourceError> {
+        match self.buffers.get(index) {
+            Some(Bytes::Chunk(bin)) => Ok(bin),
+            Some(Bytes::Read(bytes)) => Ok(bytes),
+            Some(Bytes::Absent | Bytes::Unneeded) | None => Err(SourceError::NoBuffer { buffer: index }),
+        }
+    }
+
+    /// The bytes of an image file.
+    ///
+    /// # Errors
+    /// [`SourceError`].
+    pub fn image(&self, location: &ImageLocation) -> Result<Cow<'_, [u8]>, SourceError> {
+        match location {
+            ImageLocation::Uri(uri) => self.source.uri(uri).map(Cow::Owned),
+            ImageLocation::BufferView(view) => self.view(*view).map(Cow::Borrowed),
+        }
+    }
+
+    /// The bytes of an image file, for a caller who tells [`Self::hashed`] of them.
+    ///
+    /// # Errors
+    /// [`SourceError`].
+    pub fn image_to_hash(&self, location: &ImageLocation) -> Result<Cow<'_, [u8]>, SourceError> {
+        match location {
+            ImageLocation::Uri(uri) => {
+                self.source.uri_by(uri, |path| self.source.files.read_to_hash(path)).map(Cow::Owned)
+            }
+            ImageLocation::BufferView(view) => self.view(*view).map(Cow::Borrowed),
+        }
+    }
+
+    /// Takes note of the BLAKE3, in hexadecimal, of what [`Self::image_to_hash`] read.
+    pub fn hashed(&self, location: &ImageLocation, blake3: &str) {
+        if let ImageLocation::Uri(uri) = location
+            && let Ok(Uri::Path(path)) = Uri::parse(uri)
+        {
+            self.source.files.hashed(&path, blake3);
+        }
+    }
+
+    fn view(&self, view: usize) -> Result<&[u8], SourceError> {
+        let (buffer, range) = view_range(self.root, view)?;
+        let bytes = self.buffer(buffer)?;
+        let short = SourceError::ShortBuffer { buffer, expected: range.end, found: bytes.len() };
+        bytes.get(range).ok_or(short)
+    }
+
+    /// BLAKE3, in hexadecimal, of a file that the document names; `None` where it cannot be read.
+    pub fn digest(&self, path: &Path) -> Option<String> {
+        self.digests.get(path).cloned().or_else(|| {
+            let digest = digest(&self.source.files.read_to_hash(path).ok()?);
+            self.source.files.hashed(path, &digest);
+            Some(digest)
+        })
+    }
+}
+
+fn check_length(buffer: usize, expected: usize, found: usize) -> Result<(), SourceError> {
+    if found < expected { Err(SourceError::ShortBuffer { buffer, expected, found }) } else { Ok(()) }
+}
+
+/// For each buffer whether an image lies in it.
+fn buffers_of_images(root: &Value) -> Vec<bool> {
+    let mut has_images = Vec::new();
+    let images = root.get("images").and_then(Value::as_array).into_iter().flatten();
+    let views = images.filter_map(|image| usize::try_from(image.get("bufferView")?.as_u64()?).ok());
+    for (buffer, _) in views.filter_map(|view| view_range(root, view).ok()) {
+        has_images.resize(has_images.len().max(buffer + 1), false);
+        has_images[buffer] = true;
+    }
+    has_images
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gltf::document::Document;
+    use serde_json::json;
+    use std::sync::Mutex;
+
+    /// Counts reads of files of 64 bytes.
+    fn with_reader(root: &Value, keeps_all: bool, then: impl FnOnce(Result<Reader<'_>, SourceError>)) -> Vec<PathBuf> {
+        let reads = Mutex::new(Vec::new());
+        let files = |path: &Path| {
+            reads.lock().unwrap().push(path.to_owned());
+            Ok(vec![7; 64])
+        };
+        let document = Document::parse(root.to_string().as_bytes()).unwrap();
+        then(Reader::new(&Source { stem: "a", document: &document, files: &files }, root, keeps_all));
+        reads.into_inner().unwrap()
+    }
+
+    #[test]
+    fn a_buffer_is_read_once_for_all_images_in_it() {
+        let view = |buffer: usize, offset: usize| json!({ "buffer": buffer, "byteOffset": offset, "byteLength": 8 });
+        let root = json!({
+            "buffers": [{ "uri": "a.bin", "byteLength": 64 }, { "uri": "a.bin", "byteLength": 32 }],
+            "bufferViews": [view(0, 0), view(0, 8), view(1, 16)],
+            "images": [{ "bufferView": 0 }, { "bufferView": 1 }, { "bufferView": 2 }],
+        });
+        let reads = with_reader(&root, false, |reader| {
+            let reader = reader.unwrap();
+            for view in 0..3 {
+                assert_eq!(*reader.image(&ImageLocation::BufferView(view)).unwrap(), [7; 8]);
+            }
+            assert_eq!(reader.digest(Path::new("a.bin")), Some(digest(&[7; 64])));
+        });
+        assert_eq!(reads, [Path::new("a.bin")]);
+    }
+
+    /// Many buffers may be one file: it is not read for each of them.
+    #[test]
+    fn a_file_is_read_once_for_all_buffers_in_it() {
+        let buffers = vec![json!({ "uri": "a.bin", "byteLength": 64 }); 10_000];
+        let root = json!({ "buffers": buffers });
+        for keeps_all in [false, true] {
+            let reads = with_reader(&root, keeps_all, |reader| {
+                assert_eq!(reader.unwrap().buffer(9_999).is_ok(), keeps_all);
+            });
+            assert_eq!(reads.len(), 1);
+        }
+    }
+
+    #[test]
+    fn short_buffers_are_told() {
+        let root = json!({ "buffers": [{ "uri": "a.bin", "byteLength": 65 }] });
+        with_reader(&root, false, |reader| {
+            let error = reader.err().unwrap();
+            assert!(matches!(error, SourceError::ShortBuffer { buffer: 0, expected: 65, found: 64 }), "{error}");
+        });
+    }
+}

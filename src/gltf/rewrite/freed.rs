@@ -1,0 +1,61 @@
+//! Objects of a document that nothing needs once references have moved to new textures.
+
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+use serde_json::Value;
+
+use super::{NewTexture, references};
+
+/// Objects that may be overwritten.
+pub struct Freed {
+    /// For each new texture the old ones that become it.
+    pub replaced: Vec<Vec<usize>>,
+    /// Images that only those old textures name.
+    pub images: BTreeSet<usize>,
+}
+
+impl Freed {
+    /// Finds them in `root`, the document's JSON before any edit. An old texture whose references move to several new ones
+    /// becomes the first of these that has none yet, else the first.
+    pub fn of(root: &Value, textures: &[NewTexture]) -> Self {
+        let mut targets = HashMap::new();
+        for (new, texture) in textures.iter().enumerate() {
+            for slot in &texture.slots {
+                targets.entry(slot.pointer.as_str()).or_insert(new);
+            }
+        }
+        let list = root.get("textures").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
+        // Where the references to each old texture move, if all of them do.
+        let mut moves: BTreeMap<usize, Option<Vec<usize>>> = BTreeMap::new();
+        for (pointer, old) in references(root) {
+            let all = moves.entry(old).or_insert_with(|| Some(Vec::new()));
+            match (all, targets.get(pointer.as_str())) {
+                (Some(news), Some(new)) => news.push(*new),
+                (all, _) => *all = None,
+            }
+        }
+        let mut replaced: Vec<Vec<usize>> = vec![Vec::new(); textures.len()];
+        let mut is_kept = vec![true; list.len()];
+        for (old, news) in moves.into_iter().filter(|(old, _)| *old < list.len()) {
+            let Some(news) = news else { continue };
+            let free = news.iter().find(|new| replaced[**new].is_empty());
+            if let Some(new) = free.or(news.first()) {
+                replaced[*new].push(old);
+                is_kept[old] = false;
+            }
+        }
+        let images = |kept: bool| -> BTreeSet<usize> {
+            let textures = list.iter().zip(&is_kept).filter(|(_, is_kept)| **is_kept == kept);
+            textures.flat_map(|(texture, _)| images_of(texture)).collect()
+        };
+        Self { images: images(false).difference(&images(true)).copied().collect(), replaced }
+    }
+}
+
+/// Images that a texture names, whatever the extension, the core `source` first.
+pub fn images_of(texture: &Value) -> Vec<usize> {
+    let extensions = texture.get("extensions").and_then(Value::as_object);
+    let sources = extensions.into_iter().flat_map(|e| e.values()).filter_map(|e| e.get("source"));
+    let all = texture.get("source").into_iter().chain(sources);
+    all.filter_map(Value::as_u64).filter_map(|i| usize::try_from(i).ok()).collect()
+}

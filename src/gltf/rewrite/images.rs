@@ -1,0 +1,123 @@
+//! The images of new textures: each takes the place of one of the texture that it replaces, where it can.
+
+use std::collections::BTreeSet;
+
+use serde_json::{Value, json};
+
+use super::freed::{Freed, images_of};
+use super::{NewImage, NewTexture, escaped};
+use crate::gltf::extensions::are_known;
+use crate::gltf::json::{Json, JsonError};
+
+/// Indices of the images of a new texture.
+pub struct Placed {
+    /// The KTX2 file.
+    pub ktx2: usize,
+    /// What the core `source` names.
+    pub source: Option<usize>,
+}
+
+/// Writes the images of `textures` and returns where they are. Takes the images that it overwrites out of `freed`.
+pub fn place_images(
+    json: &mut Json,
+    root: &Value,
+    textures: &[NewTexture],
+    freed: &mut Freed,
+) -> Result<Vec<Placed>, JsonError> {
+    // First of all each takes its own, so that none takes another's.
+    let claims: Vec<Vec<usize>> = textures
+        .iter()
+        .zip(&freed.replaced)
+        .map(|(new, replaced)| {
+            let old = replaced.iter().filter_map(|index| root.get("textures")?.get(index));
+            let own: Vec<usize> = old.flat_map(images_of).collect();
+            // Two at most: the core source's for the core source, and the other.
+            let count = if new.other_source().is_some() { 2 } else { 1 };
+            own.into_iter().filter(|image| freed.images.remove(image)).take(count).collect()
+        })
+        .collect();
+    let mut placed = Vec::with_capacity(textures.len());
+    for (new, claims) in textures.iter().zip(claims) {
+        let mut claims = claims.into_iter();
+        let mut place = |image: &NewImage| match claims.next() {
+            Some(index) => overwrite(json, root, index, image, &new.name, true).map(|()| index),
+            None => match freed.images.pop_first() {
+                Some(index) => overwrite(json, root, index, image, &new.name, false).map(|()| index),
+                None => push(json, image, &new.name),
+            },
+        };
+        let source = new.other_source().map(&mut place).transpose()?;
+        let ktx2 = place(&new.ktx2)?;
+        placed.push(Placed { ktx2, source: source.or_else(|| new.source.as_ref().map(|_| ktx2)) });
+    }
+    Ok(placed)
+}
+
+impl NewTexture {
+    /// What the core `source` names, where it is not the KTX2 file.
+    fn other_source(&self) -> Option<&NewImage> {
+        self.source.as_ref().filter(|source| **source != self.ktx2)
+    }
+}
+
+fn push(json: &mut Json, image: &NewImage, name: &str) -> Result<usize, JsonError> {
+    match image {
+        NewImage::File(uri) => json.push("/images", &json!({ "name": name, "uri": uri })),
+        NewImage::BufferView { view, mime } => {
+            json.push("/images", &json!({ "name": name, "bufferView": view, "mimeType": mime }))
+        }
+    }
+}
+
+/// Writes `image` over image `index`, whose own name stays if it `keeps_name`.
+fn overwrite(
+    json: &mut Json,
+    root: &Value,
+    index: usize,
+    image: &NewImage,
+    name: &str,
+    keeps_name: bool,
+) -> Result<(), JsonError> {
+    let at = format!("/images/{index}");
+    match image {
+        // Without a media type: `image/ktx2` would make validators warn, and the dual form fail in some.
+        NewImage::File(uri) => {
+            json.remove(&format!("{at}/bufferView"))?;
+            json.remove(&format!("{at}/mimeType"))?;
+            json.set(&format!("{at}/uri"), uri)?;
+        }
+        NewImage::BufferView { view, mime } => {
+            json.remove(&format!("{at}/uri"))?;
+            json.set(&format!("{at}/bufferView"), view)?;
+            json.set(&format!("{at}/mimeType"), mime)?;
+        }
+    }
+    let has_name = root.get("images").and_then(|images| images.get(index)?.get("name")).is_some();
+    if has_name && keeps_name { Ok(()) } else { json.set(&format!("{at}/name"), name) }
+}
+
+/// Removes `images`, which no texture names, unless an extension may number images in a way of its own.
+pub fn remove_images(json: &mut Json, images: &BTreeSet<usize>) -> Result<(), JsonError> {
+    let root = json.value("")?.unwrap_or_default();
+    if images.is_empty() || !are_known(&root) {
+        return Ok(());
+    }
+    let removed: Vec<usize> = images.iter().copied().collect();
+    let renumbered = |image: &Value| {
+        let image = usize::try_from(image.as_u64()?).ok()?;
+        let before = removed.partition_point(|removed| *removed < image);
+        (before > 0).then(|| image - before)
+    };
+    let textures = root.get("textures").and_then(Value::as_array).into_iter().flatten().enumerate();
+    for (index, texture) in textures {
+        if let Some(image) = texture.get("source").and_then(renumbered) {
+            json.set(&format!("/textures/{index}/source"), &image)?;
+        }
+        for (name, extension) in texture.get("extensions").and_then(Value::as_object).into_iter().flatten() {
+            if let Some(image) = extension.get("source").and_then(renumbered) {
+                json.set(&format!("/textures/{index}/extensions/{}/source", escaped(name)), &image)?;
+            }
+        }
+    }
+    json.retain("/images", |index| !images.contains(&index))
+}
