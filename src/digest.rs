@@ -1,22 +1,99 @@
-//! What names content: in plans, caches and provenance.
+//! Content digests: they name jobs, blobs of caches and sources in provenance.
 
+use std::fmt;
 use std::io::{self, Read};
+use std::str::FromStr;
 
-/// BLAKE3 of `bytes`, in 64 lower-case hexadecimal digits.
-pub fn digest(bytes: &[u8]) -> String {
-    // Below 128 KiB threads cost more than they gain (documentation of `update_rayon`).
-    if bytes.len() < 128 << 10 {
-        return blake3::hash(bytes).to_hex().to_string();
-    }
-    blake3::Hasher::new().update_rayon(bytes).finalize().to_hex().to_string()
+use serde::{Deserialize, Serialize, Serializer};
+
+/// A BLAKE3 digest, written as 64 lower-case hexadecimal digits.
+///
+/// Nothing else can be read into it, so that a digest from a file of somebody else is safe as the name of a file.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize)]
+#[serde(try_from = "String")]
+pub struct Digest([u8; 32]);
+
+/// A text that is no digest.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("expected a digest of 64 lower-case hexadecimal digits, found {found:?}")]
+pub struct NoDigest {
+    /// The beginning of the text.
+    pub found: String,
 }
 
-/// The same of all that `source` holds, without holding it, and its length.
+impl Digest {
+    /// Returns the bytes; they have the order of the digits.
+    pub fn as_bytes(&self) -> &[u8; 32] {
+        &self.0
+    }
+}
+
+impl FromStr for Digest {
+    type Err = NoDigest;
+
+    fn from_str(text: &str) -> Result<Self, NoDigest> {
+        from_hex(text).map(Self).ok_or_else(|| NoDigest { found: text.chars().take(80).collect() })
+    }
+}
+
+impl TryFrom<String> for Digest {
+    type Error = NoDigest;
+
+    fn try_from(text: String) -> Result<Self, NoDigest> {
+        text.parse()
+    }
+}
+
+/// Writes all 64 digits, or the first ones where a precision is given: `{:.12}`.
+impl fmt::Display for Digest {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(&to_hex(self.0))
+    }
+}
+
+impl fmt::Debug for Digest {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
+impl Serialize for Digest {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+/// Returns the 32 bytes of 64 lower-case hexadecimal digits, and `None` for any other text.
+pub fn from_hex(text: &str) -> Option<[u8; 32]> {
+    // `from_hex` of `blake3` takes upper-case digits, too: one digest would have several names.
+    let is_lower = text.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f'));
+    let parsed = if is_lower { blake3::Hash::from_hex(text).ok() } else { None };
+    parsed.map(|hash| *hash.as_bytes())
+}
+
+/// Returns the 64 lower-case hexadecimal digits of 32 bytes.
+pub fn to_hex(bytes: [u8; 32]) -> String {
+    blake3::Hash::from_bytes(bytes).to_hex().to_string()
+}
+
+/// Returns the BLAKE3 digest of `bytes`.
+pub fn digest(bytes: &[u8]) -> Digest {
+    // Below 128 KiB threads cost more than they gain (documentation of `update_rayon`).
+    if bytes.len() < 128 << 10 {
+        return Digest(blake3::hash(bytes).into());
+    }
+    Digest(blake3::Hasher::new().update_rayon(bytes).finalize().into())
+}
+
+/// Returns the BLAKE3 digest and the length of what `source` holds, without holding it.
 ///
 /// # Errors
 /// Those of `source`.
-pub fn digest_of(source: impl Read) -> io::Result<(String, u64)> {
+pub fn digest_of(source: impl Read) -> io::Result<(Digest, u64)> {
     let mut hasher = blake3::Hasher::new();
     hasher.update_reader(source)?;
-    Ok((hasher.finalize().to_hex().to_string(), hasher.count()))
+    Ok((Digest(hasher.finalize().into()), hasher.count()))
 }
+
+#[cfg(test)]
+mod tests;

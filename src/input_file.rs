@@ -5,7 +5,7 @@ use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{self, Read};
 use std::path::Path;
 
-use crate::digest::digest_of;
+use crate::digest::{Digest, digest_of};
 use crate::memory;
 
 /// Largest input file: no map within the limits on texels is as large.
@@ -49,12 +49,12 @@ pub fn read_file(path: &Path) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Returns the BLAKE3 in hex of a file that [`read_file`] may read, and its length. The file is not held: hashing 48 MB that
+/// Returns the digest of a file that [`read_file`] may read, and its length. The file is not held: hashing 48 MB that
 /// way takes 15 ms, after reading them into new memory 40.
 ///
 /// # Errors
 /// Those of [`open_file`].
-pub fn hash_file(path: &Path) -> io::Result<(String, u64)> {
+pub fn hash_file(path: &Path) -> io::Result<(Digest, u64)> {
     let (file, _) = open_file(path)?;
     digest_of(file.take(MAX_FILE_BYTES))
 }

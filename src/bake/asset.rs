@@ -20,6 +20,7 @@ use super::reader::Reader;
 use super::report::{AssetReport, LayerReport, TextureReport};
 use super::settings::{Form, Settings};
 use super::source::{Source, SourceError};
+use crate::digest::Digest;
 use crate::gltf::document::{Container, Document, DocumentError, check_version};
 use crate::gltf::extensions::declare;
 use crate::gltf::json::JsonError;
@@ -238,9 +239,9 @@ impl<'a> Assembly<'a> {
     }
 
     fn provenance(&self, texture: &JobTexture) -> Provenance {
-        let source = |(location, blake3): &(Arc<ImageLocation>, String)| SourceDigest {
+        let source = |(location, blake3): &(Arc<ImageLocation>, Digest)| SourceDigest {
             uri: describe(location),
-            blake3: blake3.clone(),
+            blake3: *blake3,
         };
         Provenance {
             version: env!("CARGO_PKG_VERSION").to_owned(),

@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::asset::BakeError;
 use super::container;
 use super::reader::Reader;
-use crate::digest::digest;
+use crate::digest::{Digest, digest};
 use crate::gltf::document::Document;
 use crate::gltf::json::Json;
 use crate::gltf::uri::encode_path;
@@ -20,8 +20,8 @@ use crate::texture::ktx2::SourceDigest;
 pub struct DocumentProvenance {
     /// Of the tool.
     pub version: String,
-    /// BLAKE3 of the source document, in hexadecimal.
-    pub document: String,
+    /// The digest of the source document.
+    pub document: Digest,
     /// Buffers and images that it names and that were taken over as they are.
     pub files: Vec<SourceDigest>,
 }

@@ -207,7 +207,7 @@ fn put(path: &Path, bytes: &[u8], is_synced: bool) -> io::Result<()> {
 }
 
 /// How names of files begin that are being written.
-const UNFINISHED: &str = ".roughcast-";
+pub const UNFINISHED: &str = ".roughcast-";
 
 /// Nobody writes on a file for so long: its process was killed.
 const UNFINISHED_AGE: Duration = Duration::from_secs(3600);

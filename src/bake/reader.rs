@@ -10,7 +10,7 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use super::source::{MAX_DATA_URI, Source, SourceError};
-use crate::digest::digest;
+use crate::digest::{Digest, digest};
 use crate::foreign::Foreign;
 use crate::gltf::document::{DocumentError, holds_buffer_0, view_range};
 use crate::gltf::json::JsonError;
@@ -25,7 +25,7 @@ pub struct Reader<'a> {
     pub root: &'a Value,
     buffers: Vec<Bytes<'a>>,
     /// BLAKE3, in hexadecimal, of the files that buffers are.
-    digests: BTreeMap<PathBuf, String>,
+    digests: BTreeMap<PathBuf, Digest>,
 }
 
 /// The bytes of a buffer.
@@ -101,7 +101,7 @@ impl<'a> Reader<'a> {
         let failed = |error: io::Error| SourceError::Read { path: path.to_owned(), error };
         let bytes = self.source.files.read_to_hash(path).map_err(failed)?;
         let digest = digest(&bytes);
-        self.source.files.hashed(path, &digest);
+        self.source.files.hashed(path, digest);
         self.digests.insert(path.to_owned(), digest);
         Ok(bytes)
     }
@@ -143,7 +143,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Takes note of the BLAKE3, in hexadecimal, of what [`Self::image_to_hash`] read.
-    pub fn hashed(&self, location: &ImageLocation, blake3: &str) {
+    pub fn hashed(&self, location: &ImageLocation, blake3: Digest) {
         if let ImageLocation::Uri(uri) = location
             && let Ok(Uri::Path(path)) = Uri::parse(uri)
         {
@@ -159,10 +159,10 @@ impl<'a> Reader<'a> {
     }
 
     /// BLAKE3, in hexadecimal, of a file that the document names; `None` where it cannot be read.
-    pub fn digest(&self, path: &Path) -> Option<String> {
-        self.digests.get(path).cloned().or_else(|| {
+    pub fn digest(&self, path: &Path) -> Option<Digest> {
+        self.digests.get(path).copied().or_else(|| {
             let digest = digest(&self.source.files.read_to_hash(path).ok()?);
-            self.source.files.hashed(path, &digest);
+            self.source.files.hashed(path, digest);
             Some(digest)
         })
     }

@@ -3,6 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use crate::digest::Digest;
 use crate::foreign::Foreign;
 use crate::gltf::document::{Document, DocumentError};
 use crate::gltf::texture::ImageLocation;
@@ -24,8 +25,8 @@ pub trait Files: Sync {
         self.read(path)
     }
 
-    /// Takes note of the BLAKE3, in hexadecimal, of what [`Self::read_to_hash`] read.
-    fn hashed(&self, _path: &Path, _blake3: &str) {}
+    /// Takes note of the digest of what [`Self::read_to_hash`] read.
+    fn hashed(&self, _path: &Path, _blake3: Digest) {}
 
     /// Whether there is no file, as far as that is known without reading it.
     fn is_missing(&self, _path: &Path) -> bool {

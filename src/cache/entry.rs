@@ -1,45 +1,86 @@
 //! What is known of a job that was run.
 
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use super::relative::{NotRelative, RelativePath};
 use crate::bake::Baked;
 use crate::bake::report::AssetReport;
-use crate::digest::digest;
+use crate::digest::{Digest, digest};
 
-/// Hexadecimal digits of a BLAKE3 digest.
+/// Hexadecimal digits of the digest that an entry begins with.
 const DIGEST_LENGTH: usize = 64;
+
+/// An entry lists a few files and notes.
+pub(super) const MAX_ENTRY_BYTES: u64 = 64 << 20;
+
+/// The format of entries. What an earlier build wrote is not found.
+const FORMAT: u32 = 2;
 
 /// The outputs of a job.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Entry {
+    format: u32,
+    /// The id of the job.
+    pub job: Digest,
     /// The document, by its name in the output folder.
     pub document: Stored,
     /// New files, relative to the document.
     pub files: Vec<Stored>,
     /// Inputs that the document still refers to, relative to it: not stored, since the job has them.
-    pub copies: Vec<PathBuf>,
+    pub copies: Vec<RelativePath>,
     /// What was baked.
     pub report: AssetReport,
 }
 
+/// Why an entry cannot be used for a job.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Unusable {
+    /// Other bytes than were written, or paths and digests that are none.
+    #[error("other bytes than were stored")]
+    Damaged,
+    /// The entry of another job.
+    #[error("the one of job {0:.12}")]
+    OtherJob(Digest),
+    /// Another document than the job writes.
+    #[error("one with the document {:?}, which the job does not write", .0.as_path())]
+    Document(RelativePath),
+    /// A file that the job does not write.
+    #[error("one with the file {:?}, which the job does not write", .0.as_path())]
+    File(RelativePath),
+    /// A copy of a file that the job does not read.
+    #[error("one with a copy of {:?}, which the job does not read", .0.as_path())]
+    Copy(RelativePath),
+    /// A declared output of the job is not in the entry.
+    #[error("one without {0:?}, which the job writes")]
+    Missing(PathBuf),
+}
+
+/// Says whether an entry has what its job writes, and nothing else.
+pub type Fits<'f> = &'f (dyn Fn(&Entry) -> Result<(), Unusable> + Sync);
+
 impl Entry {
-    /// What was baked as `document`.
-    pub fn new(document: &Path, baked: &Baked) -> Self {
-        let name = document.file_name().map(PathBuf::from).unwrap_or_default();
-        let stored = |path: &Path, bytes: &[u8]| Stored {
-            path: path.to_owned(),
-            blake3: digest(bytes),
-            bytes: bytes.len() as u64,
+    /// Returns the entry of `job`, which baked `document`.
+    ///
+    /// # Errors
+    /// [`NotRelative`] for a file that is not below the folder of `document`.
+    pub fn new(job: Digest, document: &Path, baked: &Baked) -> Result<Self, NotRelative> {
+        let name = Path::new(document.file_name().unwrap_or_default());
+        let stored = |path: &Path, bytes: &[u8]| -> Result<Stored, NotRelative> {
+            Ok(Stored { path: path.try_into()?, blake3: digest(bytes), bytes: bytes.len() as u64 })
         };
-        Self {
-            document: stored(&name, &baked.document),
-            files: baked.files.iter().map(|file| stored(&file.path, &file.bytes)).collect(),
-            copies: baked.copies.clone(),
+        let files: Result<_, _> = baked.files.iter().map(|file| stored(&file.path, &file.bytes)).collect();
+        let copies: Result<_, _> = baked.copies.iter().map(|copy| copy.as_path().try_into()).collect();
+        Ok(Self {
+            format: FORMAT,
+            job,
+            document: stored(name, &baked.document)?,
+            files: files?,
+            copies: copies?,
             report: baked.report.clone(),
-        }
+        })
     }
 
     /// All stored files, the document last: whoever sees it sees everything that it names.
@@ -47,26 +88,38 @@ impl Entry {
         self.files.iter().chain([&self.document])
     }
 
-    /// As it is kept: a digest, then JSON.
+    /// Returns the entry as it is kept: a digest, then JSON.
     ///
     /// # Errors
-    /// Where a path is not UTF-8.
+    /// Those of the report, if it cannot be written as JSON.
     pub fn to_bytes(&self) -> serde_json::Result<Vec<u8>> {
         let json = serde_json::to_vec(self)?;
-        Ok([digest(&json).as_bytes(), &json].concat())
+        Ok([digest(&json).to_string().as_bytes(), &json].concat())
     }
 
-    /// The entry that `bytes` keep; `None` if they are not what was written.
-    pub fn parse(bytes: &[u8]) -> Option<Self> {
-        let (_, json) =
-            bytes.split_at_checked(DIGEST_LENGTH).filter(|(named, rest)| digest(rest).as_bytes() == *named)?;
-        serde_json::from_slice::<Self>(json).ok().filter(Self::is_contained)
-    }
-
-    /// Whether all stored files belong below the output folder: nobody's cache writes elsewhere.
-    fn is_contained(&self) -> bool {
-        let mut parts = self.stored().flat_map(|stored| stored.path.components());
-        parts.all(|part| matches!(part, Component::Normal(_)))
+    /// Returns the entry of `job` that `bytes` keep, or `None` if they are of another format.
+    ///
+    /// # Errors
+    /// [`Unusable`] for anything but an entry of `job` that `fits`.
+    pub fn read(bytes: &[u8], job: Digest, fits: Fits<'_>) -> Result<Option<Self>, Unusable> {
+        #[derive(Deserialize)]
+        struct Head {
+            #[serde(default)]
+            format: u32,
+        }
+        let (named, json) = bytes.split_at_checked(DIGEST_LENGTH).ok_or(Unusable::Damaged)?;
+        if digest(json).to_string().as_bytes() != named {
+            return Err(Unusable::Damaged);
+        }
+        let head: Head = serde_json::from_slice(json).map_err(|_| Unusable::Damaged)?;
+        if head.format != FORMAT {
+            return Ok(None);
+        }
+        let entry: Self = serde_json::from_slice(json).map_err(|_| Unusable::Damaged)?;
+        if entry.job != job {
+            return Err(Unusable::OtherJob(entry.job));
+        }
+        fits(&entry).map(|()| Some(entry))
     }
 }
 
@@ -75,9 +128,9 @@ impl Entry {
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Stored {
     /// Where it belongs.
-    pub path: PathBuf,
-    /// BLAKE3 of its bytes in hex.
-    pub blake3: String,
+    pub path: RelativePath,
+    /// The digest of its bytes, which names the blob.
+    pub blake3: Digest,
     /// Its length.
     pub bytes: u64,
 }

@@ -3,6 +3,8 @@
 use std::io;
 use std::path::PathBuf;
 
+use super::entry::Unusable;
+
 /// What is wrong with a cache. Once it is open, no reason for a job to fail.
 #[derive(Debug, thiserror::Error)]
 pub enum CacheError {
@@ -27,6 +29,14 @@ pub enum CacheError {
     DamagedObject {
         /// The object.
         url: String,
+    },
+    /// An entry that is not of the job that it is kept for. It is gone now, if that is allowed.
+    #[error("{place}: expected the entry of this job, found {found}; drop it, and bake again")]
+    Foreign {
+        /// The file or object.
+        place: String,
+        /// What it is.
+        found: Unusable,
     },
     /// A shared cache does not answer; told once.
     #[error("{url}: expected a store that answers, found: {reason}; go on without it")]

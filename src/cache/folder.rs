@@ -7,11 +7,11 @@ use std::time::{Duration, SystemTime};
 
 use walkdir::WalkDir;
 
-use super::entry::{Entry, Stored};
+use super::entry::{Entry, Fits, MAX_ENTRY_BYTES, Stored, Unusable};
 use super::error::CacheError;
-use crate::bake::write_unsynced;
-use crate::digest::digest;
-use crate::input_file::{open_file, read_file};
+use crate::bake::{UNFINISHED, write_unsynced};
+use crate::digest::{Digest, digest};
+use crate::input_file::{check_file, open_file, read_file};
 
 /// A cache in a folder.
 #[derive(Clone, Debug)]
@@ -25,35 +25,55 @@ impl Folder {
         Self { root: root.to_owned() }
     }
 
-    /// The outputs of the job `id`, if it was run.
+    /// Returns the outputs of the job `id`, if it was run. `fits` says whether an entry is of the job.
     ///
     /// # Errors
-    /// [`CacheError`] where the entry is there but of no use.
-    pub fn entry(&self, id: &str) -> Result<Option<Entry>, CacheError> {
-        let path = self.path("jobs", id);
-        let Some(bytes) = read(&path)? else { return Ok(None) };
-        Entry::parse(&bytes).map(Some).ok_or_else(|| dropped(path))
+    /// [`CacheError`] where the entry is there but of no use; then it is dropped.
+    pub fn entry(&self, id: Digest, fits: Fits<'_>) -> Result<Option<Entry>, CacheError> {
+        self.read("jobs", id, MAX_ENTRY_BYTES, |bytes| Entry::read(&bytes, id, fits))
     }
 
-    /// The bytes of a blob, if it is there.
+    /// Returns the bytes of a blob, if it is there.
     ///
     /// # Errors
-    /// [`CacheError`] where they are not what they were.
-    pub fn blob(&self, name: &str) -> Result<Option<Vec<u8>>, CacheError> {
-        let path = self.path("blobs", name);
-        match read(&path)? {
-            Some(bytes) if digest(&bytes) == name => Ok(Some(bytes)),
-            Some(_) => Err(dropped(path)),
-            None => Ok(None),
-        }
+    /// [`CacheError`] where they are not what was `stored`; then the blob is dropped.
+    pub fn blob(&self, stored: &Stored) -> Result<Option<Vec<u8>>, CacheError> {
+        self.read("blobs", stored.blake3, stored.bytes, |bytes| {
+            if digest(&bytes) == stored.blake3 { Ok(Some(bytes)) } else { Err(Unusable::Damaged) }
+        })
     }
 
-    /// Stores `entry` of the job `id`; its blobs come first.
+    /// Returns what `parse` makes of a file of at most `limit` bytes, and removes a file that is of no use. (What is removed
+    /// lies where `name` says. Of a link the link itself is removed, and not what it leads to.)
+    fn read<T>(
+        &self,
+        kind: &str,
+        name: Digest,
+        limit: u64,
+        parse: impl Fn(Vec<u8>) -> Result<Option<T>, Unusable>,
+    ) -> Result<Option<T>, CacheError> {
+        let path = self.path(kind, name);
+        let bytes = match check_file(&path) {
+            Ok(length) if length > limit => Err(Unusable::Damaged),
+            Ok(_) => Ok(read_file(&path).map_err(failed(&path))?),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+            Err(error) => return Err(failed(&path)(error)),
+        };
+        bytes.and_then(parse).map_err(|unusable| {
+            let _ = fs::remove_file(&path);
+            match unusable {
+                Unusable::Damaged => CacheError::Damaged { path },
+                found => CacheError::Foreign { place: path.display().to_string(), found },
+            }
+        })
+    }
+
+    /// Stores `entry`; its blobs come first.
     ///
     /// # Errors
     /// [`CacheError::Io`].
-    pub fn put_entry(&self, id: &str, entry: &Entry) -> Result<(), CacheError> {
-        let path = self.path("jobs", id);
+    pub fn put_entry(&self, entry: &Entry) -> Result<(), CacheError> {
+        let path = self.path("jobs", entry.job);
         let text = entry.to_bytes().map_err(|e| failed(&path)(e.into()))?;
         write_unsynced(&path, &text).map_err(failed(&path))
     }
@@ -63,37 +83,40 @@ impl Folder {
     /// # Errors
     /// [`CacheError::Io`].
     pub fn put_blob(&self, stored: &Stored, bytes: &[u8]) -> Result<(), CacheError> {
-        let path = self.path("blobs", &stored.blake3);
+        let path = self.path("blobs", stored.blake3);
         write_unsynced(&path, bytes).map_err(failed(&path))
     }
 
-    /// Marks the entry of the job `id` and its blobs as used, unless that was done within the hour: a run that has nothing
-    /// to do would write more than it reads.
-    pub fn touch(&self, id: &str, entry: &Entry) {
+    /// Marks `entry` and its blobs as used, unless that was done within the hour: a run that has nothing to do would write
+    /// more than it reads.
+    pub fn touch(&self, entry: &Entry) {
         let now = SystemTime::now();
-        let marked = fs::metadata(self.path("jobs", id)).and_then(|facts| facts.modified());
+        let own = self.path("jobs", entry.job);
+        let marked = fs::metadata(&own).and_then(|facts| facts.modified());
         if marked.is_ok_and(|marked| now.duration_since(marked).is_ok_and(|age| age < MARK_AGE)) {
             return;
         }
-        let blobs = entry.stored().map(|stored| self.path("blobs", &stored.blake3));
-        for path in blobs.chain([self.path("jobs", id)]) {
+        let blobs = entry.stored().map(|stored| self.path("blobs", stored.blake3));
+        // A pipe would be waited for.
+        for path in blobs.chain([own]).filter(|path| check_file(path).is_ok()) {
             // Only the order of eviction depends on it.
             let _ = open_file(&path).and_then(|(file, _)| file.set_modified(now));
         }
     }
 
-    /// Removes what was not used for longest until at most `limit` bytes are left.
+    /// Removes what was not used for longest until at most `limit` bytes are left. Files that no cache writes stay, and do
+    /// not count.
     ///
     /// # Errors
     /// [`CacheError::Io`] where the folder cannot be listed.
     pub fn trim(&self, limit: u64) -> Result<(), CacheError> {
         let mut files = Vec::new();
         for kind in ["jobs", "blobs"].map(|kind| self.root.join(kind)).iter().filter(|kind| kind.exists()) {
-            for entry in WalkDir::new(kind) {
+            for entry in WalkDir::new(kind).min_depth(2).max_depth(2) {
                 // Other processes remove files too.
                 let Ok(entry) = entry else { continue };
                 let Ok(facts) = entry.metadata() else { continue };
-                if facts.is_file() {
+                if facts.is_file() && is_of_cache(entry.path()) {
                     let used = facts.modified().map_err(failed(entry.path()))?;
                     files.push((used, entry.into_path(), facts.len()));
                 }
@@ -111,26 +134,21 @@ impl Folder {
         Ok(())
     }
 
-    fn path(&self, kind: &str, digest: &str) -> PathBuf {
-        self.root.join(kind).join(digest.get(..2).unwrap_or("")).join(digest)
+    fn path(&self, kind: &str, digest: Digest) -> PathBuf {
+        self.root.join(kind).join(format!("{digest:.2}")).join(digest.to_string())
     }
+}
+
+/// Whether the name of a file, and of its folder, are those that a digest gives them, or the file was not finished.
+fn is_of_cache(path: &Path) -> bool {
+    let name = |path: &Path| path.file_name().and_then(|name| name.to_str()).map(str::to_owned);
+    let (Some(file), Some(folder)) = (name(path), path.parent().and_then(name)) else { return false };
+    let is_named = file.parse::<Digest>().is_ok_and(|digest| format!("{digest:.2}") == folder);
+    is_named || file.starts_with(UNFINISHED)
 }
 
 /// How exactly the order of eviction is known.
 const MARK_AGE: Duration = Duration::from_secs(3600);
-
-fn read(path: &Path) -> Result<Option<Vec<u8>>, CacheError> {
-    match read_file(path) {
-        Ok(bytes) => Ok(Some(bytes)),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
-        Err(error) => Err(failed(path)(error)),
-    }
-}
-
-fn dropped(path: PathBuf) -> CacheError {
-    let _ = fs::remove_file(&path);
-    CacheError::Damaged { path }
-}
 
 fn failed(path: &Path) -> impl Fn(io::Error) -> CacheError {
     let path = path.to_owned();

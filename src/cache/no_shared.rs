@@ -1,7 +1,8 @@
 //! Stands for the stores that machines share in builds without them.
 
-use super::entry::{Entry, Stored};
+use super::entry::{Entry, Fits, Stored};
 use super::error::CacheError;
+use crate::digest::Digest;
 
 /// There is none.
 #[derive(Debug)]
@@ -16,7 +17,7 @@ impl Shared {
         Err(CacheError::NotBuilt { url: url.to_owned() })
     }
 
-    pub fn entry(&self, _id: &str) -> Result<Option<Entry>, CacheError> {
+    pub fn entry(&self, _id: Digest, _fits: Fits<'_>) -> Result<Option<Entry>, CacheError> {
         match *self {}
     }
 
@@ -24,7 +25,7 @@ impl Shared {
         match *self {}
     }
 
-    pub fn put(&self, _id: &str, _entry: &Entry, _blobs: &[&[u8]]) -> Result<(), CacheError> {
+    pub fn put(&self, _entry: &Entry, _blobs: &[&[u8]]) -> Result<(), CacheError> {
         match *self {}
     }
 }

@@ -3,11 +3,12 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::entry::{Entry, Stored};
+use super::entry::{Entry, Fits, Stored};
 use super::error::CacheError;
 use super::folder::Folder;
 use super::shared::Shared;
 use crate::bake::Baked;
+use crate::digest::Digest;
 
 /// A cache. What is found in the store is kept in the folder, and what is baked is put into both.
 #[derive(Clone, Debug, Default)]
@@ -40,16 +41,16 @@ impl Cache {
         Self { folder: Some(Folder::new(folder)), ..self }
     }
 
-    /// The outputs of the job `id`, if it was run.
-    pub fn entry(&self, id: &str, warn: Warn<'_>) -> Option<Entry> {
+    /// Returns the outputs of the job `id`, if it was run. `fits` says whether an entry is of the job; what is not is dropped.
+    pub fn entry(&self, id: Digest, fits: Fits<'_>, warn: Warn<'_>) -> Option<Entry> {
         if let Some(folder) = &self.folder
-            && let Some(entry) = told(folder.entry(id), warn)
+            && let Some(entry) = told(folder.entry(id, fits), warn)
         {
             return Some(entry);
         }
-        let entry = told(self.shared.as_ref()?.entry(id), warn)?;
+        let entry = told(self.shared.as_ref()?.entry(id, fits), warn)?;
         if let Some(folder) = &self.folder {
-            warned(folder.put_entry(id, &entry), warn);
+            warned(folder.put_entry(&entry), warn);
         }
         Some(entry)
     }
@@ -59,7 +60,7 @@ impl Cache {
         let mut blobs = vec![None; wanted.len()];
         if let Some(folder) = &self.folder {
             for (blob, stored) in blobs.iter_mut().zip(wanted) {
-                *blob = told(folder.blob(&stored.blake3), warn);
+                *blob = told(folder.blob(stored), warn);
                 if blob.is_none() && self.shared.is_none() {
                     return None;
                 }
@@ -79,33 +80,32 @@ impl Cache {
         blobs.into_iter().collect()
     }
 
-    /// Stores `entry`, which is what the job `id` baked: blobs first, so that an entry's blobs are there.
-    pub fn put(&self, id: &str, entry: &Entry, baked: &Baked, warn: Warn<'_>) {
+    /// Stores `entry` of what its job `baked`: blobs first, so that an entry's blobs are there.
+    pub fn put(&self, entry: &Entry, baked: &Baked, warn: Warn<'_>) {
         let blobs: Vec<&[u8]> =
             baked.files.iter().map(|file| file.bytes.as_slice()).chain([baked.document.as_slice()]).collect();
         if let Some(folder) = &self.folder {
             let put = entry.stored().zip(&blobs).try_for_each(|(stored, bytes)| folder.put_blob(stored, bytes));
-            warned(put.and_then(|()| folder.put_entry(id, entry)), warn);
+            warned(put.and_then(|()| folder.put_entry(entry)), warn);
         }
         if let Some(shared) = &self.shared {
-            warned(shared.put(id, entry, &blobs), warn);
+            warned(shared.put(entry, &blobs), warn);
         }
     }
 
-    /// Puts what the folder has of the job `id` into the store, too.
-    pub fn share(&self, id: &str, entry: &Entry, warn: Warn<'_>) {
+    /// Puts what the folder has of the job of `entry` into the store, too.
+    pub fn share(&self, entry: &Entry, warn: Warn<'_>) {
         let (Some(folder), Some(shared)) = (&self.folder, &self.shared) else { return };
-        let blobs: Option<Vec<Vec<u8>>> =
-            entry.stored().map(|stored| told(folder.blob(&stored.blake3), warn)).collect();
+        let blobs: Option<Vec<Vec<u8>>> = entry.stored().map(|stored| told(folder.blob(stored), warn)).collect();
         if let Some(blobs) = blobs {
-            warned(shared.put(id, entry, &blobs.iter().map(Vec::as_slice).collect::<Vec<_>>()), warn);
+            warned(shared.put(entry, &blobs.iter().map(Vec::as_slice).collect::<Vec<_>>()), warn);
         }
     }
 
-    /// Marks the entry of the job `id` and its blobs as used.
-    pub fn touch(&self, id: &str, entry: &Entry) {
+    /// Marks `entry` and its blobs as used.
+    pub fn touch(&self, entry: &Entry) {
         if let Some(folder) = &self.folder {
-            folder.touch(id, entry);
+            folder.touch(entry);
         }
     }
 

@@ -6,7 +6,7 @@ use std::io;
 use std::path::Path;
 
 use crate::bake::Source;
-use crate::digest::digest;
+use crate::digest::{Digest, digest};
 use crate::gltf::document::Document;
 use crate::gltf::texture::ImageLocation;
 
@@ -14,7 +14,7 @@ use crate::gltf::texture::ImageLocation;
 pub struct Origin<'a> {
     document: Option<Document>,
     read: &'a (dyn Fn(&Path) -> io::Result<Vec<u8>> + Sync),
-    digests: RefCell<BTreeMap<String, Result<Vec<String>, String>>>,
+    digests: RefCell<BTreeMap<String, Result<Vec<Digest>, String>>>,
 }
 
 impl<'a> Origin<'a> {
@@ -24,17 +24,17 @@ impl<'a> Origin<'a> {
     }
 
     /// BLAKE3 digests of what the provenance calls `uri`; several where the name is not unique.
-    pub fn digests(&self, uri: &str) -> Result<Vec<String>, String> {
+    pub fn digests(&self, uri: &str) -> Result<Vec<Digest>, String> {
         self.digests.borrow_mut().entry(uri.to_owned()).or_insert_with(|| self.hash(uri)).clone()
     }
 
     /// The document, where there is one, and its digest.
-    pub fn document(&self) -> Option<(&Document, String)> {
+    pub fn document(&self) -> Option<(&Document, Digest)> {
         let document = self.document.as_ref()?;
         Some((document, digest(&document.to_bytes().ok()?)))
     }
 
-    fn hash(&self, uri: &str) -> Result<Vec<String>, String> {
+    fn hash(&self, uri: &str) -> Result<Vec<Digest>, String> {
         let locations = self.locations(uri);
         if locations.is_empty() {
             return Err("no such image in the source document".to_owned());

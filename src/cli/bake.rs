@@ -64,7 +64,7 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
         Err(reason) => return usage(err, &reason),
     };
     let mut outcome = Outcome::Done;
-    let (planned, failed, settings, configs, server) = match args.jobs.planned() {
+    let (planned, failed, settings, configs, server) = match args.jobs.planned(args.selection.output.as_deref()) {
         Some(Err(reason)) => return usage(err, &reason),
         Some(Ok(planned)) => (planned, Vec::new(), Settings::default(), Vec::new(), None),
         None => {

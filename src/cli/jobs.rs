@@ -10,7 +10,7 @@ use super::inputs::Input;
 use super::part::{Part, PartError};
 use crate::bake::read_file;
 use crate::config::Resolved;
-use crate::plan::{Job, Plan, RunError};
+use crate::plan::{Job, Misplaced, Plan, RunError, confine};
 
 /// A job by its asset's name for a person, or why it cannot be planned.
 pub struct Planned {
@@ -30,8 +30,8 @@ pub fn plan(assets: &[(Input, Resolved)]) -> Vec<Planned> {
 }
 
 /// What a plan has settled: all of a selection, by the ids of arguments and of groups of them.
-const NOT_WITH_A_PLAN: [&str; 8] =
-    ["inputs", "output", "config", "no_config", "lobe", "TextureOptions", "DocumentOptions", "ViewOptions"];
+const NOT_WITH_A_PLAN: [&str; 7] =
+    ["inputs", "config", "no_config", "lobe", "TextureOptions", "DocumentOptions", "ViewOptions"];
 
 /// Which jobs of all.
 #[derive(Debug, clap::Args)]
@@ -39,7 +39,8 @@ pub struct JobOptions {
     /// Run this job only: an id of `roughcast plan`, or its first digits (8 at least).
     #[arg(long, value_name = "ID", value_parser = job_id)]
     job: Option<String>,
-    /// Run the jobs of a file that `roughcast plan --json` wrote, in the same working folder.
+    /// Run the jobs of a file that `roughcast plan --json` wrote, in the same working folder. They may write below that folder,
+    /// and below the one that -o names.
     #[arg(long, value_name = "FILE", conflicts_with_all = NOT_WITH_A_PLAN)]
     plan: Option<PathBuf>,
     /// Run the I-th of N parts that cost about the same, from 1. Without I (`/8`) it is the one that the index of an array
@@ -83,6 +84,14 @@ pub enum JobsError {
         /// Its version.
         version: String,
     },
+    /// The plan leads to places where it may not write.
+    #[error("{}: {error}", path.display())]
+    Misplaced {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        error: Misplaced,
+    },
     /// No job has the id.
     #[error("expected the id of a job, found {id}, which none has; `roughcast plan` prints them")]
     NoJob {
@@ -95,13 +104,17 @@ pub enum JobsError {
 }
 
 impl JobOptions {
-    /// The plan that is to be run, if one is named.
+    /// Returns the jobs of the plan that is to be run, if one is named; `output` is what the user says of output folders.
     ///
     /// # Errors
-    /// [`JobsError`].
-    pub fn planned(&self) -> Option<Result<Vec<Planned>, JobsError>> {
+    /// [`JobsError`]: a plan of which one job may not write where it says is not run at all.
+    pub fn planned(&self, output: Option<&Path>) -> Option<Result<Vec<Planned>, JobsError>> {
         let named = |job: Job| Planned { name: job.source.display().to_string(), job: Ok(job) };
-        self.plan.as_deref().map(|path| Ok(read_plan(path)?.jobs.into_iter().map(named).collect()))
+        self.plan.as_deref().map(|path| {
+            let plan = read_plan(path)?;
+            confine(&plan, output).map_err(|error| JobsError::Misplaced { path: path.to_owned(), error })?;
+            Ok(plan.jobs.into_iter().map(named).collect())
+        })
     }
 
     /// Checks that a job of a plan is what its files make of it now.
@@ -124,7 +137,7 @@ impl JobOptions {
             planned.retain(|planned| planned.job.is_err() || picks.next().unwrap_or(true));
         }
         if let Some(id) = &self.job {
-            planned.retain(|planned| planned.job.as_ref().is_ok_and(|job| job.id.starts_with(id)));
+            planned.retain(|planned| planned.job.as_ref().is_ok_and(|job| job.id.to_string().starts_with(id)));
             if planned.is_empty() {
                 return Err(JobsError::NoJob { id: id.clone() });
             }

@@ -67,16 +67,18 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
                 )?;
                 return Ok(Outcome::Usage);
             }
-            Ok(job) => match job.inputs.iter().find(|input| input.blake3.is_none()) {
-                None => {
+            Ok(job) => {
+                let missing = job.inputs.iter().find(|input| input.blake3.is_none());
+                let missing = missing.map(|input| {
+                    format!("expected a readable file at {}; the document refers to it", input.path.display())
+                });
+                let Some(reason) = missing.or_else(|| job.check_names().err().map(|error| error.to_string())) else {
                     jobs.push(job);
                     continue;
-                }
-                Some(missing) => {
-                    outcome = outcome.and(Outcome::Failed);
-                    format!("expected a readable file at {}; the document refers to it", missing.path.display())
-                }
-            },
+                };
+                outcome = outcome.and(Outcome::Failed);
+                reason
+            }
             Err(error) => {
                 outcome = outcome.and(if error.is_passing() { Outcome::Retry } else { Outcome::Failed });
                 error.to_string()
@@ -89,11 +91,11 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
         writeln!(out, "{}", serde_json::to_string_pretty(&plan).map_err(io::Error::other)?)?;
     } else {
         for job in &jobs {
-            let id = job.id.get(..12).unwrap_or_default();
             let to = job.output.display();
             writeln!(
                 out,
-                "{id}  {} -> {to}, {} inputs, {:.1} MB",
+                "{:.12}  {} -> {to}, {} inputs, {:.1} MB",
+                job.id,
                 job.source.display(),
                 job.inputs.len(),
                 job.cost as f64 / 1e6

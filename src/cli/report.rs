@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use crate::bake::Settings;
 use crate::bake::report::{AssetReport, Choice};
-
+use crate::digest::Digest;
 use crate::plan::Done;
 use crate::remote::{Counts, Origin};
 
@@ -32,7 +32,7 @@ pub struct Report {
 pub struct Asset {
     /// Id of its job, where it could be planned.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub job: Option<String>,
+    pub job: Option<Digest>,
     /// The input file.
     pub input: String,
     /// The output document, where there is one.
@@ -91,7 +91,7 @@ impl Asset {
     /// An input that was baked; `own` are its settings where they are not those of the run.
     pub fn done(
         input: String,
-        job: Option<String>,
+        job: Option<Digest>,
         done: &Done,
         origin: Option<Origin>,
         seconds: f64,
@@ -113,7 +113,7 @@ impl Asset {
     }
 
     /// An input that could not be baked.
-    pub fn failed(input: String, job: Option<String>, seconds: f64, error: String, retry: bool) -> Self {
+    pub fn failed(input: String, job: Option<Digest>, seconds: f64, error: String, retry: bool) -> Self {
         Self {
             job,
             input,

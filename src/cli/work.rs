@@ -126,7 +126,7 @@ impl Work<'_> {
                 }
                 let mut lookup = cache.map(|cache| Lookup::new(job, cache));
                 if let Some(lookup) = lookup.as_mut().filter(|_| origin.is_some()) {
-                    lookup.share(job);
+                    lookup.share();
                 }
                 Ok((job, origin, plan::prepare(job, lookup, &room, &|share| progress.set(index, share, name))))
             });
@@ -150,12 +150,12 @@ impl Work<'_> {
             let asset = match result {
                 Ok((job, origin, (own, done))) => {
                     let own = (own != *self.settings).then_some(own);
-                    Asset::done(name.clone(), Some(job.id.clone()), &done, origin, seconds, own)
+                    Asset::done(name.clone(), Some(job.id), &done, origin, seconds, own)
                 }
                 Err(JobFailure { message, is_passing }) => {
                     ended = if is_passing { Outcome::Retry } else { Outcome::Failed };
                     progress.suspend(|| writeln!(err, "error: {name}: {message}"))?;
-                    let job = planned[index].job.as_ref().ok().map(|job| job.id.clone());
+                    let job = planned[index].job.as_ref().ok().map(|job| job.id);
                     Asset::failed(name.clone(), job, seconds, message, is_passing)
                 }
             };
@@ -170,7 +170,7 @@ fn unknown<'p>(planned: &'p [Planned], cache: &Cache) -> (Vec<(usize, &'p Job)>,
     let jobs = planned.par_iter().enumerate().filter_map(|(index, planned)| Some((index, planned.job.as_ref().ok()?)));
     let looked_up = jobs.map(|(index, job)| {
         let mut warnings = Vec::new();
-        let is_known = cache.entry(&job.id, &mut |error| warnings.push(error)).is_some();
+        let is_known = cache.entry(job.id, &|entry| job.fits(entry), &mut |error| warnings.push(error)).is_some();
         ((!is_known).then_some((index, job)), warnings)
     });
     let (jobs, warnings): (Vec<_>, Vec<_>) = looked_up.unzip();

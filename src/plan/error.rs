@@ -4,7 +4,9 @@ use std::io;
 use std::path::PathBuf;
 
 use crate::bake::{BakeError, ContainerError, GridError, JobError, PublishError, SourceError};
+use crate::cache::NotRelative;
 use crate::config::ValueError;
+use crate::digest::Digest;
 use crate::gltf::document::DocumentError;
 use crate::memory::OutOfMemory;
 use crate::texture::EncodeError;
@@ -37,12 +39,30 @@ pub enum RunError {
     #[error("expected the job {planned}, found {found} from the same source: {reason}; plan again")]
     NotAsPlanned {
         /// The id that was planned.
-        planned: String,
+        planned: Digest,
         /// The id that the files have now.
-        found: String,
+        found: Digest,
         /// What is not as it was.
         reason: String,
     },
+    /// A job of a plan whose id is right and whose other members are not those that planning makes.
+    #[error("expected the {member} that planning makes of the job, found others: the plan was edited; plan again")]
+    Edited {
+        /// The member of the job.
+        member: &'static str,
+    },
+    /// A path that a plan cannot name.
+    #[error(
+        "expected a path in UTF-8 for the plan, found {} with a name that is not; rename the file or folder",
+        path.display()
+    )]
+    NotUtf8 {
+        /// The file or folder.
+        path: PathBuf,
+    },
+    /// A baked file that is not below the output folder.
+    #[error(transparent)]
+    NotRelative(#[from] NotRelative),
     /// A file that was written to while it was being baked.
     #[error("expected {} to stay as it is during the bake, found that it changed; bake again", path.display())]
     Changed {

@@ -4,13 +4,14 @@ use std::fs;
 use std::path::{Component, Path, PathBuf};
 
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::{Map, Value, json};
 
 use super::error::RunError;
 use crate::bake::{Settings, Survey, hash_file, read_file, survey};
 use crate::config::Values;
-use crate::digest::digest;
+use crate::digest::{Digest, digest};
 use crate::gltf::document::{Container, Document};
 use crate::memory;
 
@@ -18,11 +19,13 @@ use crate::memory;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Job {
-    /// BLAKE3 of inputs, settings and tool version, in hex. The same asset in another folder is the same job.
-    pub id: String,
+    /// The digest of inputs, settings and tool version. The same asset in another folder is the same job.
+    pub id: Digest,
     /// The .gltf or .glb file.
+    #[serde(deserialize_with = "relative")]
     pub source: PathBuf,
-    /// Folder of the outputs.
+    /// Folder of the outputs. The id does not cover it; [`super::confine`] checks that of a plan.
+    #[serde(deserialize_with = "relative")]
     pub output: PathBuf,
     /// Every setting, by its name in `roughcast.toml`.
     pub settings: Map<String, Value>,
@@ -41,10 +44,11 @@ pub struct Job {
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct JobInput {
     /// Where it is.
+    #[serde(deserialize_with = "relative")]
     pub path: PathBuf,
-    /// BLAKE3 of its bytes in hex; absent where it cannot be read, which the job will say if it needs it.
+    /// The digest of its bytes; absent where it cannot be read, which the job will say if it needs it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub blake3: Option<String>,
+    pub blake3: Option<Digest>,
     /// Its length.
     pub bytes: u64,
 }
@@ -54,6 +58,7 @@ pub struct JobInput {
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct JobOutput {
     /// Where it must be.
+    #[serde(deserialize_with = "relative")]
     pub path: PathBuf,
     /// What it must be.
     pub kind: OutputKind,
@@ -95,11 +100,11 @@ impl Job {
             JobInput { path, blake3, bytes: bytes.unwrap_or(0) }
         }));
         let names = survey.files.iter().map(|file| file.to_string_lossy());
-        let files: Vec<(String, &Option<String>)> = [stem.clone().into()]
+        let files: Vec<(String, Option<Digest>)> = [stem.clone().into()]
             .into_iter()
             .chain(names)
             .map(|name| name.into_owned())
-            .zip(inputs.iter().map(|input| &input.blake3))
+            .zip(inputs.iter().map(|input| input.blake3))
             .collect();
         let identity = json!({ "version": env!("CARGO_PKG_VERSION"), "settings": settings, "files": files });
         let typed = typed(settings)?;
@@ -123,21 +128,42 @@ impl Job {
         typed(&self.settings)
     }
 
-    /// The same job as the files are now.
+    /// Plans the job again and checks that it is the same one.
     ///
     /// # Errors
-    /// [`RunError::NotAsPlanned`] if it is another one.
+    /// [`RunError::NotAsPlanned`] if the files make another job now; [`RunError::Edited`] if they make this one, and what the
+    /// plan says beside the id is something else.
     pub fn check(&self) -> Result<(), RunError> {
         let now = Self::new(&self.source, &self.output, &self.settings)?;
-        if now.id == self.id {
-            return Ok(());
+        if now.id != self.id {
+            let changed = now.inputs.iter().find(|input| !self.inputs.contains(input));
+            let reason = changed.map_or_else(
+                || "the plan is of another version, or was edited".to_owned(),
+                |input| format!("{} is not as it was", input.path.display()),
+            );
+            return Err(RunError::NotAsPlanned { planned: self.id, found: now.id, reason });
         }
-        let changed = now.inputs.iter().find(|input| !self.inputs.contains(input));
-        let reason = changed.map_or_else(
-            || "the plan is of another version, or was edited".to_owned(),
-            |input| format!("{} is not as it was", input.path.display()),
-        );
-        Err(RunError::NotAsPlanned { planned: self.id.clone(), found: now.id, reason })
+        for (member, is_same) in [("inputs", now.inputs == self.inputs), ("outputs", now.outputs == self.outputs)] {
+            if !is_same {
+                return Err(RunError::Edited { member });
+            }
+        }
+        Ok(())
+    }
+
+    /// Checks that a plan can name the files of the job: JSON is UTF-8.
+    ///
+    /// # Errors
+    /// [`RunError::NotUtf8`].
+    pub fn check_names(&self) -> Result<(), RunError> {
+        let own = [&self.source, &self.output].into_iter();
+        let mut paths = own
+            .chain(self.inputs.iter().map(|input| &input.path))
+            .chain(self.outputs.iter().map(|output| &output.path));
+        match paths.find(|path| path.to_str().is_none()) {
+            Some(path) => Err(RunError::NotUtf8 { path: path.clone() }),
+            None => Ok(()),
+        }
     }
 
     /// The first declared output that is not there.
@@ -159,6 +185,16 @@ impl Job {
     pub fn stem(&self) -> String {
         stem(&self.source)
     }
+}
+
+/// Reads a path of a plan. It is relative to the working folder, since a plan is for other machines too.
+fn relative<'de, D: Deserializer<'de>>(deserializer: D) -> Result<PathBuf, D::Error> {
+    let path = PathBuf::deserialize(deserializer)?;
+    let is_rooted = path.components().any(|part| matches!(part, Component::Prefix(_) | Component::RootDir));
+    if is_rooted || path.as_os_str().is_empty() || path.as_os_str().as_encoded_bytes().contains(&0) {
+        return Err(D::Error::custom(format!("expected a path relative to the working folder, found {path:?}")));
+    }
+    Ok(path)
 }
 
 fn stem(source: &Path) -> String {

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Plan;
 use super::job::Job;
+use crate::digest::Digest;
 
 /// What the report of a part (`schemas/report.schema.json`) tells of jobs.
 #[derive(Debug, Deserialize)]
@@ -15,8 +16,8 @@ pub struct Told {
 
 #[derive(Debug, Deserialize)]
 struct Asset {
-    #[serde(default)]
-    job: String,
+    /// Absent where the asset could not be planned.
+    job: Option<Digest>,
     input: String,
     error: Option<String>,
     #[serde(default)]
@@ -42,7 +43,7 @@ pub struct Merged {
 #[serde(rename_all = "camelCase")]
 pub struct Open {
     /// Its id.
-    pub id: String,
+    pub id: Digest,
     /// Its source.
     pub source: String,
     /// Why.
@@ -60,7 +61,7 @@ enum Word<'t> {
 impl Told {
     /// Whether it is about other jobs than those of `plan` only.
     pub fn is_foreign(&self, plan: &Plan) -> bool {
-        let is_known = |asset: &Asset| plan.jobs.iter().any(|job| job.id == asset.job);
+        let is_known = |asset: &Asset| plan.jobs.iter().any(|job| Some(job.id) == asset.job);
         !self.assets.is_empty() && !self.assets.iter().any(is_known)
     }
 }
@@ -76,13 +77,13 @@ impl Merged {
                 Some(error) => Word::Failed(error),
             };
             // The same asset in two folders is one id with two sources.
-            let known = words.entry((asset.job.as_str(), asset.input.as_str())).or_insert_with(|| word.clone());
+            let known = words.entry((asset.job, asset.input.as_str())).or_insert_with(|| word.clone());
             *known = word.max(known.clone());
         }
         let mut merged = Self { jobs: plan.jobs.len(), done: 0, failed: Vec::new(), missing: Vec::new() };
         for job in &plan.jobs {
             let source = job.source.display().to_string();
-            let (list, reason) = match words.get(&(job.id.as_str(), source.as_str())) {
+            let (list, reason) = match words.get(&(Some(job.id), source.as_str())) {
                 Some(Word::Failed(error)) => (&mut merged.failed, (*error).to_owned()),
                 Some(Word::Passing(error)) => (&mut merged.missing, (*error).to_owned()),
                 None if !reports.is_empty() => (&mut merged.missing, "no report tells of it".to_owned()),
@@ -97,7 +98,7 @@ impl Merged {
                     }
                 },
             };
-            list.push(Open { id: job.id.clone(), source, reason });
+            list.push(Open { id: job.id, source, reason });
         }
         merged
     }

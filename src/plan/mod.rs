@@ -3,7 +3,9 @@
 //! A job is one asset. It reads the files that it lists and no others, by paths relative to the working folder, and knows
 //! no clock, network or home folder: run anywhere, it writes the same bytes.
 
+mod confine;
 mod error;
+mod fits;
 mod in_order;
 mod job;
 mod merge;
@@ -15,6 +17,7 @@ mod shard;
 
 use serde::{Deserialize, Serialize};
 
+pub use confine::{Misplaced, confine};
 pub use error::RunError;
 pub use in_order::in_order;
 pub use job::{Job, JobInput, JobOutput, OutputKind, folded};

@@ -14,8 +14,6 @@ pub struct Moved {
     pub job: Job,
     /// Files that must be there, and where they are now.
     pub files: Vec<(PathBuf, PathBuf)>,
-    /// Files that the document names, as it names them.
-    pub names: Vec<PathBuf>,
     /// Folders that must be there: what the document calls `a/../b` needs `a`.
     pub folders: Vec<PathBuf>,
 }
@@ -27,12 +25,12 @@ impl Job {
     /// [`RunError::Changed`] if the document is not as it was planned; [`RunError::NotMovable`] where a path leads elsewhere.
     pub fn moved(&self) -> Result<Moved, RunError> {
         let bytes = read_file(&self.source).map_err(RunError::Read)?;
-        let planned = self.inputs.first().and_then(|input| input.blake3.as_deref());
-        if Some(digest(&bytes).as_str()) != planned {
+        if self.inputs.first().and_then(|input| input.blake3) != Some(digest(&bytes)) {
             return Err(RunError::Changed { path: self.source.clone() });
         }
         let survey = survey(&parsed(&bytes)?)?;
-        let (from, to) = (Path::new("in").join(&self.id), Path::new("out").join(&self.id));
+        let id = self.id.to_string();
+        let (from, to) = (Path::new("in").join(&id), Path::new("out").join(&id));
         let source = from.join(self.source.file_name().unwrap_or_default().to_string_lossy().as_ref());
         let names = [source.clone()].into_iter().chain(survey.files.iter().map(|file| from.join(file)));
         let (mut inputs, mut files, mut folders) = (Vec::new(), Vec::<(PathBuf, PathBuf)>::new(), Vec::new());
@@ -59,6 +57,6 @@ impl Job {
         }
         // Another machine has no use for the command line that works here.
         let job = Self { source, output: to, inputs, outputs, command: Vec::new(), ..self.clone() };
-        Ok(Moved { job, files, names: survey.files, folders })
+        Ok(Moved { job, files, folders })
     }
 }

@@ -135,7 +135,7 @@ mod tests {
         let input = |name: &str, bytes| JobInput { path: path(name), blake3: None, bytes };
         let inputs = |names: &[&str]| names.iter().map(|name| input(name, 1000)).collect();
         let job = |inputs| Job {
-            id: String::new(),
+            id: crate::digest::digest(b""),
             source: path("a.gltf"),
             output: PathBuf::new(),
             settings: Map::new(),

@@ -13,7 +13,7 @@ use super::room::Room;
 use crate::bake::report::AssetReport;
 use crate::bake::{Baked, Files, Places, Settings, Source, bake, publish, read_file};
 use crate::cache::{CacheError, Entry, Warn};
-use crate::digest::digest;
+use crate::digest::{Digest, digest};
 use crate::gltf::document::Container;
 
 /// What a job did.
@@ -38,24 +38,25 @@ pub struct Written {
     pub path: PathBuf,
     /// The file that it is a copy of, or itself.
     pub source: PathBuf,
-    /// BLAKE3 of its bytes in hex.
-    pub blake3: String,
+    /// The digest of its bytes.
+    pub blake3: Digest,
 }
 
 impl Done {
     /// What is written: the files that `entry` lists.
     fn new(job: &Job, entry: Entry, is_cached: bool) -> Self {
-        let copies = entry.copies.iter().map(|copy| {
-            let (blake3, bytes) = job.input(copy).map_or((None, 0), |input| (input.blake3.clone(), input.bytes));
+        let copies = entry.copies.iter().filter_map(|copy| {
+            let copy = copy.as_path();
+            let input = job.input(copy)?;
             let (path, source) = (job.output.join(copy), beside(&job.source, copy));
-            (Written { path, source, blake3: blake3.unwrap_or_default() }, bytes)
+            Some((Written { path, source, blake3: input.blake3? }, input.bytes))
         });
         let files = entry.stored().map(|stored| {
-            let path = job.output.join(&stored.path);
-            (Written { source: path.clone(), path, blake3: stored.blake3.clone() }, stored.bytes)
+            let path = job.output.join(stored.path.as_path());
+            (Written { source: path.clone(), path, blake3: stored.blake3 }, stored.bytes)
         });
         let (written, bytes): (Vec<Written>, Vec<u64>) = copies.chain(files).unzip();
-        let output = job.output.join(&entry.document.path);
+        let output = job.output.join(entry.document.path.as_path());
         Self { output, bytes: bytes.iter().sum(), written, report: entry.report, is_cached }
     }
 }
@@ -75,15 +76,18 @@ enum Outputs {
 /// Fetches the outputs of `job` if its `lookup` found it, and else bakes them and puts them into the cache, all in memory. Jobs
 /// may be prepared side by side, as far as there is `room` for those that are baked; `advance` is as in [`bake`].
 pub fn prepare(job: &Job, mut lookup: Option<Lookup<'_>>, room: &Room, advance: &dyn Fn(f32)) -> Prepared {
-    let outputs = match lookup.as_mut().and_then(|lookup| lookup.fetch(job)) {
+    let outputs = match lookup.as_mut().and_then(Lookup::fetch) {
         Some(found) => Ok(Outputs::Found(Box::new(found))),
-        None => baked(job, room, advance).map(|baked| {
-            let entry = lookup.as_mut().map(|Lookup { cache, warnings, .. }| {
-                let entry = Entry::new(&name(job, &baked), &baked);
-                cache.put(&job.id, &entry, &baked, &mut |error| warnings.push(error));
-                entry
-            });
-            Outputs::Baked(Box::new((entry, baked)))
+        None => baked(job, room, advance).and_then(|baked| {
+            let entry = match lookup.as_mut() {
+                None => None,
+                Some(Lookup { cache, warnings, .. }) => {
+                    let entry = Entry::new(job.id, &name(job, &baked), &baked)?;
+                    cache.put(&entry, &baked, &mut |error| warnings.push(error));
+                    Some(entry)
+                }
+            };
+            Ok(Outputs::Baked(Box::new((entry, baked))))
         }),
     };
     Prepared { outputs, warnings: lookup.map(|lookup| lookup.warnings).unwrap_or_default() }
@@ -103,10 +107,10 @@ pub fn finish(job: &Job, prepared: Prepared, places: &mut Places, warn: Warn<'_>
             // Outputs are hashed while the disk is waited for.
             let (published, entry) = rayon::join(
                 || publish(&baked, &job.output.join(&name), &job.source, places),
-                || entry.unwrap_or_else(|| Entry::new(&name, &baked)),
+                || entry.map_or_else(|| Entry::new(job.id, &name, &baked), Ok),
             );
             published?;
-            Done::new(job, entry, false)
+            Done::new(job, entry?, false)
         }
     };
     match job.missing_output() {
@@ -152,13 +156,13 @@ fn name(job: &Job, baked: &Baked) -> PathBuf {
 /// The files of a job: what is read must be what was hashed.
 struct Inputs<'j> {
     source: &'j Path,
-    digests: BTreeMap<&'j Path, Option<&'j str>>,
+    digests: BTreeMap<&'j Path, Option<Digest>>,
     changed: Mutex<Option<PathBuf>>,
 }
 
 impl<'j> Inputs<'j> {
     fn new(job: &'j Job) -> Self {
-        let digests = job.inputs.iter().map(|input| (input.path.as_path(), input.blake3.as_deref())).collect();
+        let digests = job.inputs.iter().map(|input| (input.path.as_path(), input.blake3)).collect();
         Self { source: &job.source, digests, changed: Mutex::new(None) }
     }
 
@@ -170,7 +174,7 @@ impl<'j> Inputs<'j> {
     /// What is at `path`, and it is known whether that changed.
     fn checked(&self, path: &Path) -> io::Result<Vec<u8>> {
         let bytes = self.unchecked(path)?;
-        self.check(path, Some(&digest(&bytes)));
+        self.check(path, Some(digest(&bytes)));
         Ok(bytes)
     }
 
@@ -179,7 +183,7 @@ impl<'j> Inputs<'j> {
         read_file(path).inspect_err(|_| self.check(path, None))
     }
 
-    fn check(&self, path: &Path, found: Option<&str>) {
+    fn check(&self, path: &Path, found: Option<Digest>) {
         let planned = self.digests.get(path).copied().flatten();
         // What was there and is gone has changed, too; what was not there is missed by who needs it.
         if found != planned
@@ -206,7 +210,7 @@ impl Files for Inputs<'_> {
         self.unchecked(&beside(self.source, file))
     }
 
-    fn hashed(&self, file: &Path, blake3: &str) {
+    fn hashed(&self, file: &Path, blake3: Digest) {
         self.check(&beside(self.source, file), Some(blake3));
     }
 
@@ -227,7 +231,7 @@ mod tests {
     #[test]
     fn of_all_that_changed_the_first_by_name_is_told() {
         let paths = ["b.png", "a.png", "c.png"];
-        let digests = paths.iter().map(|path| (Path::new(path), Some("of a file that is gone"))).collect();
+        let digests = paths.iter().map(|path| (Path::new(path), Some(digest(b"a file that is gone")))).collect();
         let inputs = Inputs { source: Path::new("asset.gltf"), digests, changed: Mutex::new(None) };
         for path in paths {
             assert!(inputs.read(Path::new(path)).is_err());
@@ -242,16 +246,13 @@ mod tests {
         std::fs::write(&path, "as planned").unwrap();
         let planned = digest(b"as planned");
         let source = folder.path().join("asset.gltf");
-        let inputs = || Inputs {
-            source: &source,
-            digests: [(path.as_path(), Some(planned.as_str()))].into(),
-            changed: Mutex::new(None),
-        };
+        let inputs =
+            || Inputs { source: &source, digests: [(path.as_path(), Some(planned))].into(), changed: Mutex::new(None) };
         for (hashed, changed) in [(&b"as planned"[..], None), (b"another", Some(path.clone()))] {
             let inputs = inputs();
             assert_eq!(inputs.read_to_hash(Path::new("a.png")).unwrap(), b"as planned");
             assert_eq!(inputs.changed(), None);
-            inputs.hashed(Path::new("a.png"), &digest(hashed));
+            inputs.hashed(Path::new("a.png"), digest(hashed));
             assert_eq!(inputs.changed(), changed);
         }
     }

@@ -3,6 +3,7 @@
 use std::cmp::Reverse;
 
 use super::job::Job;
+use crate::digest::Digest;
 
 /// One of several parts of a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,11 +37,11 @@ fn parts(jobs: &[&Job], count: usize) -> Vec<usize> {
     let mean = total.div_ceil(count as u128);
     let room = mean + mean / SLACK;
     let mut order: Vec<usize> = (0..jobs.len()).collect();
-    order.sort_by_key(|&at| (Reverse(jobs[at].cost), &jobs[at].id, &jobs[at].source));
+    order.sort_by_key(|&at| (Reverse(jobs[at].cost), jobs[at].id, &jobs[at].source));
     let (mut loads, mut parts) = (vec![0_u128; count], vec![0; jobs.len()]);
     for at in order {
         let cost = u128::from(jobs[at].cost);
-        let own = own_part(&jobs[at].id, count);
+        let own = own_part(jobs[at].id, count);
         let mut from_own = (own..count).chain(0..own);
         let free = from_own.find(|&part| loads[part] + cost <= room);
         let part = free.or_else(|| (0..count).min_by_key(|&part| loads[part])).unwrap_or(own);
@@ -50,8 +51,9 @@ fn parts(jobs: &[&Job], count: usize) -> Vec<usize> {
     parts
 }
 
-fn own_part(id: &str, count: usize) -> usize {
-    let number = id.get(..16).and_then(|digits| u64::from_str_radix(digits, 16).ok()).unwrap_or(0);
+fn own_part(id: Digest, count: usize) -> usize {
+    // The first eight bytes as a number: 16 hexadecimal digits.
+    let number = id.as_bytes()[..8].iter().fold(0, |number: u64, byte| number << 8 | u64::from(*byte));
     (number % count as u64) as usize
 }
 

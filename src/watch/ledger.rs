@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::digest::Digest;
 use crate::plan::{Written, folded, holds};
 
 /// Who has which outputs.
@@ -17,7 +18,7 @@ pub struct Ledger {
 
 #[derive(Debug)]
 struct Output {
-    blake3: String,
+    blake3: Digest,
     owners: usize,
     /// The output folder, which stays when it is empty.
     base: PathBuf,
@@ -38,11 +39,11 @@ impl Ledger {
         let mut paths: Vec<PathBuf> = written.iter().map(|file| folded(&file.path)).collect();
         for (path, file) in paths.iter().zip(written) {
             let output = self.outputs.entry(path.clone()).or_insert_with(|| Output {
-                blake3: String::new(),
+                blake3: file.blake3,
                 owners: 0,
                 base: base.to_owned(),
             });
-            output.blake3.clone_from(&file.blake3);
+            output.blake3 = file.blake3;
             output.owners += 1;
             self.orphans.remove(path);
         }
@@ -67,7 +68,7 @@ impl Ledger {
         let mut removed = Vec::new();
         for (path, asset) in std::mem::take(&mut self.orphans) {
             let Some(Output { blake3, base, .. }) = self.outputs.remove(&path) else { continue };
-            if !holds(&path, &blake3) || fs::remove_file(&path).is_err() {
+            if !holds(&path, blake3) || fs::remove_file(&path).is_err() {
                 continue;
             }
             let base = folded(&base);

@@ -199,7 +199,6 @@ fn wrong_use_is_one_clear_error() {
         ("bake --plan missing.json", "missing.json: expected a readable file"),
         ("bake --plan bad.json", "bad.json: expected a plan"),
         ("bake --plan other.json", "found one of 9.9.9; plan again"),
-        ("bake --plan plan.json -o out", "cannot be used with"),
         ("bake --plan plan.json --glb", "cannot be used with"),
         ("bake --plan plan.json --fov 30", "cannot be used with"),
         ("bake --plan plan.json --quality best", "cannot be used with"),

@@ -1,7 +1,7 @@
 //! Watching: what changed is baked, what is gone is removed, and in the end all is as a bake of the folder leaves it.
 
 mod edits;
-mod session;
+pub mod session;
 
 use std::fs;
 use std::io::Write;

@@ -93,7 +93,9 @@ fn an_action_that_ends_well_without_outputs_has_failed() {
 
 #[test]
 fn entries_that_lead_elsewhere_are_none() {
-    let changes: [fn(&State, re::ActionResult) -> re::ActionResult; 5] = [
+    let changes: [fn(&State, re::ActionResult) -> re::ActionResult; 7] = [
+        |state, result| entries(state, result, |entry| entry["job"] = "0".repeat(64).into()),
+        |state, result| entries(state, result, |entry| entry["document"]["blake3"] = "../../evil".into()),
         |state, result| entries(state, result, |entry| entry["document"]["path"] = "../../evil.gltf".into()),
         |state, result| entries(state, result, |entry| entry["document"]["path"] = "/tmp/evil.gltf".into()),
         |state, result| entries(state, result, |entry| entry["document"]["path"] = "other.gltf".into()),

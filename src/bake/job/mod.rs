@@ -23,7 +23,7 @@ use super::report::{Content, LayerReport};
 use super::settings::{Model, Settings};
 use super::view::Finest;
 use crate::bump::Frame;
-use crate::digest::digest;
+use crate::digest::{Digest, digest};
 use crate::gltf::density::NoDensity;
 use crate::gltf::material::Mapping;
 use crate::gltf::rewrite::Slot;
@@ -43,7 +43,7 @@ pub struct JobTexture {
     /// What its file is named after: an image, or the material that has none.
     pub stem: String,
     /// Images that it was made from, each with the BLAKE3 of its file in hex; none without provenance.
-    pub sources: Vec<(Arc<ImageLocation>, String)>,
+    pub sources: Vec<(Arc<ImageLocation>, Digest)>,
     /// References of materials to it.
     pub slots: Vec<Slot>,
     /// Index into `samplers`.
@@ -173,7 +173,7 @@ struct Job<'a> {
     settings: &'a Settings,
     geometry: &'a Geometry<'a>,
     /// BLAKE3 of each image file that was read, for provenance: of the bytes that are baked.
-    digests: Mutex<BTreeMap<Arc<ImageLocation>, String>>,
+    digests: Mutex<BTreeMap<Arc<ImageLocation>, Digest>>,
 }
 
 impl Job<'_> {
@@ -235,9 +235,9 @@ impl Job<'_> {
     fn hashed<'l>(
         &self,
         locations: impl IntoIterator<Item = &'l Arc<ImageLocation>>,
-    ) -> Vec<(Arc<ImageLocation>, String)> {
+    ) -> Vec<(Arc<ImageLocation>, Digest)> {
         let digests = self.digests.lock().unwrap_or_else(PoisonError::into_inner);
-        locations.into_iter().filter_map(|l| Some((l.clone(), digests.get(l)?.clone()))).collect()
+        locations.into_iter().filter_map(|l| Some((l.clone(), *digests.get(l)?))).collect()
     }
 
     fn decoded(&self, file: &[u8], texture: &TextureSource, material: &str, decode: Decode) -> Result<Image, JobError> {
@@ -261,7 +261,7 @@ impl Job<'_> {
         };
         // Decoders have one thread each.
         let (image, digest) = rayon::join(decode, || digest(file));
-        self.reader.hashed(&texture.location, &digest);
+        self.reader.hashed(&texture.location, digest);
         self.digests.lock().unwrap_or_else(PoisonError::into_inner).insert(texture.location.clone(), digest);
         image
     }

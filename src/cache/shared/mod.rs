@@ -14,15 +14,12 @@ use object_store::{Error, ObjectStore, ObjectStoreExt, PutMode, Result as StoreR
 use tokio::runtime::{Builder, Runtime};
 
 use self::health::Health;
-use super::entry::{Entry, Stored};
+use super::entry::{Entry, Fits, MAX_ENTRY_BYTES, Stored, Unusable};
 use super::error::CacheError;
-use crate::digest::digest;
+use crate::digest::{Digest, digest};
 
 /// Blobs of a job that are on their way at the same time.
 const AT_ONCE: usize = 8;
-
-/// An entry lists a few files and notes.
-const MAX_ENTRY_BYTES: u64 = 64 << 20;
 
 /// A cache in a store.
 pub struct Shared {
@@ -53,63 +50,70 @@ impl Shared {
         Ok(Self { url: url.to_owned(), store, prefix, runtime, health: Health::default() })
     }
 
-    /// The outputs of the job `id`, if it was run.
+    /// Returns the outputs of the job `id`, if it was run. `fits` says whether an entry is of the job.
     ///
     /// # Errors
     /// [`CacheError`] where the entry is there but of no use, or the store does not answer for the first time.
-    pub fn entry(&self, id: &str) -> Result<Option<Entry>, CacheError> {
-        let read = self.read(self.path("jobs", id), MAX_ENTRY_BYTES, |bytes| Entry::parse(&bytes));
+    pub fn entry(&self, id: Digest, fits: Fits<'_>) -> Result<Option<Entry>, CacheError> {
+        let read = self.read(self.path("jobs", id), MAX_ENTRY_BYTES, |bytes| Entry::read(&bytes, id, fits));
         self.runtime.block_on(read)
     }
 
     /// The bytes of each of `wanted`, as [`Self::entry`].
     pub fn blobs(&self, wanted: &[&Stored]) -> Vec<Result<Option<Vec<u8>>, CacheError>> {
         let blob = |stored: &Stored| {
-            let name = stored.blake3.clone();
-            self.read(self.path("blobs", &name), stored.bytes, move |bytes| (digest(&bytes) == name).then_some(bytes))
+            let name = stored.blake3;
+            self.read(self.path("blobs", name), stored.bytes, move |bytes| {
+                if digest(&bytes) == name { Ok(Some(bytes)) } else { Err(Unusable::Damaged) }
+            })
         };
         let blobs: Vec<_> = wanted.iter().map(|stored| blob(stored)).collect();
         self.runtime.block_on(stream::iter(blobs).buffered(AT_ONCE).collect())
     }
 
-    /// Stores `entry` of the job `id` and the bytes of its files, in the order of [`Entry::stored`], before it.
+    /// Stores the bytes of the files of `entry`, in the order of [`Entry::stored`], and then `entry` itself.
     ///
     /// # Errors
     /// [`CacheError`] where the store does not answer, or takes nothing, for the first time.
-    pub fn put(&self, id: &str, entry: &Entry, blobs: &[&[u8]]) -> Result<(), CacheError> {
+    pub fn put(&self, entry: &Entry, blobs: &[&[u8]]) -> Result<(), CacheError> {
         if !self.health.is_writable() {
             return Ok(());
         }
         let put = async {
             let json = entry.to_bytes().map_err(|e| Error::Generic { store: "entry", source: e.into() })?;
             let blobs: Vec<_> =
-                entry.stored().zip(blobs).map(|(stored, bytes)| self.create("blobs", &stored.blake3, bytes)).collect();
+                entry.stored().zip(blobs).map(|(stored, bytes)| self.create("blobs", stored.blake3, bytes)).collect();
             stream::iter(blobs).buffer_unordered(AT_ONCE).try_collect::<()>().await?;
-            self.create("jobs", id, &json).await
+            self.create("jobs", entry.job, &json).await
         };
         self.runtime.block_on(put).or_else(|error| self.health.put_failed(&self.url, &error))
     }
 
-    /// What `parse` makes of an object of at most `limit` bytes.
+    /// Returns what `parse` makes of an object of at most `limit` bytes, and deletes one that is of no use.
     async fn read<T>(
         &self,
         path: ObjectPath,
         limit: u64,
-        parse: impl Fn(Vec<u8>) -> Option<T>,
+        parse: impl Fn(Vec<u8>) -> Result<Option<T>, Unusable>,
     ) -> Result<Option<T>, CacheError> {
         if !self.health.is_awake() {
             return Ok(None);
         }
         match self.bytes(&path, limit).await {
             Ok(None) => Ok(None),
-            Ok(Some(bytes)) => match parse(bytes) {
-                Some(parsed) => Ok(Some(parsed)),
-                None => {
-                    // What is created only is not replaced. Where another machine has, it is baked once more.
+            Ok(Some(bytes)) => {
+                let parsed = parse(bytes);
+                if !matches!(parsed, Ok(Some(_))) {
+                    // An object that is there is not written again. Where another machine has replaced it meanwhile, its
+                    // job is baked once more.
                     let _ = self.store.delete(&path).await;
-                    Err(CacheError::DamagedObject { url: format!("{} ({path})", self.url) })
                 }
-            },
+                let place = || format!("{} ({path})", self.url);
+                parsed.map_err(|unusable| match unusable {
+                    Unusable::Damaged => CacheError::DamagedObject { url: place() },
+                    found => CacheError::Foreign { place: place(), found },
+                })
+            }
             Err(error) => self.health.get_failed(&self.url, &error).map(|()| None),
         }
     }
@@ -130,7 +134,7 @@ impl Shared {
         Ok(Some(bytes))
     }
 
-    async fn create(&self, kind: &str, name: &str, bytes: &[u8]) -> StoreResult<()> {
+    async fn create(&self, kind: &str, name: Digest, bytes: &[u8]) -> StoreResult<()> {
         match self.store.put_opts(&self.path(kind, name), bytes.to_vec().into(), PutMode::Create.into()).await {
             // By another machine, with the same bytes; if not, whoever reads it will see.
             Ok(_) | Err(Error::AlreadyExists { .. }) => Ok(()),
@@ -138,8 +142,8 @@ impl Shared {
         }
     }
 
-    fn path(&self, kind: &str, name: &str) -> ObjectPath {
-        self.prefix.clone().join(kind).join(name.get(..2).unwrap_or("")).join(name)
+    fn path(&self, kind: &str, name: Digest) -> ObjectPath {
+        self.prefix.clone().join(kind).join(format!("{name:.2}")).join(name.to_string())
     }
 }
 

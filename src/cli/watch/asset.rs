@@ -7,6 +7,7 @@ use serde_json::{Map, Value};
 
 use crate::cli::inputs::Input;
 use crate::config::Resolved;
+use crate::digest::Digest;
 use crate::plan::{Job, RunError, Written};
 use crate::watch::{Look, Seen};
 
@@ -20,7 +21,7 @@ pub struct Asset {
     /// Settings.
     pub values: Map<String, Value>,
     /// The job's id; `None` where there can be no job.
-    pub id: Option<String>,
+    pub id: Option<Digest>,
     /// The files that it read.
     pub seen: Vec<(PathBuf, Seen)>,
     /// What became of it.
@@ -58,9 +59,9 @@ impl Asset {
 
     /// Whether `planned` comes to the same as it did.
     pub fn is_as(&self, planned: &Planned, input: &Input) -> bool {
-        let id = planned.job.as_ref().ok().map(|job| &job.id);
+        let id = planned.job.as_ref().ok().map(|job| job.id);
         let is_open = matches!(self.state, State::Failed { again: true, .. });
-        id.is_some() && id == self.id.as_ref() && self.output == input.folder && !is_open
+        id.is_some() && id == self.id && self.output == input.folder && !is_open
     }
 
     /// Whether it failed for the reason `error` with files that looked like `seen`.

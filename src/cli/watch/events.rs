@@ -5,7 +5,7 @@ use std::fmt::Display;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use crate::cli::report::{Asset, Status};
 use crate::plan::{Done, Written};
@@ -20,9 +20,9 @@ pub enum Event<'e> {
         /// Of the tool.
         version: &'static str,
         /// The watched folder.
-        folder: &'e Path,
+        folder: Name<'e>,
         /// The output folder.
-        output: &'e Path,
+        output: Name<'e>,
         /// Milliseconds between two looks, where the system does not tell of changes.
         #[serde(skip_serializing_if = "Option::is_none")]
         poll: Option<u64>,
@@ -32,11 +32,11 @@ pub enum Event<'e> {
         /// The source.
         input: &'e str,
         /// The document.
-        output: &'e Path,
+        output: Name<'e>,
         /// As in the report of `bake`.
         status: Status,
         /// All files of the asset, the document last.
-        files: Vec<&'e Path>,
+        files: Vec<Name<'e>>,
         /// Their size.
         bytes: u64,
         /// From reading to writing.
@@ -53,9 +53,9 @@ pub enum Event<'e> {
     /// Outputs that no asset has any more are gone.
     Removed {
         /// The source that had them.
-        input: &'e Path,
+        input: Name<'e>,
         /// The files.
-        files: Vec<&'e Path>,
+        files: Vec<Name<'e>>,
     },
     /// The outputs are those of a bake of the folder as it is.
     Idle {
@@ -64,6 +64,16 @@ pub enum Event<'e> {
         /// Of those, the ones that cannot be baked.
         failed: usize,
     },
+}
+
+/// A path as it is shown: what is not UTF-8 in it is replaced, as in the report of `bake`, since no event may fail.
+#[derive(Clone, Copy, Debug)]
+pub struct Name<'e>(pub &'e Path);
+
+impl Serialize for Name<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(&self.0.display())
+    }
 }
 
 /// Outputs that changed.
@@ -101,11 +111,11 @@ impl<'w> Teller<'w> {
         match event {
             _ if self.is_quiet => Ok(()),
             Event::Started { folder, output, .. } => {
-                let (folder, output) = (folder.display(), output.display());
+                let (folder, output) = (folder.0.display(), output.0.display());
                 writeln!(self.out, "watching {folder}, baking to {output}; Ctrl-C ends")
             }
             Event::Removed { input, files } => {
-                writeln!(self.out, "removed {}: {} file(s) of it", input.display(), files.len())
+                writeln!(self.out, "removed {}: {} file(s) of it", input.0.display(), files.len())
             }
             _ => Ok(()),
         }?;
@@ -120,9 +130,9 @@ impl<'w> Teller<'w> {
             self.out.write_all(Asset::done(name, None, done, None, seconds, None).summary().as_bytes())?;
             return self.out.flush();
         }
-        let files = done.written.iter().map(|Written { path, .. }| path.as_path()).collect();
+        let files = done.written.iter().map(|Written { path, .. }| Name(path)).collect();
         let status = Status::of(done, None);
-        self.tell(&Event::Baked { input: &name, output: &done.output, status, files, bytes: done.bytes, seconds })
+        self.tell(&Event::Baked { input: &name, output: Name(&done.output), status, files, bytes: done.bytes, seconds })
     }
 
     /// An asset, or everything, cannot be baked.
@@ -142,7 +152,8 @@ impl<'w> Teller<'w> {
             by_asset.entry(asset).or_default().push(path);
         }
         for (input, files) in by_asset {
-            self.tell(&Event::Removed { input, files })?;
+            let files = files.into_iter().map(Name).collect();
+            self.tell(&Event::Removed { input: Name(input), files })?;
         }
         self.has_news |= !removed.is_empty();
         self.changes.removed.extend(removed.iter().map(|removed| removed.path.clone()));

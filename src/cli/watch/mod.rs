@@ -16,7 +16,7 @@ use super::Outcome;
 use super::cached::CacheOptions;
 use super::selection::{Selection, SelectionError};
 use crate::watch::{Scope, Wake, Wakes, WatchError};
-use events::{Event, Teller};
+use events::{Event, Name, Teller};
 use hook::Hook;
 use round::Round;
 
@@ -115,8 +115,8 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
         if is_first {
             teller.tell(&Event::Started {
                 version: env!("CARGO_PKG_VERSION"),
-                folder: &args.folder,
-                output: round.output(),
+                folder: Name(&args.folder),
+                output: Name(round.output()),
                 poll: poll.map(|poll| poll.as_millis() as u64),
             })?;
         }

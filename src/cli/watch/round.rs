@@ -238,7 +238,7 @@ impl Round {
                 break;
             }
             let (start, name) = (Instant::now(), input.path.display().to_string());
-            let id = job.as_ref().ok().map(|job| job.id.clone());
+            let id = job.as_ref().ok().map(|job| job.id);
             let mut warn = |error: CacheError| {
                 let whose = if error.is_general() { String::new() } else { format!("{name}: ") };
                 // The bake does not depend on who reads this.

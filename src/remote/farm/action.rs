@@ -9,7 +9,7 @@ use super::digest::{Blob, Digest};
 use super::error::RemoteError;
 use super::tree::Tree;
 use crate::bake::read_file;
-use crate::digest::digest;
+use crate::digest::{self, digest};
 use crate::plan::{Moved, Plan};
 use crate::remote::Options;
 
@@ -32,12 +32,12 @@ pub struct Action {
 
 /// SHA-256 of files by their BLAKE3: one that many jobs read is read once.
 #[derive(Default)]
-pub struct Digests(Mutex<HashMap<String, Digest>>);
+pub struct Digests(Mutex<HashMap<digest::Digest, Digest>>);
 
 impl Digests {
-    fn of(&self, path: &Path, blake3: &str) -> Result<Digest, RemoteError> {
+    fn of(&self, path: &Path, blake3: digest::Digest) -> Result<Digest, RemoteError> {
         let known = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(digest) = known().get(blake3) {
+        if let Some(digest) = known().get(&blake3) {
             return Ok(*digest);
         }
         let bytes =
@@ -46,7 +46,7 @@ impl Digests {
             return Err(RemoteError::Changed { path: path.to_owned() });
         }
         let digest = Digest::of(&bytes);
-        known().insert(blake3.to_owned(), digest);
+        known().insert(blake3, digest);
         Ok(digest)
     }
 }
@@ -62,9 +62,8 @@ pub fn assemble(jobs: &[&Moved], tool: &Blob, options: &Options, digests: &Diges
         for folder in &moved.folders {
             tree.folder(folder);
         }
-        let digest_of = |path: &PathBuf| {
-            moved.job.inputs.iter().find(|input| input.path == *path).and_then(|input| input.blake3.as_deref())
-        };
+        let digest_of =
+            |path: &PathBuf| moved.job.inputs.iter().find(|input| input.path == *path).and_then(|input| input.blake3);
         for (there, here) in &moved.files {
             let Some(blake3) = digest_of(there) else { continue };
             let digest = digests.of(here, blake3)?;

@@ -9,6 +9,7 @@ use sha2::{Digest as _, Sha256};
 use super::api;
 use super::error::RemoteError;
 use crate::bake::read_file;
+use crate::digest::{from_hex, to_hex};
 
 /// The digest of a blob.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -26,12 +27,7 @@ impl Digest {
 
     /// The SHA-256 in hex.
     pub fn hex(&self) -> String {
-        use std::fmt::Write;
-        self.sha256.iter().fold(String::with_capacity(64), |mut text, byte| {
-            // Writing to a string cannot fail.
-            let _ = write!(text, "{byte:02x}");
-            text
-        })
+        to_hex(self.sha256)
     }
 
     /// The part of resource names that names the blob.
@@ -45,17 +41,9 @@ impl Digest {
         api::Digest { hash: self.hex(), size_bytes: i64::try_from(self.bytes).unwrap_or(i64::MAX) }
     }
 
-    /// From the API; `None` for another function or a length below zero.
+    /// Reads a digest of the API; `None` for one of another function, one that is none, or a length below zero.
     pub fn from_api(digest: &api::Digest) -> Option<Self> {
-        let text = digest.hash.as_bytes();
-        if text.len() != 64 {
-            return None;
-        }
-        let mut sha256 = [0; 32];
-        for (byte, pair) in sha256.iter_mut().zip(text.chunks_exact(2)) {
-            *byte = u8::from_str_radix(std::str::from_utf8(pair).ok()?, 16).ok()?;
-        }
-        Some(Self { sha256, bytes: u64::try_from(digest.size_bytes).ok()? })
+        Some(Self { sha256: from_hex(&digest.hash)?, bytes: u64::try_from(digest.size_bytes).ok()? })
     }
 }
 

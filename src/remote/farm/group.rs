@@ -21,7 +21,7 @@ pub type Group<'a> = Vec<(usize, &'a Job)>;
 /// it is in, and no other (unless the bounds cut first, and then up to the next such id).
 pub fn groups<'a>(jobs: &[(usize, &'a Job)]) -> Vec<Group<'a>> {
     let (large, mut small): (Vec<_>, Vec<_>) = jobs.iter().copied().partition(|(_, job)| job.cost >= SMALL);
-    small.sort_by(|(_, a), (_, b)| a.id.cmp(&b.id));
+    small.sort_by_key(|(_, job)| job.id);
     let mut groups: Vec<Group<'a>> = large.into_iter().map(|job| vec![job]).collect();
     let (mut group, mut cost) = (Group::new(), 0);
     for (index, job) in small {
@@ -31,7 +31,7 @@ pub fn groups<'a>(jobs: &[(usize, &'a Job)]) -> Vec<Group<'a>> {
         }
         group.push((index, job));
         cost += job.cost;
-        if job.id.ends_with('0') {
+        if ends_a_group(job) {
             groups.push(std::mem::take(&mut group));
             cost = 0;
         }
@@ -42,6 +42,11 @@ pub fn groups<'a>(jobs: &[(usize, &'a Job)]) -> Vec<Group<'a>> {
     groups
 }
 
+/// Whether the id ends in zero, as a hexadecimal number.
+fn ends_a_group(job: &Job) -> bool {
+    job.id.as_bytes().last().is_some_and(|byte| byte & 0xf == 0)
+}
+
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeSet;
@@ -50,10 +55,11 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::digest::{Digest, digest};
 
     fn job(number: u64, cost: u64) -> Job {
         Job {
-            id: crate::digest::digest(&number.to_le_bytes()),
+            id: digest(&number.to_le_bytes()),
             source: PathBuf::new(),
             output: PathBuf::new(),
             settings: serde_json::Map::new(),
@@ -64,9 +70,9 @@ mod tests {
         }
     }
 
-    fn grouped(jobs: &[Job]) -> Vec<Vec<&str>> {
+    fn grouped(jobs: &[Job]) -> Vec<Vec<Digest>> {
         let jobs: Vec<(usize, &Job)> = jobs.iter().enumerate().collect();
-        groups(&jobs).into_iter().map(|group| group.into_iter().map(|(_, job)| job.id.as_str()).collect()).collect()
+        groups(&jobs).into_iter().map(|group| group.into_iter().map(|(_, job)| job.id).collect()).collect()
     }
 
     proptest! {
@@ -91,13 +97,13 @@ mod tests {
     #[test]
     fn a_new_job_changes_one_group() {
         let jobs: Vec<Job> = (0..1000).map(|number| job(number, 1000)).collect();
-        let before: BTreeSet<Vec<&str>> = grouped(&jobs).into_iter().collect();
+        let before: BTreeSet<Vec<Digest>> = grouped(&jobs).into_iter().collect();
         assert!((30..100).contains(&before.len()), "{}", before.len());
         let mut all_changed = 0;
         for number in 1000..1100 {
             let new = job(number, 1000);
             let all: Vec<Job> = jobs.iter().chain([&new]).cloned().collect();
-            let after: BTreeSet<Vec<&str>> = grouped(&all).into_iter().collect();
+            let after: BTreeSet<Vec<Digest>> = grouped(&all).into_iter().collect();
             let changed = before.iter().filter(|group| !after.contains(*group)).count();
             // Two where the bounds cut.
             assert!(changed <= 2, "{changed}");

@@ -13,8 +13,8 @@ use super::digest::Digest;
 use super::download::{fetch, fetch_one};
 use super::error::RemoteError;
 use crate::cache::{Entry, Folder, Stored};
-use crate::digest::digest;
-use crate::plan::{Job, Moved, OutputKind};
+use crate::digest::{self, digest};
+use crate::plan::{Job, Moved};
 use crate::remote::JobFailure;
 
 /// A job of an action.
@@ -78,25 +78,21 @@ pub async fn collect(
     let mut keep = |sent: Digest, content: &[u8]| {
         let Some(stored) = blobs.get(&sent) else { return Ok(()) };
         if digest(content) != stored.blake3 {
-            return Err(RemoteError::Damaged { digest: stored.blake3.clone() });
+            return Err(RemoteError::Damaged { digest: stored.blake3.to_string() });
         }
         folder.put_blob(stored, content).map_err(kept)
     };
     fetch(&digests, client, &mut keep).await?;
     // Entries come last: whoever finds one finds its blobs.
-    for (sent, entry) in jobs.iter().zip(&entries) {
-        if let Some(entry) = entry {
-            folder.put_entry(&sent.job.id, entry).map_err(kept)?;
-        }
-    }
+    entries.iter().flatten().try_for_each(|entry| folder.put_entry(entry)).map_err(kept)?;
     Ok(failures)
 }
 
-/// The cache that an action wrote: digests of files by their names.
+/// The cache that an action wrote: digests of files by their names. Files whose names are no digests are left out.
 #[derive(Default)]
 struct Left {
-    jobs: HashMap<String, Digest>,
-    blobs: HashMap<String, Digest>,
+    jobs: HashMap<digest::Digest, Digest>,
+    blobs: HashMap<digest::Digest, Digest>,
 }
 
 async fn left(result: &api::ActionResult, client: &Client) -> Result<Left, RemoteError> {
@@ -114,11 +110,11 @@ async fn left(result: &api::ActionResult, client: &Client) -> Result<Left, Remot
     };
     // `jobs/<2 digits>/<id>` and `blobs/<2 digits>/<digest>`.
     let root = tree.root.unwrap_or_default();
-    let named = |name: &str| -> HashMap<String, Digest> {
+    let named = |name: &str| -> HashMap<digest::Digest, Digest> {
         let kinds = root.directories.iter().filter(|kind| kind.name == name);
         let kinds = kinds.filter_map(|kind| folders.get(&Digest::from_api(kind.digest.as_ref()?)?).copied());
         let files = kinds.flat_map(below).flat_map(|folder| &folder.files);
-        files.filter_map(|file| Some((file.name.clone(), Digest::from_api(file.digest.as_ref()?)?))).collect()
+        files.filter_map(|file| Some((file.name.parse().ok()?, Digest::from_api(file.digest.as_ref()?)?))).collect()
     };
     Ok(Left { jobs: named("jobs"), blobs: named("blobs") })
 }
@@ -129,24 +125,15 @@ async fn entries(left: &Left, jobs: &[Sent<'_>], client: &Client) -> Result<Vec<
     let digests: BTreeSet<Digest> = jobs.iter().filter_map(digest_of).collect();
     let mut found = HashMap::new();
     let mut take = |digest, content: &[u8]| {
-        found.extend(Entry::parse(content).map(|entry| (digest, entry)));
+        found.insert(digest, content.to_vec());
         Ok(())
     };
     fetch(&digests.into_iter().collect::<Vec<_>>(), client, &mut take).await?;
-    let entry_of = |sent: &Sent<'_>| found.get(&digest_of(sent)?).filter(|entry| is_of(entry, sent.moved)).cloned();
+    let entry_of = |sent: &Sent<'_>| {
+        let content = found.get(&digest_of(sent)?)?;
+        Entry::read(content, sent.job.id, &|entry| sent.job.fits(entry)).ok()?
+    };
     Ok(jobs.iter().map(entry_of).collect())
-}
-
-/// Whether `entry` has what the job declares, and nothing elsewhere.
-fn is_of(entry: &Entry, moved: &Moved) -> bool {
-    let folder = &moved.job.output;
-    let document = folder.join(&entry.document.path);
-    let is_document = moved.job.outputs.first().is_some_and(|output| output.path == document);
-    let folders = || moved.job.outputs.iter().filter(|output| output.kind == OutputKind::Folder);
-    let is_declared = |path: &Path| folders().any(|output| folder.join(path).starts_with(&output.path));
-    is_document
-        && entry.files.iter().all(|file| is_declared(&file.path))
-        && entry.copies.iter().all(|copy| moved.names.contains(copy))
 }
 
 /// Why jobs failed, by their sources: what the report of the tool says.

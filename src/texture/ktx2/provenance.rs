@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::{Key, Ktx2};
+use crate::digest::Digest;
 
 /// The key. Its presence marks a texture as baked.
 pub const PROVENANCE_KEY: &str = "roughcast";
@@ -30,8 +31,8 @@ pub struct Provenance {
 pub struct SourceDigest {
     /// Its URI in the source document, or `bufferViews[n]`.
     pub uri: String,
-    /// BLAKE3 of its bytes, in hexadecimal.
-    pub blake3: String,
+    /// The digest of its bytes.
+    pub blake3: Digest,
 }
 
 impl Provenance {

@@ -1,3 +1,4 @@
-//! What strangers' files may not do.
+//! What files of strangers may not do: nothing is lost, and no one is let in.
 
 mod decoders;
+mod validated;
