@@ -1,14 +1,18 @@
-//! From a normal map to its pyramid, beside a copy of as many bytes: `cargo bench --bench kernels`.
+//! From a normal map to its pyramid, beside a copy of as many bytes, and zstd of UASTC blocks:
+//! `cargo bench --bench kernels`.
 //!
 //! Items are texels of level 0. The copies read and write as much as the kernels do, with the same threads.
 
-use divan::counter::ItemsCount;
+use divan::counter::{BytesCount, ItemsCount};
 use divan::{Bencher, black_box};
 use rayon::prelude::*;
 use roughcast::bump::NormalOffsets;
 use roughcast::lobe::{Alpha, OrientedLobe, SquaredAlpha};
 use roughcast::map::{DecodeOptions, Image, NormalLayout, NormalMap, Samples, decode};
 use roughcast::pyramid::{Level, Moments, Rows, Shaped, ShapedMoments, build, level_sizes};
+use roughcast::texture::Format;
+use roughcast::texture::ktx2::StoredLevel;
+use roughcast::texture::uastc::{self, Effort, Encoder, Metric};
 
 mod common;
 
@@ -91,4 +95,16 @@ fn lobes(bencher: Bencher) {
     }
     let level = Level { width, height, texels };
     bencher.counter(ItemsCount::new(level.texels.len())).bench(|| build(black_box(&level)));
+}
+
+#[divan::bench(sample_count = 5)]
+fn zstd(bencher: Bencher) {
+    let (rgb, size) = (common::maps::normals(common::size()), common::size() as u32);
+    let rgba: Vec<u8> = rgb.as_chunks::<3>().0.iter().flat_map(|&[r, g, b]| [r, g, b, 255]).collect();
+    let image = uastc::Image::new(&rgba, size, size).expect("texels of that size");
+    let level = Encoder::new(Metric::Direction, Effort::Fast).encode(&image).into_flattened();
+    bencher
+        .counter(BytesCount::new(level.len()))
+        .with_inputs(|| level.clone())
+        .bench_values(|level| StoredLevel::new(level, Format::UastcRgb, Effort::Fast));
 }

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use roughcast::map::{DecodeOptions, decode};
 use roughcast::texture::ktx2::{Ktx2, Ktx2Writer, StoredLevel};
 use roughcast::texture::uastc::{Effort, Metric};
-use roughcast::texture::{Format, Texels, encode, lower_rate};
+use roughcast::texture::{Format, ORM, Texels, encode, lower_rate};
 
 /// Parts of names of normal maps and of maps with roughness.
 const NORMALS: [&str; 3] = ["normal", "_nor_", "Normal"];
@@ -30,7 +30,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let has = |parts: &[&str]| parts.iter().any(|part| name.contains(part));
         let metric = match (has(&NORMALS), has(&SURFACES)) {
             (true, _) => Metric::Direction,
-            (_, true) => Metric::Surface,
+            (_, true) => ORM,
             _ => continue,
         };
         let image = decode(&std::fs::read(&file)?, &DecodeOptions::default())?;
@@ -42,7 +42,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let texels = Texels { width: image.width, height: image.height, row: &row };
         let before = encode(&texels, Format::UastcRgb, metric, effort)?;
         let mut after = before.clone();
-        lower_rate(&mut after, &texels, metric, loss);
+        lower_rate(&mut after, &texels, metric, loss)?;
         let [(bytes, error), (fewer, more)] = [measured(before, &texels, effort)?, measured(after, &texels, effort)?];
         let lost = if error > 0.0 { 10.0 * (more / error).log10() } else { 0.0 };
         println!("| {name} | {bytes} | {fewer} | {:.1} % | {lost:.2} dB |", saved(bytes, fewer));

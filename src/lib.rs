@@ -28,7 +28,9 @@ pub mod pyramid;
 pub mod remote;
 pub mod render;
 pub mod roughness;
-mod simd;
 pub mod symmetric;
 pub mod texture;
 pub mod watch;
+
+// Kernels import `crate::simd`.
+use texel_simd as simd;

@@ -8,7 +8,7 @@ use crate::memory::{self, OutOfMemory};
 use crate::pyramid::level_sizes;
 use crate::texture::ktx2::{Key, Ktx2Writer, StoredLevel, Storing};
 use crate::texture::uastc::{Effort, Metric};
-use crate::texture::{EncodeError, Format, Target, Texels, encode, lower_rate};
+use crate::texture::{EncodeError, Format, ORM, Target, Texels, encode, lower_rate};
 
 /// A texture with all its levels encoded.
 #[derive(Clone)]
@@ -59,7 +59,7 @@ impl Encoding {
 
     /// For roughness with what stands beside it.
     pub fn of_surface(self) -> Self {
-        Self { metric: Metric::Surface, ..self }
+        Self { metric: ORM, ..self }
     }
 
     /// For normals: two channels where the engine's BC5 path rebuilds z, else three.
@@ -194,7 +194,7 @@ fn encode_band(texels: &Texels<'_>, encoding: Encoding) -> Result<Vec<u8>, Encod
     let Encoding { format, metric, effort, .. } = encoding;
     let mut blocks = encode(texels, format, metric, effort)?;
     if let (Format::UastcRgb, Some(loss)) = (format, encoding.rdo) {
-        lower_rate(&mut blocks, texels, metric, loss);
+        lower_rate(&mut blocks, texels, metric, loss)?;
     }
     Ok(blocks)
 }

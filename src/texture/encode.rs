@@ -4,10 +4,15 @@ use fearless_simd::Level;
 use half::f16;
 use rayon::prelude::*;
 
-use super::uastc::{self, Effort, Metric};
+use super::uastc::{self, BLOCK_BYTES, Effort, Encoder, Image, Metric, SizeError, Weight};
 use super::{Format, Target};
 use crate::memory::OutOfMemory;
 use crate::simd::dispatch;
+
+/// The metric of textures with occlusion, roughness and metalness in red, green and blue. Lobes depend on roughness, so
+/// a difference of the other two counts as one of roughness that is a quarter as large. (On the materials of
+/// FlightHelmet roughness gains 5.5 dB, occlusion loses 6 dB and lobe errors fall by up to 0.035.)
+pub const ORM: Metric = Metric::Weighted([Weight::Quarter, Weight::Full, Weight::Quarter]);
 
 /// Why a level cannot be encoded.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -73,6 +78,11 @@ impl Texels<'_> {
         })
     }
 
+    fn refused(&self, error: &SizeError) -> EncodeError {
+        let (width, height) = (self.width, self.height);
+        EncodeError::Encoder { format: Format::UastcRgb, width, height, reason: error.to_string() }
+    }
+
     /// # Errors
     /// [`EncodeError::NotFinite`]: no file of ours holds infinities or NaN.
     fn to_half(&self, channels: usize) -> Result<Vec<u8>, EncodeError> {
@@ -136,7 +146,7 @@ fn unorm8_row(texels: &[[f32; 4]], out: &mut [u8]) {
 /// [`EncodeError`] for block formats whose encoder is missing or fails, and for values that half floats do not hold.
 pub fn encode(texels: &Texels<'_>, format: Format, metric: Metric, effort: Effort) -> Result<Vec<u8>, EncodeError> {
     match format {
-        Format::UastcRgb => Ok(encode_uastc(texels, metric, effort)),
+        Format::UastcRgb => encode_uastc(texels, metric, effort).map_err(|e| texels.refused(&e)),
         Format::R16Float => texels.to_half(1),
         Format::Rg16Float => texels.to_half(2),
         Format::Rgba16Float => texels.to_half(4),
@@ -148,29 +158,36 @@ pub fn encode(texels: &Texels<'_>, format: Format, metric: Metric, effort: Effor
 }
 
 /// Quantises and encodes row of blocks by row of blocks, so that a level is never held as RGBA8.
-fn encode_uastc(texels: &Texels<'_>, metric: Metric, effort: Effort) -> Vec<u8> {
-    let (instructions, width) = (Level::new(), texels.width as usize);
-    let mut blocks = vec![0; Format::UastcRgb.level_bytes(texels.width, texels.height)];
-    blocks.par_chunks_mut(width.div_ceil(4) * uastc::BLOCK_BYTES).enumerate().for_each_init(
-        || (vec![[0.0; 4]; width], vec![0; 4 * 4 * width]),
-        |(values, rgba), (block_row, out)| {
+fn encode_uastc(texels: &Texels<'_>, metric: Metric, effort: Effort) -> Result<Vec<u8>, SizeError> {
+    let (encoder, instructions) = (Encoder::new(metric, effort), Level::new());
+    let width = texels.width as usize;
+    let columns = width.div_ceil(4);
+    let mut blocks = vec![[0; BLOCK_BYTES]; columns * texels.height.div_ceil(4) as usize];
+    blocks.par_chunks_mut(columns).enumerate().try_for_each_init(
+        || (vec![[0.0; 4]; width], vec![[0; 4]; 4 * width]),
+        |(values, rgba), (block_row, blocks)| {
             let first = 4 * block_row as u32;
-            for (y, line) in rgba.chunks_exact_mut(4 * width).enumerate() {
+            for (y, line) in rgba.chunks_exact_mut(width).enumerate() {
                 // The last row is repeated.
                 (texels.row)((first + y as u32).min(texels.height - 1), values);
-                dispatch!(instructions, _simd => unorm8_row(values, line));
+                dispatch!(instructions, _simd => unorm8_row(values, line.as_flattened_mut()));
             }
-            let lines = std::array::from_fn(|y| &rgba[4 * width * y..4 * width * (y + 1)]);
-            uastc::encode_lines(instructions, &lines, metric, effort, out);
+            encoder.encode_rows(std::array::from_fn(|y| &rgba[width * y..width * (y + 1)]), blocks)
         },
-    );
-    blocks
+    )?;
+    Ok(blocks.into_flattened())
 }
 
-/// Makes the UASTC `blocks` of `texels` smaller after zstd, as [`uastc::lower_rate`] does: neither error grows by as much as
-/// `loss` dB. The level is held as RGBA8 meanwhile.
-pub fn lower_rate(blocks: &mut [u8], texels: &Texels<'_>, metric: Metric, loss: f64) {
-    uastc::lower_rate(blocks, &texels.to_rgba8(), texels.width, texels.height, metric, loss);
+/// Makes the UASTC `blocks` of `texels` smaller after zstd, as [`uastc::lower_rate`] does: neither error grows by as
+/// much as `loss` dB. The level is held as RGBA8 meanwhile.
+///
+/// # Errors
+/// [`EncodeError::Encoder`] if `blocks` are not those of a level of that size.
+pub fn lower_rate(blocks: &mut [u8], texels: &Texels<'_>, metric: Metric, loss: f64) -> Result<(), EncodeError> {
+    let rgba = texels.to_rgba8();
+    let image = Image::new(&rgba, texels.width, texels.height).map_err(|e| texels.refused(&e))?;
+    let blocks = blocks.as_chunks_mut::<BLOCK_BYTES>().0;
+    uastc::lower_rate(blocks, &image, metric, loss).map_err(|e| texels.refused(&e))
 }
 
 impl Target {

@@ -5,7 +5,8 @@ mod bc;
 mod encode;
 mod format;
 pub mod ktx2;
-pub mod uastc;
 
-pub use encode::{EncodeError, Texels, encode, lower_rate};
+pub use encode::{EncodeError, ORM, Texels, encode, lower_rate};
 pub use format::{Format, Target};
+/// The encoder and decoder of UASTC blocks, a crate of its own.
+pub use uastc_encoder as uastc;

@@ -4,9 +4,9 @@ use std::hint::black_box;
 use std::path::Path;
 
 use roughcast::map::{DecodeOptions, Image, Samples, decode};
-use roughcast::texture::Format;
 use roughcast::texture::ktx2::{Ktx2, decode_payload};
-use roughcast::texture::uastc::{Effort, Metric, encode_level};
+use roughcast::texture::uastc::{self, Effort, Metric};
+use roughcast::texture::{Format, ORM};
 use serde_json::Value;
 
 use crate::Failure;
@@ -30,8 +30,8 @@ impl Encoder {
             "best" => Self::Roughcast(Metric::Direction, Effort::Best),
             "fast rgb" => Self::Roughcast(Metric::Rgb, Effort::Fast),
             "best rgb" => Self::Roughcast(Metric::Rgb, Effort::Best),
-            "fast surface" => Self::Roughcast(Metric::Surface, Effort::Fast),
-            "best surface" => Self::Roughcast(Metric::Surface, Effort::Best),
+            "fast surface" => Self::Roughcast(ORM, Effort::Fast),
+            "best surface" => Self::Roughcast(ORM, Effort::Best),
             _ => {
                 let level = name.strip_prefix("level ")?;
                 match level.strip_suffix(" with statistics") {
@@ -48,7 +48,10 @@ impl Encoder {
     /// Where basis_universal fails.
     pub fn blocks(self, rgba: &[u8], width: u32, height: u32) -> Result<Vec<u8>, Failure> {
         match self {
-            Self::Roughcast(metric, effort) => Ok(encode_level(rgba, width, height, metric, effort)),
+            Self::Roughcast(metric, effort) => {
+                let image = uastc::Image::new(rgba, width, height)?;
+                Ok(uastc::Encoder::new(metric, effort).encode(&image).into_flattened())
+            }
             Self::Basisu(level, interface) => {
                 let file = basisu::encode(rgba, width, height, level, interface)?;
                 Ok(Ktx2::parse(&file)?.level_bytes(0)?.into_owned())

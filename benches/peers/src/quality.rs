@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use roughcast::map::Image;
+use roughcast::texture::ORM;
 use roughcast::texture::uastc::{Effort, Metric};
 use serde_json::{Map, Value, json};
 
@@ -16,8 +17,8 @@ use crate::encoders::{Encoder, read};
 const ENCODERS: [(&str, Encoder); 9] = [
     ("fast rgb", Encoder::Roughcast(Metric::Rgb, Effort::Fast)),
     ("best rgb", Encoder::Roughcast(Metric::Rgb, Effort::Best)),
-    ("fast surface", Encoder::Roughcast(Metric::Surface, Effort::Fast)),
-    ("best surface", Encoder::Roughcast(Metric::Surface, Effort::Best)),
+    ("fast surface", Encoder::Roughcast(ORM, Effort::Fast)),
+    ("best surface", Encoder::Roughcast(ORM, Effort::Best)),
     ("fast", Encoder::Roughcast(Metric::Direction, Effort::Fast)),
     ("best", Encoder::Roughcast(Metric::Direction, Effort::Best)),
     ("level 0", Encoder::Basisu(0, Interface::Plain)),

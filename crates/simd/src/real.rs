@@ -1,0 +1,125 @@
+//! Arithmetic on a number or on a vector of numbers, under one name.
+
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Sub};
+
+use fearless_simd::{Select, Simd, SimdBase, SimdFloat, mask32x16, prelude::*};
+
+use crate::Wide;
+
+/// A number, or a vector with one number in each lane.
+pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> {
+    /// One truth value for each lane.
+    type Mask: Copy + BitAnd<Output = Self::Mask> + BitOr<Output = Self::Mask>;
+
+    /// Returns `value` in every lane of a number or vector of the same type as `self`.
+    fn like(self, value: f32) -> Self;
+
+    /// Returns the square root, correctly rounded.
+    fn sqrt(self) -> Self;
+
+    /// Returns the larger number of each lane. What NaN gives depends on the machine.
+    fn max(self, other: Self) -> Self;
+
+    /// Returns the smaller number of each lane. What NaN gives depends on the machine.
+    fn min(self, other: Self) -> Self;
+
+    /// Compares lane by lane: set where `self` is at most `other`.
+    fn at_most(self, other: Self) -> Self::Mask;
+
+    /// Compares lane by lane: set where `self` is 0.
+    fn is_zero(self) -> Self::Mask;
+
+    /// Selects `self` where `mask` is set and `other` elsewhere.
+    fn or(self, other: Self, mask: Self::Mask) -> Self;
+
+    /// Returns whether `mask` is set in all lanes.
+    fn all(mask: Self::Mask) -> bool;
+}
+
+impl Real for f32 {
+    type Mask = bool;
+
+    #[inline(always)]
+    fn like(self, value: f32) -> Self {
+        value
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        f32::sqrt(self)
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        f32::max(self, other)
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        f32::min(self, other)
+    }
+
+    #[inline(always)]
+    fn at_most(self, other: Self) -> bool {
+        self <= other
+    }
+
+    #[inline(always)]
+    fn is_zero(self) -> bool {
+        self == 0.0
+    }
+
+    #[inline(always)]
+    fn or(self, other: Self, mask: bool) -> Self {
+        if mask { self } else { other }
+    }
+
+    #[inline(always)]
+    fn all(mask: bool) -> bool {
+        mask
+    }
+}
+
+impl<S: Simd> Real for Wide<S> {
+    type Mask = mask32x16<S>;
+
+    #[inline(always)]
+    fn like(self, value: f32) -> Self {
+        Self::splat(self.simd, value)
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        SimdFloat::sqrt(self)
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        SimdBase::max(self, other)
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        SimdBase::min(self, other)
+    }
+
+    #[inline(always)]
+    fn at_most(self, other: Self) -> Self::Mask {
+        self.simd_le(other)
+    }
+
+    #[inline(always)]
+    fn is_zero(self) -> Self::Mask {
+        self.simd_eq(0.0)
+    }
+
+    #[inline(always)]
+    fn or(self, other: Self, mask: Self::Mask) -> Self {
+        mask.select(self, other)
+    }
+
+    #[inline(always)]
+    fn all(mask: Self::Mask) -> bool {
+        mask.all_true()
+    }
+}

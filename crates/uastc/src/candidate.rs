@@ -1,0 +1,321 @@
+//! Blocks of one given mode, fitted to their texels.
+
+#![expect(clippy::needless_range_loop, reason = "loops over channels read several arrays at one index")]
+
+use fearless_simd::{Select, Simd, SimdBase, SimdCvtFloat, prelude::*, u32x16};
+
+use crate::blocks::Blocks;
+use crate::lanes::Grid;
+use crate::line::{Line, Points};
+use crate::moments::{Moments, moments, principal_axis, scatter_along, trace};
+use crate::partition::Least;
+use crate::tables::{Mode, PATTERNS, THIRDS};
+use texel_simd::{LANES, Wide};
+
+/// The channels of texel `i`.
+#[inline(always)]
+pub(crate) fn texel<S: Simd, const N: usize>(texels: &[Grid<S>; N], i: usize) -> [Wide<S>; N] {
+    let mut texel = [texels[0][i]; N];
+    for c in 1..N {
+        texel[c] = texels[c][i];
+    }
+    texel
+}
+
+/// The channel at `selector` and, `M` of them, the others.
+#[inline(always)]
+pub(crate) fn parted<S: Simd, const N: usize, const M: usize>(
+    texels: &[Grid<S>; N],
+    selector: Wide<S>,
+) -> ([Grid<S>; 1], [Grid<S>; M]) {
+    let (mut single, mut others) = ([texels[0]], [texels[0]; M]);
+    for i in 0..16 {
+        let texel = texel(texels, i);
+        single[0][i] = alone(selector, &texel);
+        let left: [Wide<S>; M] = rest(selector, &texel);
+        for k in 0..M {
+            others[k][i] = left[k];
+        }
+    }
+    (single, others)
+}
+
+/// A number per channel, in all lanes.
+#[inline(always)]
+pub(crate) fn splat<S: Simd, const N: usize>(simd: S, numbers: &[f32; N]) -> [Wide<S>; N] {
+    let mut all = [Wide::splat(simd, numbers[0]); N];
+    for c in 1..N {
+        all[c] = Wide::splat(simd, numbers[c]);
+    }
+    all
+}
+
+/// The channels of a block but the one at `selector`.
+#[inline(always)]
+pub(crate) fn rest<S: Simd, const N: usize, const M: usize>(
+    selector: Wide<S>,
+    channels: &[Wide<S>; N],
+) -> [Wide<S>; M] {
+    let mut rest = [channels[0]; M];
+    for k in 0..M {
+        rest[k] = selector.simd_gt(k as f32).select(channels[k], channels[k + 1]);
+    }
+    rest
+}
+
+/// The channel at `selector`.
+#[inline(always)]
+pub(crate) fn alone<S: Simd, const N: usize>(selector: Wide<S>, channels: &[Wide<S>; N]) -> Wide<S> {
+    let mut found = channels[0];
+    for c in 1..N {
+        found = selector.simd_eq(c as f32).select(channels[c], found);
+    }
+    found
+}
+
+impl<S: Simd> Blocks<S> {
+    /// Takes over a line through the first channels, of the texels in `mask`.
+    #[inline(always)]
+    pub(crate) fn place<const N: usize>(&mut self, line: &Line<S, N>, subset: usize, mask: Option<&Grid<S>>) {
+        for c in 0..N {
+            self.endpoints[subset][c] = [line.low[c], line.high[c]];
+        }
+        for i in 0..16 {
+            match mask {
+                Some(mask) => self.weights[0][i] += mask[i] * line.weights[i],
+                None => self.weights[0][i] = line.weights[i],
+            }
+        }
+        self.error += line.error;
+    }
+
+    /// Takes over the lines of two planes: of the channel at the selector, and of the others.
+    #[inline(always)]
+    pub(crate) fn place_planes<const N: usize, const M: usize>(&mut self, single: &Line<S, 1>, others: &Line<S, M>) {
+        for c in 0..N {
+            let is_single = self.selector.simd_eq(c as f32);
+            let is_before = self.selector.simd_gt(c as f32);
+            let (before, after) = (c.min(M - 1), c.saturating_sub(1));
+            let low = is_before.select(others.low[before], others.low[after]);
+            let high = is_before.select(others.high[before], others.high[after]);
+            self.endpoints[0][c] = [is_single.select(single.low[0], low), is_single.select(single.high[0], high)];
+        }
+        self.weights = [others.weights, single.weights];
+        self.error = single.error + others.error;
+    }
+}
+
+/// Blocks of one line through the first `N` channels; `BITS` are the weight bits of `mode`, here and below.
+#[inline(always)]
+pub(crate) fn one_line<S: Simd, const N: usize, const BITS: u32>(
+    simd: S,
+    texels: &[Grid<S>; N],
+    all: &Moments<S, N>,
+    axis: &[Wide<S>; N],
+    scale: &[f32; N],
+    mode: &'static Mode,
+    rounds: usize,
+) -> Blocks<S> {
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            let mut blocks = Blocks::empty(simd, mode);
+            let scale = splat(simd, scale);
+            let points = Points { texels, subset: None, scale, range: mode.range };
+            blocks.place(&points.fit::<BITS>(simd, all, axis, rounds), 0, None);
+            blocks
+        },
+    )
+}
+
+/// Blocks whose channel `selector` has a line of its own beside that of the other channels.
+#[inline(always)]
+pub(crate) fn two_planes<S: Simd, const N: usize, const BITS: u32>(
+    simd: S,
+    texels: &[Grid<S>; N],
+    all: &Moments<S, N>,
+    selector: Wide<S>,
+    scale: &[f32; N],
+    mode: &'static Mode,
+    rounds: usize,
+) -> Blocks<S> {
+    simd.vectorize(
+        #[inline(always)]
+        || match N {
+            2 => planes::<S, N, 1, BITS>(simd, texels, all, selector, scale, mode, rounds),
+            _ => planes::<S, N, 2, BITS>(simd, texels, all, selector, scale, mode, rounds),
+        },
+    )
+}
+
+/// Implements [`two_planes`] with `M`, which is one less than `N`.
+#[inline(always)]
+fn planes<S: Simd, const N: usize, const M: usize, const BITS: u32>(
+    simd: S,
+    texels: &[Grid<S>; N],
+    all: &Moments<S, N>,
+    selector: Wide<S>,
+    scale: &[f32; N],
+    mode: &'static Mode,
+    rounds: usize,
+) -> Blocks<S> {
+    let zero = Wide::splat(simd, 0.0);
+    let scale = splat(simd, scale);
+    let (single, others) = parted::<_, N, M>(texels, selector);
+    let (mut own, mut columns, mut scatter) = ([zero; N], [[zero; N]; M], [[zero; M]; M]);
+    for c in 0..N {
+        own[c] = all.scatter[c][c];
+        let row: [Wide<S>; M] = rest(selector, &all.scatter[c]);
+        for k in 0..M {
+            columns[k][c] = row[k];
+        }
+    }
+    for k in 0..M {
+        scatter[k] = rest(selector, &columns[k]);
+    }
+    let single_moments =
+        Moments { count: all.count, sums: [alone(selector, &all.sums)], scatter: [[alone(selector, &own)]] };
+    let other_moments = Moments { count: all.count, sums: rest(selector, &all.sums), scatter };
+
+    let points = Points { texels: &single, subset: None, scale: [alone(selector, &scale)], range: mode.range };
+    let single = points.fit::<BITS>(simd, &single_moments, &[Wide::splat(simd, 1.0)], rounds);
+    let points = Points { texels: &others, subset: None, scale: rest(selector, &scale), range: mode.range };
+    let axis = principal_axis(simd, &other_moments.scatter);
+    let others = points.fit::<BITS>(simd, &other_moments, &axis, rounds);
+    let mut blocks = Blocks::empty(simd, mode);
+    blocks.selector = selector;
+    blocks.place_planes::<N, M>(&single, &others);
+    blocks
+}
+
+/// The `K` subsets of a pattern, ready to be fitted.
+pub(crate) struct Split<S: Simd, const N: usize, const K: usize> {
+    pattern: Wide<S>,
+    masks: [Grid<S>; K],
+    moments: [Moments<S, N>; K],
+    axes: [[Wide<S>; N]; K],
+}
+
+/// 1 for the texels of a subset of a pattern, 0 for the others; `members` has bit i for texel i.
+#[inline(always)]
+fn mask<S: Simd>(simd: S, pattern: Wide<S>, members: impl Fn(usize) -> u16) -> Grid<S> {
+    let pattern: [f32; LANES] = pattern.into();
+    let bits = u32x16::simd_from(simd, pattern.map(|p| u32::from(members(p as usize))));
+    let mut mask = [Wide::splat(simd, 0.0); 16];
+    for (i, member) in mask.iter_mut().enumerate() {
+        *member = Wide::float_from((bits >> i as u32) & 1);
+    }
+    mask
+}
+
+/// The subsets of two-subset patterns.
+#[inline(always)]
+fn halves<S: Simd>(simd: S, pattern: Wide<S>) -> [Grid<S>; 2] {
+    let members = |p: usize| PATTERNS[p % PATTERNS.len()];
+    [mask(simd, pattern, |p| !members(p)), mask(simd, pattern, members)]
+}
+
+/// The subsets of three-subset patterns.
+#[inline(always)]
+fn thirds<S: Simd>(simd: S, pattern: Wide<S>) -> [Grid<S>; 3] {
+    let members = |p: usize| THIRDS[p % THIRDS.len()];
+    [
+        mask(simd, pattern, |p| members(p)[0]),
+        mask(simd, pattern, |p| members(p)[1]),
+        mask(simd, pattern, |p| members(p)[2]),
+    ]
+}
+
+impl<S: Simd> Blocks<S> {
+    /// The subsets of blocks of one mode: 1 for a member, 0 for the rest; none where all texels belong to one.
+    #[inline(always)]
+    pub(crate) fn masks(&self, simd: S) -> Option<[Grid<S>; 3]> {
+        match self.modes[0].subsets {
+            1 => None,
+            2 => {
+                let [zero, one] = halves(simd, self.pattern);
+                Some([zero, one, one])
+            }
+            _ => Some(thirds(simd, self.pattern)),
+        }
+    }
+}
+
+impl<S: Simd, const N: usize> Split<S, N, 2> {
+    /// Split by one of the two-subset patterns.
+    #[inline(always)]
+    pub fn in_two(simd: S, texels: &[Grid<S>; N], pattern: Wide<S>) -> Self {
+        Self::new(simd, texels, pattern, halves(simd, pattern))
+    }
+}
+
+impl<S: Simd, const N: usize> Split<S, N, 3> {
+    /// Split by one of the three-subset patterns.
+    #[inline(always)]
+    pub fn in_three(simd: S, texels: &[Grid<S>; N], pattern: Wide<S>) -> Self {
+        Self::new(simd, texels, pattern, thirds(simd, pattern))
+    }
+
+    /// The `M` three-subset patterns with the least squared error to expect of lines of 2-bit weights.
+    #[inline(always)]
+    pub fn likely_thirds<const M: usize>(simd: S, texels: &[Grid<S>; N]) -> [Wide<S>; M] {
+        let mut least = Least::new(simd);
+        for pattern in 0..THIRDS.len() {
+            let pattern = Wide::splat(simd, pattern as f32);
+            let (off, along) = Self::in_three(simd, texels, pattern).scatter(simd);
+            least.offer(off + along / 12.0, pattern);
+        }
+        least.patterns
+    }
+}
+
+impl<S: Simd, const N: usize, const K: usize> Split<S, N, K> {
+    #[inline(always)]
+    fn new(simd: S, texels: &[Grid<S>; N], pattern: Wide<S>, masks: [Grid<S>; K]) -> Self {
+        let mut parts = [moments(simd, texels, Some(&masks[0])); K];
+        let mut axes = [principal_axis(simd, &parts[0].scatter); K];
+        for k in 1..K {
+            parts[k] = moments(simd, texels, Some(&masks[k]));
+            axes[k] = principal_axis(simd, &parts[k].scatter);
+        }
+        Self { pattern, masks, moments: parts, axes }
+    }
+
+    /// Scatter off the axes of the subsets, which stays as error, and scatter along them.
+    #[inline(always)]
+    pub fn scatter(&self, simd: S) -> (Wide<S>, Wide<S>) {
+        let [mut off, mut along] = [Wide::splat(simd, 0.0); 2];
+        for (m, axis) in self.moments.iter().zip(&self.axes) {
+            let on = scatter_along(simd, &m.scatter, axis);
+            off += trace(&m.scatter) - on;
+            along += on;
+        }
+        (off, along)
+    }
+}
+
+/// Blocks of a line for each subset.
+#[inline(always)]
+pub(crate) fn split_lines<S: Simd, const N: usize, const K: usize, const BITS: u32>(
+    simd: S,
+    texels: &[Grid<S>; N],
+    split: &Split<S, N, K>,
+    scale: &[f32; N],
+    mode: &'static Mode,
+    rounds: usize,
+) -> Blocks<S> {
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            let mut blocks = Blocks::empty(simd, mode);
+            blocks.pattern = split.pattern;
+            let scale = splat(simd, scale);
+            for (subset, mask) in split.masks.iter().enumerate() {
+                let (m, axis) = (&split.moments[subset], &split.axes[subset]);
+                let points = Points { texels, subset: Some(mask), scale, range: mode.range };
+                blocks.place(&points.fit::<BITS>(simd, m, axis, rounds), subset, Some(mask));
+            }
+            blocks
+        },
+    )
+}

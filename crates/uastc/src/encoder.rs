@@ -1,0 +1,104 @@
+//! From texels to blocks.
+
+use fearless_simd::{Level, Simd};
+use rayon::prelude::*;
+use texel_simd::dispatch;
+
+use crate::BLOCK_BYTES;
+use crate::hints::{Hints, solid_etc1};
+use crate::image::{Image, SizeError};
+use crate::lanes::Texels;
+use crate::metric::{Effort, Metric};
+use crate::pack::pack_solid;
+use crate::row::{Row, groups};
+
+/// An encoder of opaque RGB with its settings. Alpha is ignored and decodes as 255.
+///
+/// The bytes that it writes depend on neither the machine, nor its instruction set, nor the number of threads.
+#[derive(Clone, Copy, Debug)]
+pub struct Encoder {
+    metric: Metric,
+    effort: Effort,
+    pub(crate) instructions: Level,
+}
+
+impl Encoder {
+    /// Makes an encoder that uses the vectors of this machine's processor.
+    pub fn new(metric: Metric, effort: Effort) -> Self {
+        Self { metric, effort, instructions: Level::new() }
+    }
+
+    /// Encodes `image`, rows of blocks in parallel on the threads of the current rayon pool.
+    ///
+    /// The blocks come row by row, `width.div_ceil(4)` of them in each of `height.div_ceil(4)` rows. Blocks that reach
+    /// beyond the image repeat its last column and row there.
+    pub fn encode(&self, image: &Image<'_>) -> Vec<[u8; BLOCK_BYTES]> {
+        let columns = image.columns();
+        let mut blocks = vec![[0; BLOCK_BYTES]; columns * image.rows()];
+        blocks.par_chunks_exact_mut(columns).enumerate().for_each(|(row, blocks)| {
+            self.encode_row(std::array::from_fn(|y| image.line(4 * row + y)), blocks);
+        });
+        blocks
+    }
+
+    /// Encodes four rows of RGBA8 texels to one row of blocks, on this thread: for images that are never in memory as a
+    /// whole.
+    ///
+    /// The last texel of a row is repeated where its length is not a multiple of 4. Pass the last row of an image again
+    /// where its height is not a multiple of 4.
+    ///
+    /// # Errors [`SizeError::Rows`] if the rows are empty or differ in length, and [`SizeError::Blocks`] if `blocks`
+    /// does not have one block for every four texels of a row, rounded up.
+    pub fn encode_rows(&self, rows: [&[[u8; 4]]; 4], blocks: &mut [[u8; BLOCK_BYTES]]) -> Result<(), SizeError> {
+        let widths = rows.map(<[_]>::len);
+        if widths != [widths[0]; 4] || widths[0] == 0 {
+            return Err(SizeError::Rows { widths });
+        }
+        let (expected, found) = (widths[0].div_ceil(4), blocks.len());
+        if expected != found {
+            return Err(SizeError::Blocks { expected, found });
+        }
+        self.encode_row(rows, blocks);
+        Ok(())
+    }
+
+    /// Encodes four rows of equal length. The search is compiled here, once for each instruction set.
+    fn encode_row(&self, rows: [&[[u8; 4]]; 4], blocks: &mut [[u8; BLOCK_BYTES]]) {
+        let texels = (0..blocks.len()).map(|column| gather(rows, column * 4)).collect();
+        dispatch!(self.instructions, simd => search_row(simd, texels, self.metric, self.effort, blocks));
+    }
+}
+
+/// Returns the block at column `left` of four rows of texels, opaque; the last texel of a row is repeated.
+fn gather(rows: [&[[u8; 4]]; 4], left: usize) -> Texels {
+    let mut texels = Texels::default();
+    for (four, row) in texels.as_chunks_mut::<4>().0.iter_mut().zip(rows) {
+        match row.get(left..).and_then(<[_]>::first_chunk) {
+            Some(found) => *four = *found,
+            None => *four = std::array::from_fn(|x| row[(left + x).min(row.len() - 1)]),
+        }
+    }
+    texels.iter_mut().for_each(|texel| texel[3] = 255);
+    texels
+}
+
+/// Encodes the blocks of a row. The order of operations, and so the bytes, are the same in every instruction set.
+#[inline(always)]
+fn search_row<S: Simd>(simd: S, texels: Vec<Texels>, metric: Metric, effort: Effort, out: &mut [[u8; BLOCK_BYTES]]) {
+    let mut varying = Vec::with_capacity(out.len());
+    for (k, texels) in texels.iter().enumerate() {
+        if texels.iter().all(|texel| *texel == texels[0]) {
+            out[k] = pack_solid(texels[0], solid_etc1(texels[0]));
+        } else {
+            varying.push(k);
+        }
+    }
+    let mut row = Row::new(texels);
+    row.search(simd, &varying, metric, effort);
+    for (group, at) in groups(&varying) {
+        let hints = Hints::of_lanes(simd, at.map(|k| &row.texels[k]), at.map(|k| row.blocks[k].mode));
+        for (&k, hints) in group.iter().zip(&hints) {
+            out[k] = row.blocks[k].clone().pack(hints);
+        }
+    }
+}

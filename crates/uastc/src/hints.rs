@@ -1,0 +1,291 @@
+//! Transcoding hints: what the block says to whoever turns it into ETC1, ETC2 or BC1.
+//!
+//! A transcoder accepts any value here; good values keep its quick paths close to the source.
+//! Source: "UASTC LDR 4x4 Texture Specification", sections "ETC1 hints", "ETC2 hints" and "BC1
+//! hints". The hints are taken from the source texels, whose averages the decoded ones share up
+//! to rounding.
+
+use fearless_simd::Simd;
+
+use crate::lanes::{Texels, channels};
+use crate::line::round;
+use crate::pack::{Bits, SolidEtc1};
+use crate::tables::Mode;
+use texel_simd::{LANES, Real};
+
+/// ETC1 intensity tables: the smaller and the larger offset, of either sign.
+pub(crate) const ETC1_OFFSETS: [[i32; 2]; 8] =
+    [[2, 8], [5, 17], [9, 29], [13, 42], [18, 60], [24, 80], [33, 106], [47, 183]];
+
+/// The EAC hint of blocks whose alpha is 255 throughout, in modes that store alpha: table 11 (its offsets are evenly
+/// spread) in the low four bits, and the least multiplier.
+const OPAQUE_EAC: u64 = 0x1b;
+
+/// Hints of a block that is not solid.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Hints {
+    /// The weights of the block make good BC1 selectors.
+    pub bc1_selectors: bool,
+    /// ETC1 subblocks lie on top of each other (else side by side).
+    pub flip: bool,
+    /// ETC1 bases are one 5-bit colour and a difference (else two 4-bit colours).
+    pub differential: bool,
+    /// ETC1 intensity table per subblock.
+    pub tables: [u8; 2],
+    /// How the ETC1 bases depart from the rounded averages.
+    pub bias: u8,
+}
+
+impl Hints {
+    /// Appends the fields that `mode` has.
+    #[inline(always)]
+    pub fn write(&self, mode: &Mode, out: &mut Bits) {
+        // BC1 hint 0 (endpoints rounded to 5:6:5 as they are) is never better than fitting them.
+        out.push(0, 1);
+        if mode.full_hints {
+            out.push(self.bc1_selectors.into(), 1);
+        }
+        let tables = u64::from(self.tables[0]) << 2 | u64::from(self.tables[1]) << 5;
+        out.push(u64::from(self.flip) | u64::from(self.differential) << 1 | tables, 8);
+        if mode.full_hints {
+            out.push(self.bias.into(), 5);
+        }
+        if mode.has_alpha() {
+            out.push(OPAQUE_EAC, 8);
+        }
+    }
+
+    /// Returns the fields as they stand in a block of `mode`, after its code.
+    pub fn bits(&self, mode: &Mode) -> u128 {
+        let mut out = Bits::default();
+        self.write(mode, &mut out);
+        out.get()
+    }
+
+    /// Chooses the hints for a block of `mode` that is made from `texels`.
+    pub fn of(texels: &Texels, mode: &Mode) -> Self {
+        let level = |c: usize| texels.map(|texel| f32::from(texel[c]));
+        Self::new(etc1(&[level(0), level(1), level(2)]), mode)
+    }
+
+    /// Chooses the hints of one block in each lane.
+    #[inline(always)]
+    pub fn of_lanes<S: Simd>(simd: S, texels: [&Texels; LANES], modes: [&Mode; LANES]) -> [Self; LANES] {
+        let mut fields = [[0.0; LANES]; 5];
+        for (lanes, field) in fields.iter_mut().zip(etc1(&channels(simd, texels))) {
+            *lanes = field.into();
+        }
+        std::array::from_fn(|j| Self::new(fields.map(|field| field[j]), modes[j]))
+    }
+
+    #[inline(always)]
+    fn new([flip, differential, state, first, second]: [f32; 5], mode: &Mode) -> Self {
+        Self {
+            bc1_selectors: mode.subsets == 1 && mode.planes == 1,
+            flip: flip > 0.0,
+            differential: differential > 0.0,
+            tables: [first as u8, second as u8],
+            bias: LEAST_BIAS[state as usize],
+        }
+    }
+}
+
+/// The fields of [`Hints`] on ETC1, of one block or of several side by side: flip, differential, the index into
+/// [`LEAST_BIAS`] and both tables. All sums are whole numbers that floats hold.
+#[inline(always)]
+fn etc1<F: Real>(levels: &[[F; 16]; 3]) -> [F; 5] {
+    let (zero, one) = (levels[0][0].like(0.0), levels[0][0].like(1.0));
+    // Sums over the 2x2 quadrants, row 0 first.
+    let mut quadrants = [[zero; 3]; 4];
+    for (quadrant, first) in quadrants.iter_mut().zip([0, 2, 8, 10]) {
+        for (sum, level) in quadrant.iter_mut().zip(levels) {
+            *sum = (level[first] + level[first + 1]) + (level[first + 4] + level[first + 5]);
+        }
+    }
+    let side = [add(quadrants[0], quadrants[2]), add(quadrants[1], quadrants[3])];
+    let stacked = [add(quadrants[0], quadrants[1]), add(quadrants[2], quadrants[3])];
+    // The split whose halves differ more leaves less variance inside them.
+    let is_side = distance(stacked).at_most(distance(side));
+    let mut sums = side;
+    for (half, stacked) in sums.iter_mut().zip(stacked) {
+        for (sum, stacked) in half.iter_mut().zip(stacked) {
+            *sum = sum.or(stacked, is_side);
+        }
+    }
+    let (five, four) = (bases(&sums, 31.0), bases(&sums, 15.0));
+    let mut is_near = one.at_most(one);
+    for c in 0..3 {
+        let difference = five[c + 3] - five[c];
+        is_near = is_near & difference.at_most(zero.like(3.0)) & zero.like(-4.0).at_most(difference);
+    }
+    let mut state = zero;
+    for (five, four) in five.into_iter().zip(four).rev() {
+        // A digit to base 3: at 0, inside or at the limit.
+        let base = five.or(four, is_near);
+        let limit = zero.like(31.0).or(zero.like(15.0), is_near);
+        state = state * zero.like(3.0) + zero.or(one, base.is_zero()) + one.or(zero, limit.at_most(base));
+    }
+    let [first, second] = intensity_tables(levels, &sums, is_side);
+    [zero.or(one, is_side), one.or(zero, is_near), state, first, second]
+}
+
+#[inline(always)]
+fn add<F: Real>(a: [F; 3], b: [F; 3]) -> [F; 3] {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+#[inline(always)]
+fn distance<F: Real>([a, b]: [[F; 3]; 2]) -> F {
+    let [x, y, z] = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+    x * x + y * y + z * z
+}
+
+/// The nearest of 0..=`limit` to the means of both halves.
+#[inline(always)]
+fn bases<F: Real>(sums: &[[F; 3]; 2], limit: f32) -> [F; 6] {
+    let zero = sums[0][0].like(0.0);
+    let mut bases = [zero; 6];
+    for (base, sum) in bases.iter_mut().zip(sums.as_flattened()) {
+        // Its floor: fractions are multiples of 1/2040.
+        let exact = (*sum * zero.like(limit) + zero.like(1020.0)) / zero.like(2040.0);
+        *base = round(exact - zero.like(0.5 - 1.0 / 4096.0));
+    }
+    bases
+}
+
+/// Luma weights of the transcoder's choice of selectors, in 1/256.
+#[inline(always)]
+fn luma<F: Real>([r, g, b]: [F; 3]) -> F {
+    r * r.like(54.0) + g * r.like(183.0) + b * r.like(19.0)
+}
+
+/// The intensity table of each half, from its largest departure in luma.
+#[inline(always)]
+fn intensity_tables<F: Real>(levels: &[[F; 16]; 3], sums: &[[F; 3]; 2], is_side: F::Mask) -> [F; 2] {
+    let zero = levels[0][0].like(0.0);
+    // Their floors: fractions are eighths.
+    let means = [
+        round(luma(sums[0]) * zero.like(0.125) - zero.like(0.4375)),
+        round(luma(sums[1]) * zero.like(0.125) - zero.like(0.4375)),
+    ];
+    // The second quadrant is of the second half where halves stand side by side, the third where one is above the
+    // other.
+    let of_quadrants = [means[0], means[1].or(means[0], is_side), means[0].or(means[1], is_side), means[1]];
+    let mut reach = [zero; 4];
+    for ((reach, mean), first) in reach.iter_mut().zip(of_quadrants).zip([0, 2, 8, 10]) {
+        for i in [first, first + 1, first + 4, first + 5] {
+            let departure = luma([levels[0][i], levels[1][i], levels[2][i]]) - mean;
+            *reach = reach.max(departure.max(zero - departure));
+        }
+    }
+    let first = reach[0].max(reach[2].or(reach[1], is_side));
+    let second = reach[3].max(reach[1].or(reach[2], is_side));
+    // 9/16 of the reach: full reach loses 1.5 dB of ETC1 on normals and gains 0.1 on ORM maps.
+    [table_for(first * zero.like(9.0 / 4096.0)), table_for(second * zero.like(9.0 / 4096.0))]
+}
+
+/// The table whose larger offset suits departures up to `reach`.
+#[inline(always)]
+fn table_for<F: Real>(reach: F) -> F {
+    // The least whole numbers beyond half way between the larger offsets of neighbouring tables.
+    const LIMITS: [f32; 7] = [13.0, 24.0, 36.0, 52.0, 71.0, 94.0, 145.0];
+    let (zero, one) = (reach.like(0.0), reach.like(1.0));
+    let mut table = zero;
+    for limit in LIMITS {
+        table = table + one.or(zero, zero.like(limit).at_most(reach));
+    }
+    table
+}
+
+/// Departure of each ETC1 base (first subblock's RGB, then the second's) under each bias.
+const BIASES: [[i8; 6]; 32] = biases();
+
+const fn biases() -> [[i8; 6]; 32] {
+    let mut all = [[0; 6]; 32];
+    // As a rule the digits of the bias to base 3, less 1, hold for both subblocks.
+    let mut bias = 0;
+    while bias < 32 {
+        let digits = [(bias % 3) as i8 - 1, (bias / 3 % 3) as i8 - 1, (bias / 9 % 3) as i8 - 1];
+        all[bias] = [digits[0], digits[1], digits[2], digits[0], digits[1], digits[2]];
+        bias += 1;
+    }
+    // These move one channel of one subblock.
+    let down = [2, 5, 6, 18, 19, 20];
+    let up = [7, 11, 15, 21, 24, 8];
+    let mut at = 0;
+    while at < 6 {
+        all[down[at]] = [0; 6];
+        all[down[at]][at] = -1;
+        all[up[at]] = [0; 6];
+        all[up[at]][at] = 1;
+        at += 1;
+    }
+    // These move all channels of one subblock or of both.
+    all[10] = [-2; 6];
+    all[27] = [-1, -1, -1, 0, 0, 0];
+    all[28] = [1, 1, 1, -1, -1, -1];
+    all[29] = [0, 0, 0, 1, 1, 1];
+    all[30] = [0, 0, 0, -1, -1, -1];
+    all[31] = [1, 1, 1, 0, 0, 0];
+    all
+}
+
+/// For every combination of bases at 0 (digit 0 to base 3), inside (1) and at the limit (2), the
+/// bias that moves them least: departures are shifted inwards at both ends.
+pub(crate) static LEAST_BIAS: [u8; 729] = least_biases();
+
+const fn least_biases() -> [u8; 729] {
+    let mut table = [0; 729];
+    let mut state = 0;
+    while state < 729 {
+        let mut best = i32::MAX;
+        let mut bias = 0;
+        while bias < 32 {
+            let mut moved = 0;
+            let mut at = 0;
+            let mut rest = state;
+            while at < 6 {
+                let delta = BIASES[bias][at] as i32;
+                moved += match rest % 3 {
+                    0 if delta == -2 => 3,
+                    0 => (delta + 1).abs(),
+                    1 => delta.abs(),
+                    _ => (delta - 1).abs(),
+                };
+                rest /= 3;
+                at += 1;
+            }
+            if moved < best {
+                best = moved;
+                table[state] = bias as u8;
+            }
+            bias += 1;
+        }
+        state += 1;
+    }
+    table
+}
+
+/// The ETC1 block nearest to one colour, among those with 5-bit bases and the two gentlest tables.
+pub(crate) fn solid_etc1(colour: [u8; 4]) -> SolidEtc1 {
+    let mut best = SolidEtc1 { five_bits: true, table: 0, selector: 0, base: [0; 3] };
+    let mut least = i32::MAX;
+    for (table, [small, large]) in ETC1_OFFSETS[..2].iter().enumerate() {
+        for (selector, offset) in [-large, -small, *small, *large].into_iter().enumerate() {
+            let mut base = [0; 3];
+            let mut error = 0;
+            for c in 0..3 {
+                let target = i32::from(colour[c]);
+                let nearest = ((target - offset).clamp(0, 255) * 31 + 127) / 255;
+                base[c] = nearest as u8;
+                let decoded = ((nearest << 3 | nearest >> 2) + offset).clamp(0, 255);
+                error += (decoded - target).pow(2);
+            }
+            if error < least {
+                least = error;
+                best = SolidEtc1 { five_bits: true, table: table as u8, selector: selector as u8, base };
+            }
+        }
+    }
+    best
+}

@@ -1,0 +1,99 @@
+//! Images whose size fits their texels.
+
+use crate::BLOCK_BYTES;
+use crate::lanes::Texels;
+
+/// A borrowed image of RGBA8 texels, row 0 first, without padding between rows. It has at least one texel.
+#[derive(Clone, Copy, Debug)]
+pub struct Image<'a> {
+    texels: &'a [[u8; 4]],
+    width: usize,
+    height: usize,
+}
+
+/// Lengths that do not fit each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SizeError {
+    /// The bytes are not those of an image of that size.
+    #[error(
+        "expected 4 bytes for each of {width} x {height} texels and at least one texel, found {bytes} bytes; \
+         pass RGBA8 without padding"
+    )]
+    Texels {
+        /// Columns of the image.
+        width: u32,
+        /// Rows of the image.
+        height: u32,
+        /// The length of the slice.
+        bytes: usize,
+    },
+    /// The blocks are not as many as the image has.
+    #[error("expected {expected} blocks of 4 x 4 texels, found {found}; pass the blocks of the same image")]
+    Blocks {
+        /// How many blocks the texels make.
+        expected: usize,
+        /// How many blocks were passed.
+        found: usize,
+    },
+    /// The four rows of a row of blocks do not have the same length, or are empty.
+    #[error(
+        "expected four rows of the same length above 0, found rows of {widths:?} texels; \
+         repeat the last row of an image"
+    )]
+    Rows {
+        /// Texels of each row.
+        widths: [usize; 4],
+    },
+}
+
+impl<'a> Image<'a> {
+    /// Takes `rgba` for an image of `width` by `height` texels of four bytes.
+    ///
+    /// # Errors
+    /// [`SizeError::Texels`] if `rgba` does not have `4 * width * height` bytes, or none at all.
+    pub fn new(rgba: &'a [u8], width: u32, height: u32) -> Result<Self, SizeError> {
+        let (texels, rest) = rgba.as_chunks::<4>();
+        let fits = rest.is_empty() && u64::from(width) * u64::from(height) == texels.len() as u64;
+        if !fits || texels.is_empty() {
+            return Err(SizeError::Texels { width, height, bytes: rgba.len() });
+        }
+        Ok(Self { texels, width: width as usize, height: height as usize })
+    }
+
+    /// Returns how many blocks stand side by side.
+    pub(crate) fn columns(&self) -> usize {
+        self.width.div_ceil(4)
+    }
+
+    /// Returns how many rows of blocks there are.
+    pub(crate) fn rows(&self) -> usize {
+        self.height.div_ceil(4)
+    }
+
+    /// Checks that `blocks` are as many as the image has.
+    pub(crate) fn check(&self, blocks: &[[u8; BLOCK_BYTES]]) -> Result<(), SizeError> {
+        let (expected, found) = (self.columns() * self.rows(), blocks.len());
+        if expected == found { Ok(()) } else { Err(SizeError::Blocks { expected, found }) }
+    }
+
+    /// Returns row `y` of texels; rows beyond the image repeat the last one.
+    pub(crate) fn line(&self, y: usize) -> &'a [[u8; 4]] {
+        let at = y.min(self.height - 1) * self.width;
+        &self.texels[at..at + self.width]
+    }
+
+    /// Returns the texels of the block at index `at`; texels beyond the image repeat the last column and row.
+    pub(crate) fn block(&self, at: usize) -> Texels {
+        let (left, top) = (at % self.columns() * 4, at / self.columns() * 4);
+        std::array::from_fn(|i| {
+            let (x, y) = ((left + i % 4).min(self.width - 1), (top + i / 4).min(self.height - 1));
+            self.texels[y * self.width + x]
+        })
+    }
+
+    /// Returns whether texel `i` of the block at index `at` lies inside the image.
+    pub(crate) fn contains(&self, at: usize, i: usize) -> bool {
+        at % self.columns() * 4 + i % 4 < self.width && at / self.columns() * 4 + i / 4 < self.height
+    }
+}
