@@ -254,10 +254,6 @@ impl<'a> Assembly<'a> {
 
     fn finish(mut self) -> Result<Baked, BakeError> {
         let json = self.document.json_mut();
-        if self.settings.provenance && !self.textures.is_empty() {
-            let told: BTreeSet<PathBuf> = self.told.iter().filter_map(|location| file(location)).collect();
-            DocumentProvenance::new(self.reader, |path| told.contains(path))?.write(json)?;
-        }
         // First, so that textures of the material's own lobe count as needed.
         for pyramid in &self.pyramids {
             if let Some(unfolded) = &pyramid.unfolded {
@@ -308,6 +304,11 @@ impl<'a> Assembly<'a> {
         if let Some(NewFile { path, bytes }) = self.bin {
             let bytes = compact(self.document.json_mut(), source.document.json(), bytes)?;
             self.files.extend(bytes.map(|bytes| NewFile { path, bytes }));
+        }
+        if self.settings.provenance && !self.textures.is_empty() {
+            let told: BTreeSet<PathBuf> = self.told.iter().filter_map(|location| file(location)).collect();
+            let provenance = DocumentProvenance::new(self.reader, &self.files, |path| told.contains(path))?;
+            provenance.write(self.document.json_mut())?;
         }
         let mut copies = container::files(self.document.json())?;
         let made: HashSet<&Path> = self.files.iter().map(|file| file.path.as_path()).collect();

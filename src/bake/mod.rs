@@ -39,7 +39,9 @@ pub use extension::EXTENSION;
 pub use job::JobError;
 pub use png::encode_png;
 pub use provenance::DocumentProvenance;
-pub use publish::{Places, PublishError, UNFINISHED, claim, publish, write_file, write_unsynced};
+pub use publish::{
+    Places, PublishError, UNFINISHED, case_folded, claim, copy_file, sweep, write_file, write_unsynced,
+};
 pub use pyramids::Range;
 pub use relief::Relief;
 pub use settings::{Form, Model, Profile, Settings};

@@ -3,14 +3,15 @@
 use std::ffi::OsStr;
 use std::path::Path;
 
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::asset::BakeError;
+use super::asset::{BakeError, NewFile};
 use super::container;
 use super::reader::Reader;
 use crate::digest::{Digest, digest};
-use crate::gltf::document::Document;
+use crate::gltf::document::{Container, Document};
 use crate::gltf::json::Json;
 use crate::gltf::uri::encode_path;
 use crate::texture::ktx2::SourceDigest;
@@ -20,32 +21,50 @@ use crate::texture::ktx2::SourceDigest;
 pub struct DocumentProvenance {
     /// Of the tool.
     pub version: String,
+    /// File name of the source document. Its extension says which kind of document it is. Early versions recorded none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub source: Option<String>,
     /// The digest of the source document.
     pub document: Digest,
     /// Buffers and images that it names and that were taken over as they are.
     pub files: Vec<SourceDigest>,
+    /// New files beside the document.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub outputs: Vec<SourceDigest>,
 }
 
 impl DocumentProvenance {
     /// Where it stands: glTF keeps `extras` for applications, and engines pass over them.
     pub const PLACE: &str = "/asset/extras/roughcast";
 
-    /// Records what is baked from the source of `reader`, without the files that `is_told` says textures tell of.
+    /// Records what is baked from the source of `reader` and the new files `outputs`, without the source files that `is_told`
+    /// says textures tell of.
     ///
     /// # Errors
     /// [`BakeError`] where the document cannot be written. Files that cannot be read are left out.
-    pub fn new(reader: &Reader<'_>, is_told: impl Fn(&Path) -> bool) -> Result<Self, BakeError> {
+    pub fn new(reader: &Reader<'_>, outputs: &[NewFile], is_told: impl Fn(&Path) -> bool) -> Result<Self, BakeError> {
+        let source = reader.source;
         let mut files = Vec::new();
-        for path in container::files(reader.source.document.json())? {
+        for path in container::files(source.document.json())? {
             if !is_told(&path)
                 && let Some(blake3) = reader.digest(&path)
             {
-                let names: Vec<_> = path.iter().map(OsStr::to_string_lossy).collect();
-                files.push(SourceDigest { uri: encode_path(&names.join("/")), blake3 });
+                files.push(SourceDigest { uri: uri(&path), blake3 });
             }
         }
-        let document = digest(&reader.source.document.to_bytes()?);
-        Ok(Self { version: env!("CARGO_PKG_VERSION").to_owned(), document, files })
+        let outputs = outputs.par_iter().map(|file| SourceDigest { uri: uri(&file.path), blake3: digest(&file.bytes) });
+        Ok(Self {
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            source: Some(Self::source_name(source.stem, source.document.container())),
+            document: digest(&source.document.to_bytes()?),
+            files,
+            outputs: outputs.collect(),
+        })
+    }
+
+    /// Returns the name by which a source document is recorded: its kind goes by its content.
+    pub fn source_name(stem: &str, container: Container) -> String {
+        format!("{stem}.{}", if container == Container::Glb { "glb" } else { "gltf" })
     }
 
     /// Writes it into `json`, unless somebody else's `extras` leave no place for it.
@@ -64,4 +83,10 @@ impl DocumentProvenance {
         let value: Value = document.json().value(Self::PLACE).ok()??;
         serde_json::from_value(value).ok()
     }
+}
+
+/// Returns the URI of a file beside the document.
+fn uri(path: &Path) -> String {
+    let names: Vec<_> = path.iter().map(OsStr::to_string_lossy).collect();
+    encode_path(&names.join("/"))
 }

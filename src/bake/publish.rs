@@ -2,15 +2,14 @@
 
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeSet, HashMap};
+use std::ffi::OsString;
 use std::fs::{self, File};
-use std::io::{self, Write};
+use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use rayon::prelude::*;
-
-use super::asset::Baked;
-use crate::input_file::{check_file, read_file};
+use crate::digest::Digest;
+use crate::input_file::{check_file, open_file};
 
 /// Why a file cannot be written.
 #[derive(Debug, thiserror::Error)]
@@ -43,6 +42,18 @@ pub enum PublishError {
         /// The file that was copied there before.
         other: PathBuf,
     },
+    /// Two outputs whose names differ in case only.
+    #[error(
+        "expected names that differ in more than case, found {} and {}, which are one file on Windows and macOS; rename one of \
+         them, or bake them into different folders",
+        path.display(), other.display()
+    )]
+    SameName {
+        /// The later output.
+        path: PathBuf,
+        /// The earlier one.
+        other: PathBuf,
+    },
     /// An output would take the place of an input.
     #[error("expected an output folder apart from the sources, found that {} is a source; choose another with -o", path.display())]
     OverSource {
@@ -51,26 +62,38 @@ pub enum PublishError {
     },
 }
 
-impl PublishError {
-    /// The system's error, if there is one.
-    pub fn io(&self) -> Option<&io::Error> {
-        match self {
-            Self::Write { error, .. } | Self::Copy { error, .. } => Some(error),
-            Self::OverSource { .. } | Self::SamePlace { .. } => None,
-        }
-    }
-}
-
 /// Where the outputs of a run are.
 #[derive(Debug, Default)]
 pub struct Places {
-    /// Each output with the source that it is a copy of, or with itself.
-    taken: HashMap<PathBuf, PathBuf>,
+    /// Each output by its path in lower case.
+    taken: HashMap<PathBuf, Taken>,
     /// Folders without links and dots.
     folders: HashMap<PathBuf, PathBuf>,
 }
 
+/// An output of a run.
+#[derive(Debug)]
+struct Taken {
+    /// Where it is.
+    path: PathBuf,
+    /// The source that it is a copy of, or itself.
+    source: PathBuf,
+}
+
+/// Returns `path` in lower case, by which file systems that ignore case know it. Names that are not UTF-8 stay as they are,
+/// and letters that Unicode writes in two ways (NFC and NFD) stay two.
+pub fn case_folded(path: &Path) -> PathBuf {
+    let folded =
+        |name: &std::ffi::OsStr| name.to_str().map_or_else(|| name.to_owned(), |name| name.to_lowercase().into());
+    path.components().map(|part| -> OsString { folded(part.as_os_str()) }).collect()
+}
+
 impl Places {
+    /// Returns whether an output of this run is at `path`, or would be on a file system that ignores case.
+    pub fn is_taken(&self, path: &Path) -> bool {
+        self.taken.contains_key(&case_folded(path))
+    }
+
     /// Keeps `path` for a copy of `source`, or for the output itself, which is there from an earlier run; whether it is free.
     pub fn hold(&mut self, path: &Path, source: &Path) -> bool {
         self.take(path, source.to_owned()).is_ok()
@@ -78,13 +101,18 @@ impl Places {
 
     /// Takes a place for a copy of `source`, or for the output itself.
     fn take(&mut self, path: &Path, source: PathBuf) -> Result<(), PublishError> {
-        match self.taken.entry(path.to_owned()) {
-            Entry::Occupied(taken) if !is_same_file(taken.get(), &source) => {
-                Err(PublishError::SamePlace { path: path.to_owned(), other: taken.get().clone() })
+        match self.taken.entry(case_folded(path)) {
+            Entry::Occupied(taken) if !is_same_file(&taken.get().source, &source) => {
+                let (path, taken) = (path.to_owned(), taken.get());
+                Err(if taken.path == path {
+                    PublishError::SamePlace { path, other: taken.source.clone() }
+                } else {
+                    PublishError::SameName { path, other: taken.path.clone() }
+                })
             }
             Entry::Occupied(_) => Ok(()),
             Entry::Vacant(free) => {
-                free.insert(source);
+                free.insert(Taken { path: path.to_owned(), source });
                 Ok(())
             }
         }
@@ -153,51 +181,62 @@ pub fn claim(
     Ok(())
 }
 
-/// Writes `baked` to `document`, and its files beside it. Files that it only refers to are copied from the folder of
-/// `source`. The document comes last: whoever sees it sees everything that it names.
-///
-/// # Errors
-/// [`PublishError`]; `source` is never overwritten, nor any file that is copied: see [`claim`].
-pub fn publish(baked: &Baked, document: &Path, source: &Path, places: &mut Places) -> Result<(), PublishError> {
-    let files: Vec<&Path> = baked.files.iter().map(|file| file.path.as_path()).collect();
-    claim(&files, &baked.copies, document, source, places)?;
-    let source_folder = source.parent().unwrap_or(Path::new(""));
-    let folder = document.parent().unwrap_or(Path::new(""));
-    let below: BTreeSet<&Path> = files.iter().filter_map(|file| file.parent()).chain([Path::new("")]).collect();
-    below.iter().for_each(|below| sweep(&Path::new(".").join(folder).join(below)));
-    for copy in &baked.copies {
-        let path = source_folder.join(copy);
-        let bytes = read_file(&path).map_err(|error| PublishError::Copy { path, error })?;
-        write_file(&folder.join(copy), &bytes)?;
-    }
-    // Each waits for its own disk blocks. Of all failures the first file's is told.
-    let written: Vec<_> =
-        baked.files.par_iter().map(|file| write_file(&folder.join(&file.path), &file.bytes)).collect();
-    written.into_iter().collect::<Result<(), _>>()?;
-    write_file(document, &baked.document)
-}
-
 /// Writes a file whole or not at all, making its folder.
 ///
 /// # Errors
 /// [`PublishError::Write`].
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), PublishError> {
-    put(path, bytes, true).map_err(|error| PublishError::Write { path: path.to_owned(), error })
+    let written = put(path, true, |file| file.write_all(bytes).map(|()| true));
+    written.map_err(|error| PublishError::Write { path: path.to_owned(), error })
 }
+
+/// Copies `from` to `to`, whole or not at all, if the BLAKE3 of its bytes in hex is `blake3`; returns whether it is. The file
+/// is read once, and hashed on the way.
+///
+/// # Errors
+/// [`PublishError::Copy`] and [`PublishError::Write`].
+pub fn copy_file(from: &Path, to: &Path, blake3: Digest) -> Result<bool, PublishError> {
+    let unreadable = |error| PublishError::Copy { path: from.to_owned(), error };
+    let (mut source, _) = open_file(from).map_err(unreadable)?;
+    let mut is_expected = Ok(false);
+    let written = put(to, true, |file| {
+        let (mut hasher, mut block) = (blake3::Hasher::new(), vec![0; COPIED_AT_ONCE]);
+        is_expected = loop {
+            match source.read(&mut block) {
+                Ok(0) => break Ok(Digest::from(hasher.finalize()) == blake3),
+                Ok(length) => {
+                    hasher.update(&block[..length]);
+                    file.write_all(&block[..length])?;
+                }
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                Err(error) => break Err(error),
+            }
+        };
+        Ok(matches!(is_expected, Ok(true)))
+    });
+    written.map_err(|error| PublishError::Write { path: to.to_owned(), error })?;
+    is_expected.map_err(unreadable)
+}
+
+/// Bytes of a copy that are in memory at a time.
+const COPIED_AT_ONCE: usize = 256 << 10;
 
 /// The same for what is verified when it is read: it need not survive the machine.
 ///
 /// # Errors
 /// The system's.
 pub fn write_unsynced(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    put(path, bytes, false)
+    put(path, false, |file| file.write_all(bytes).map(|()| true))
 }
 
-fn put(path: &Path, bytes: &[u8], is_synced: bool) -> io::Result<()> {
+/// Lets `fill` write a file beside `path`, and renames it into place if `fill` says so.
+fn put(path: &Path, is_synced: bool, fill: impl FnOnce(&mut File) -> io::Result<bool>) -> io::Result<()> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     fs::create_dir_all(folder)?;
     let mut file = tempfile::Builder::new().prefix(UNFINISHED).tempfile_in(folder)?;
-    file.write_all(bytes)?;
+    if !fill(file.as_file_mut())? {
+        return Ok(());
+    }
     if is_synced {
         file.as_file().sync_all()?;
     }
@@ -213,7 +252,7 @@ pub const UNFINISHED: &str = ".roughcast-";
 const UNFINISHED_AGE: Duration = Duration::from_secs(3600);
 
 /// Removes what bakes left in `folder` that were killed while they wrote.
-fn sweep(folder: &Path) {
+pub fn sweep(folder: &Path) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let is_unfinished = entry.file_name().as_encoded_bytes().starts_with(UNFINISHED.as_bytes());
         let modified = || entry.metadata().and_then(|facts| facts.modified()).ok();

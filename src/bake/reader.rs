@@ -80,6 +80,14 @@ impl<'a> Reader<'a> {
                     // A file that an earlier buffer did not need to keep is read a second time.
                     Some((length, bytes)) if bytes.is_some() || !is_needed => (*length, bytes.clone()),
                     _ => {
+                        let length = source.files.length(&path);
+                        if let Some(length) = length.ok().filter(|_| !is_needed).and_then(|l| usize::try_from(l).ok())
+                            && length >= buffer.byte_length
+                        {
+                            files.insert(path, (length, None));
+                            reader.buffers.push(Bytes::Unneeded);
+                            continue;
+                        }
                         let bytes = reader.read(&path)?;
                         if let Some(found) = Foreign::detect(&bytes).filter(|_| bytes.len() < buffer.byte_length) {
                             return Err(SourceError::Foreign { path, found });
@@ -160,11 +168,7 @@ impl<'a> Reader<'a> {
 
     /// BLAKE3, in hexadecimal, of a file that the document names; `None` where it cannot be read.
     pub fn digest(&self, path: &Path) -> Option<Digest> {
-        self.digests.get(path).copied().or_else(|| {
-            let digest = digest(&self.source.files.read_to_hash(path).ok()?);
-            self.source.files.hashed(path, digest);
-            Some(digest)
-        })
+        self.digests.get(path).copied().or_else(|| self.source.files.digest(path).ok())
     }
 }
 

@@ -3,7 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::digest::Digest;
+use crate::digest::{Digest, digest};
 use crate::foreign::Foreign;
 use crate::gltf::document::{Document, DocumentError};
 use crate::gltf::texture::ImageLocation;
@@ -17,7 +17,23 @@ pub trait Files: Sync {
     /// Those of the file system.
     fn read(&self, path: &Path) -> io::Result<Vec<u8>>;
 
-    /// The same for a caller who hashes what is read beside other work, and then tells [`Self::hashed`]: nothing is hashed twice.
+    /// Returns the digest of a file for a caller who does not need its bytes.
+    ///
+    /// # Errors
+    /// Those of the file system.
+    fn digest(&self, path: &Path) -> io::Result<Digest> {
+        self.read(path).map(|bytes| digest(&bytes))
+    }
+
+    /// Returns the length of a file in bytes, for a caller who does not need more of it.
+    ///
+    /// # Errors
+    /// Those of the file system.
+    fn length(&self, path: &Path) -> io::Result<u64> {
+        self.read(path).map(|bytes| bytes.len() as u64)
+    }
+
+    /// Reads a file for a caller who hashes it beside other work, and then tells [`Self::hashed`]: nothing is hashed twice.
     ///
     /// # Errors
     /// Those of the file system.

@@ -10,6 +10,7 @@ use super::Outcome;
 use super::cached::CacheOptions;
 use super::depfile::depfile;
 use super::jobs::{self, JobOptions};
+use super::output_lock::{Kind, OutputLock};
 use super::remote::RemoteOptions;
 use super::report::{Asset, Report, Status};
 use super::selection::Selection;
@@ -64,6 +65,8 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
         Err(reason) => return usage(err, &reason),
     };
     let mut outcome = Outcome::Done;
+    // Held until all outputs are written. Jobs of a plan take none: other parts of the plan write to their folders, too.
+    let mut _lock = None;
     let (planned, failed, settings, configs, server) = match args.jobs.planned(args.selection.output.as_deref()) {
         Some(Err(reason)) => return usage(err, &reason),
         Some(Ok(planned)) => (planned, Vec::new(), Settings::default(), Vec::new(), None),
@@ -72,7 +75,7 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
                 Ok(selected) => selected,
                 Err(reason) => return usage(err, &reason),
             };
-            let (is_safe, so_far) = selected.complain(err)?;
+            let (is_safe, so_far) = selected.complain(args.quiet, err)?;
             if args.print_config {
                 for (input, resolved) in &selected.assets {
                     print(out, &format!("# {}\n{resolved}\n", input.path.display()))?;
@@ -82,6 +85,12 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
                 return Ok(so_far);
             }
             outcome = so_far;
+            if !selected.assets.is_empty() {
+                let kind = if args.jobs.are_parts() { Kind::Parts } else { Kind::Alone };
+                _lock = OutputLock::take(&selected.output, kind, &mut |message| {
+                    message.map_or(Ok(()), |message| writeln!(err, "note: {message}")).map(|()| true)
+                })?;
+            }
             (jobs::plan(&selected.assets), selected.errors, selected.settings, selected.configs, selected.remote)
         }
     };

@@ -7,6 +7,8 @@ use std::path::{Path, PathBuf};
 
 use walkdir::WalkDir;
 
+use crate::bake::case_folded;
+
 /// An asset to bake.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Input {
@@ -35,6 +37,20 @@ pub enum InputError {
         /// The folder.
         path: PathBuf,
     },
+    /// A folder whose assets are all outputs of earlier bakes.
+    #[error(
+        "{}: expected assets in the folder, found only what Roughcast has baked ({count}, such as {}); name the folder of \
+         the sources, or a file itself to bake it anyway",
+        path.display(), example.display()
+    )]
+    OnlyBaked {
+        /// The folder.
+        path: PathBuf,
+        /// How many there are.
+        count: usize,
+        /// The first of them.
+        example: PathBuf,
+    },
     /// A folder or an entry of it that cannot be read.
     #[error("{}: expected a folder that can be read, found: {reason}", path.display())]
     Walk {
@@ -61,6 +77,18 @@ pub enum InputError {
         /// The earlier one.
         other: PathBuf,
     },
+    /// Two inputs whose outputs have names that differ in case only.
+    #[error(
+        "{}: expected a path that differs from {} in more than case, since the outputs are one file on Windows and macOS; \
+         rename one of them, or bake them into different folders",
+        path.display(), other.display()
+    )]
+    SameName {
+        /// The later input.
+        path: PathBuf,
+        /// The earlier one.
+        other: PathBuf,
+    },
     /// The output folder is an input folder, or holds one.
     #[error("{}: expected an output folder apart from the inputs, found one that is or holds an input folder; choose another with -o", path.display())]
     OutputIsInput {
@@ -75,48 +103,64 @@ impl InputError {
         match self {
             Self::NotAnAsset { path, .. }
             | Self::EmptyFolder { path }
+            | Self::OnlyBaked { path, .. }
             | Self::Walk { path, .. }
             | Self::NotUtf8 { path }
             | Self::SameOutput { path, .. }
+            | Self::SameName { path, .. }
             | Self::OutputIsInput { path } => path,
         }
     }
 }
 
-/// The assets that `arguments` name, in a fixed order: files go to `output` itself, folders keep their structure below
-/// it. Inputs that cannot be used do not stop the others.
-pub fn find(arguments: &[PathBuf], output: &Path) -> (Vec<Input>, Vec<InputError>) {
-    let mut inputs: Vec<Input> = Vec::new();
-    let mut errors = Vec::new();
-    let mut taken: BTreeMap<(PathBuf, String), PathBuf> = BTreeMap::new();
+/// What arguments name.
+#[derive(Debug, Default)]
+pub struct Found {
+    /// Assets, in a fixed order.
+    pub inputs: Vec<Input>,
+    /// Inputs that cannot be used. They do not stop the others.
+    pub errors: Vec<InputError>,
+    /// Documents in folders that are left out, since an earlier bake wrote them.
+    pub baked: Vec<PathBuf>,
+}
+
+/// Finds the assets that `arguments` name: files go to `output` itself, folders keep their structure below it. Documents for
+/// which `is_baked` holds are left out, unless they are named themselves.
+pub fn find(arguments: &[PathBuf], output: &Path, is_baked: &mut dyn FnMut(&Path) -> bool) -> Found {
+    let mut all = Found::default();
+    // Outputs by their names on systems that ignore case, each with its name and its input.
+    let mut taken: BTreeMap<PathBuf, (PathBuf, PathBuf)> = BTreeMap::new();
     for argument in arguments {
-        match find_one(argument, output) {
-            Err(error) => errors.push(error),
-            Ok((found, more)) => {
-                errors.extend(more);
-                for input in found {
-                    match taken.entry((input.folder.clone(), input.stem.clone())) {
-                        Entry::Occupied(other) if *other.get() != input.path => {
-                            errors.push(InputError::SameOutput { path: input.path, other: other.get().clone() });
-                        }
-                        Entry::Occupied(_) => {}
-                        Entry::Vacant(free) => {
-                            free.insert(input.path.clone());
-                            inputs.push(input);
-                        }
-                    }
+        let found = find_one(argument, output, is_baked)
+            .unwrap_or_else(|error| Found { errors: vec![error], ..Found::default() });
+        all.errors.extend(found.errors);
+        all.baked.extend(found.baked);
+        for input in found.inputs {
+            let name = input.folder.join(&input.stem);
+            match taken.entry(case_folded(&name)) {
+                Entry::Occupied(taken) if taken.get().1 != input.path => {
+                    let (path, (other_name, other)) = (input.path, taken.get().clone());
+                    all.errors.push(match other_name == name {
+                        true => InputError::SameOutput { path, other },
+                        false => InputError::SameName { path, other },
+                    });
+                }
+                Entry::Occupied(_) => {}
+                Entry::Vacant(free) => {
+                    free.insert((name, input.path.clone()));
+                    all.inputs.push(input);
                 }
             }
         }
     }
-    (inputs, errors)
+    all
 }
 
 /// Extensions of scenes in other formats, from which tools export glTF.
 const SCENES: [&str; 16] =
     ["3ds", "abc", "blend", "c4d", "dae", "fbx", "ma", "max", "mb", "obj", "ply", "stl", "usd", "usda", "usdc", "usdz"];
 
-fn find_one(argument: &Path, output: &Path) -> Result<(Vec<Input>, Vec<InputError>), InputError> {
+fn find_one(argument: &Path, output: &Path, is_baked: &mut dyn FnMut(&Path) -> bool) -> Result<Found, InputError> {
     let path = argument.to_owned();
     let facts =
         fs::metadata(argument).map_err(|e| InputError::NotAnAsset { path: path.clone(), found: e.to_string() })?;
@@ -140,9 +184,9 @@ fn find_one(argument: &Path, output: &Path) -> Result<(Vec<Input>, Vec<InputErro
             );
             return Err(InputError::NotAnAsset { path, found });
         }
-        return Ok((vec![input(argument, output.to_owned())?], Vec::new()));
+        return Ok(Found { inputs: vec![input(argument, output.to_owned())?], ..Found::default() });
     }
-    let (mut inputs, mut errors) = (Vec::new(), Vec::new());
+    let Found { mut inputs, mut errors, mut baked } = Found::default();
     let walk = WalkDir::new(argument).follow_links(true).sort_by_file_name().into_iter();
     let is_output = |folder: &Path| real_output.is_some() && real(folder) == real_output;
     for entry in walk.filter_entry(|e| !(e.file_type().is_dir() && is_output(e.path()))) {
@@ -151,20 +195,22 @@ fn find_one(argument: &Path, output: &Path) -> Result<(Vec<Input>, Vec<InputErro
                 let path = error.path().unwrap_or(argument).to_owned();
                 errors.push(InputError::Walk { path, reason: error.to_string() });
             }
-            Ok(entry) if entry.file_type().is_file() && is_asset(entry.path()) => {
+            Ok(entry) if !(entry.file_type().is_file() && is_asset(entry.path())) => {}
+            Ok(entry) if is_baked(entry.path()) => baked.push(entry.into_path()),
+            Ok(entry) => {
                 let below = entry.path().strip_prefix(argument).unwrap_or(entry.path());
                 match input(entry.path(), output.join(folder_of(below))) {
                     Ok(input) => inputs.push(input),
                     Err(error) => errors.push(error),
                 }
             }
-            Ok(_) => {}
         }
     }
-    if inputs.is_empty() && errors.is_empty() {
-        return Err(InputError::EmptyFolder { path });
+    match baked.first() {
+        _ if !(inputs.is_empty() && errors.is_empty()) => Ok(Found { inputs, errors, baked }),
+        Some(example) => Err(InputError::OnlyBaked { path, count: baked.len(), example: example.clone() }),
+        None => Err(InputError::EmptyFolder { path }),
     }
-    Ok((inputs, errors))
 }
 
 fn input(path: &Path, folder: PathBuf) -> Result<Input, InputError> {

@@ -117,6 +117,11 @@ impl JobOptions {
         })
     }
 
+    /// Returns whether other runs may bake other jobs of the same selection at the same time.
+    pub fn are_parts(&self) -> bool {
+        self.job.is_some() || self.shard.is_some()
+    }
+
     /// Checks that a job of a plan is what its files make of it now.
     ///
     /// # Errors

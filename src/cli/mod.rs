@@ -15,6 +15,7 @@ mod man;
 mod map;
 mod merge;
 mod options;
+mod output_lock;
 mod part;
 mod plan;
 mod progress;

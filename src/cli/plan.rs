@@ -51,7 +51,7 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
             return Ok(Outcome::Usage);
         }
     };
-    let (is_safe, mut outcome) = selected.complain(err)?;
+    let (is_safe, mut outcome) = selected.complain(false, err)?;
     if !is_safe {
         return Ok(outcome);
     }

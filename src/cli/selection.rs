@@ -11,6 +11,7 @@ use super::options::{DocumentOptions, LobeName, TextureOptions};
 use super::view::ViewOptions;
 use crate::bake::{Settings, read_file};
 use crate::config::{Config, ConfigError, FILE_NAME, Layer, RemoteValues, Resolved, ValueError, Values, resolve};
+use crate::plan::recorded;
 use crate::texture::EncodeError;
 
 /// Where outputs go and how they are made.
@@ -81,6 +82,8 @@ pub struct Selected {
     pub output: PathBuf,
     /// Inputs that cannot be used.
     pub errors: Vec<InputError>,
+    /// Documents that were left out, since an earlier bake wrote them.
+    pub baked: Vec<PathBuf>,
     /// Settings of assets without a configuration.
     pub settings: Settings,
     /// Configurations that were read.
@@ -90,17 +93,29 @@ pub struct Selected {
 }
 
 impl Selected {
-    /// Complains of inputs that cannot be used; returns whether the others may be worked on, and how the command ends.
+    /// Complains of inputs that cannot be used, and tells which were left out unless `is_quiet`; returns whether the others
+    /// may be worked on, and how the command ends.
     ///
     /// # Errors
     /// When `err` cannot be written to.
-    pub fn complain(&self, err: &mut dyn Write) -> io::Result<(bool, Outcome)> {
+    pub fn complain(&self, is_quiet: bool, err: &mut dyn Write) -> io::Result<(bool, Outcome)> {
         for error in &self.errors {
             writeln!(err, "error: {error}")?;
+        }
+        if let Some(note) = self.note_of_baked().filter(|_| !is_quiet) {
+            writeln!(err, "note: {note}")?;
         }
         // Among sources no output is safe, not even that of the other inputs.
         let is_safe = !self.errors.iter().any(|e| matches!(e, InputError::OutputIsInput { .. }));
         Ok((is_safe, if self.errors.is_empty() { Outcome::Done } else { Outcome::Failed }))
+    }
+
+    /// Returns what a person should know of documents that were left out, if there are any.
+    pub fn note_of_baked(&self) -> Option<String> {
+        let (example, count) = (self.baked.first()?.display(), self.baked.len());
+        Some(format!(
+            "left out {count} file(s) that Roughcast has baked, such as {example}; name a file itself to bake it anyway"
+        ))
     }
 }
 
@@ -110,13 +125,26 @@ impl Selection {
     /// # Errors
     /// [`SelectionError`] when nothing can be done.
     pub fn find(&self, arguments: &[PathBuf]) -> Result<Selected, SelectionError> {
+        self.find_by(arguments, &mut is_baked)
+    }
+
+    /// Finds the assets of `arguments` and their settings, where documents in folders for which `is_baked` holds are outputs of
+    /// earlier bakes.
+    ///
+    /// # Errors
+    /// [`SelectionError`] when nothing can be done.
+    pub fn find_by(
+        &self,
+        arguments: &[PathBuf],
+        is_baked: &mut dyn FnMut(&Path) -> bool,
+    ) -> Result<Selected, SelectionError> {
         let mut configs = Configs::default();
         let first = arguments.first().ok_or(SelectionError::NoOutput)?;
         let folder = if first.is_dir() { first.as_path() } else { first.parent().unwrap_or(Path::new("")) };
         let found = self.settings.config(&mut configs, folder)?;
         let output = self.output.clone().or_else(|| found.and_then(Found::output_folder));
         let (output, remote) = (output.ok_or(SelectionError::NoOutput)?, found.and_then(Found::remote));
-        let selected = Selected { remote, ..self.settings.select(configs, arguments, &output)? };
+        let selected = Selected { remote, ..self.settings.select(configs, arguments, &output, is_baked)? };
         for (_, resolved) in &selected.assets {
             resolved.settings.target.check_available()?;
         }
@@ -141,12 +169,18 @@ impl SettingOptions {
     /// # Errors
     /// [`SelectionError`] when nothing can be done.
     pub fn find(&self, arguments: &[PathBuf], output: &Path) -> Result<Selected, SelectionError> {
-        self.select(Configs::default(), arguments, output)
+        self.select(Configs::default(), arguments, output, &mut is_baked)
     }
 
-    fn select(&self, mut configs: Configs, arguments: &[PathBuf], output: &Path) -> Result<Selected, SelectionError> {
+    fn select(
+        &self,
+        mut configs: Configs,
+        arguments: &[PathBuf],
+        output: &Path,
+        is_baked: &mut dyn FnMut(&Path) -> bool,
+    ) -> Result<Selected, SelectionError> {
         let flags = Layer { origin: "command line".to_owned(), values: self.said() };
-        let (inputs, errors) = inputs::find(arguments, output);
+        let inputs::Found { inputs, errors, baked } = inputs::find(arguments, output, is_baked);
         let mut assets = Vec::with_capacity(inputs.len());
         for input in inputs {
             let folder = input.path.parent().unwrap_or(Path::new(""));
@@ -160,7 +194,7 @@ impl SettingOptions {
         }
         let settings = resolve(&[flags]).map_or_else(|_| Settings::default(), |resolved| resolved.settings);
         let configs = configs.0.into_values().flatten().map(|found| found.config.path).collect();
-        Ok(Selected { assets, output: output.to_owned(), errors, settings, configs, remote: None })
+        Ok(Selected { assets, output: output.to_owned(), errors, baked, settings, configs, remote: None })
     }
 
     fn config<'c>(&self, configs: &'c mut Configs, folder: &Path) -> Result<Option<&'c Found>, SelectionError> {
@@ -170,6 +204,11 @@ impl SettingOptions {
             None => configs.above(folder),
         }
     }
+}
+
+/// Returns whether an earlier bake wrote the document at `path`: it says so itself.
+pub fn is_baked(path: &Path) -> bool {
+    recorded(path).is_some()
 }
 
 /// A configuration and the folder, without links, that its globs are relative to.

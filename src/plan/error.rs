@@ -3,6 +3,7 @@
 use std::io;
 use std::path::PathBuf;
 
+use super::passing::{is_passing, is_passing_write};
 use crate::bake::{BakeError, ContainerError, GridError, JobError, PublishError, SourceError};
 use crate::cache::NotRelative;
 use crate::config::ValueError;
@@ -80,28 +81,32 @@ pub enum RunError {
     NoOutput {
         /// The file or folder.
         path: PathBuf,
+        /// Whether the job did write it, so that somebody else removed it.
+        was_written: bool,
+    },
+    /// An output of an asset that is called the same, in the other container.
+    #[error(
+        "expected {} free or baked from {source_name}, found it baked from {}; bake into another folder, or remove it first",
+        path.display(), found.escape_debug()
+    )]
+    OtherSource {
+        /// The output.
+        path: PathBuf,
+        /// What it records as its source.
+        found: String,
+        /// The source of this bake.
+        source_name: String,
     },
 }
 
 impl RunError {
-    /// Whether trying again may help: something was busy or away, not missing or wrong.
+    /// Returns whether trying again may help: something was busy, full or away, not missing or wrong.
     pub fn is_passing(&self) -> bool {
-        if matches!(self, Self::Changed { .. }) || self.is_out_of_memory() {
-            return true;
+        match self {
+            Self::Changed { .. } | Self::NoOutput { was_written: true, .. } => true,
+            Self::Publish(PublishError::Write { error, .. }) => is_passing_write(error),
+            other => other.is_out_of_memory() || other.io().is_some_and(is_passing),
         }
-        self.io().is_some_and(|e| {
-            use io::ErrorKind as Kind;
-            matches!(
-                e.kind(),
-                Kind::WouldBlock
-                    | Kind::TimedOut
-                    | Kind::Interrupted
-                    | Kind::ResourceBusy
-                    | Kind::StaleNetworkFileHandle
-                    | Kind::NetworkDown
-                    | Kind::HostUnreachable
-            )
-        })
     }
 
     /// Whether there was no memory for the job, which may be there when it runs alone.
@@ -125,7 +130,7 @@ impl RunError {
             | Self::Bake(BakeError::Job(JobError::Source { error: SourceError::Read { error, .. }, .. })) => {
                 Some(error)
             }
-            Self::Publish(error) => error.io(),
+            Self::Publish(PublishError::Copy { error, .. } | PublishError::Write { error, .. }) => Some(error),
             _ => None,
         }
     }

@@ -1,13 +1,13 @@
 //! Outputs from the cache. What is in place already stays untouched.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use super::error::RunError;
-use super::job::{Job, beside};
-use crate::bake::{Places, PublishError, claim, hash_file, read_file, write_file};
+use super::job::Job;
+use super::outputs::{New, Outputs};
+use crate::bake::hash_file;
 use crate::cache::{Cache, CacheError, Entry, RelativePath, Stored};
-use crate::digest::{Digest, digest};
+use crate::digest::Digest;
 
 /// What a cache knows of a job, before anything is fetched.
 #[derive(Debug)]
@@ -62,28 +62,24 @@ impl<'c> Lookup<'c> {
     }
 }
 
-/// Writes what was `found` of `job`; returns what was known of it.
-pub fn restore(job: &Job, places: &mut Places, found: Found) -> Result<Entry, RunError> {
-    let Found { entry, absent, contents } = found;
-    let document = job.output.join(entry.document.path.as_path());
-    let files: Vec<&Path> = entry.files.iter().map(|file| file.path.as_path()).collect();
-    let copies: Vec<PathBuf> = entry.copies.iter().map(|copy| copy.as_path().to_owned()).collect();
-    claim(&files, &copies, &document, &job.source, places)?;
-    for copy in entry.copies.iter().filter(|copy| absent.contains(copy)) {
-        let copy = copy.as_path();
-        let (from, to) = (beside(&job.source, copy), job.output.join(copy));
-        let content = read_file(&from).map_err(|error| PublishError::Copy { path: from.clone(), error })?;
-        if planned(job, copy) != Some(digest(&content)) {
-            return Err(RunError::Changed { path: from });
-        }
-        write_file(&to, &content)?;
+impl Found {
+    /// Returns what was known of the job.
+    pub(super) fn into_entry(self) -> Entry {
+        self.entry
     }
-    for stored in entry.stored() {
-        if let Some(content) = contents.get(&stored.path) {
-            write_file(&job.output.join(stored.path.as_path()), content)?;
+
+    /// Returns its outputs, with the bytes of those that are not in place.
+    pub(super) fn outputs(&self) -> Outputs<'_> {
+        Outputs {
+            copies: self.entry.copies.iter().map(|copy| (copy.as_path(), self.absent.contains(copy))).collect(),
+            files: self.entry.files.iter().map(|file| self.new_file(file)).collect(),
+            document: self.new_file(&self.entry.document),
         }
     }
-    Ok(entry)
+
+    fn new_file<'f>(&'f self, stored: &'f Stored) -> New<'f> {
+        New { path: stored.path.as_path(), bytes: self.contents.get(&stored.path).map(Vec::as_slice) }
+    }
 }
 
 /// Returns the digest of what the document refers to as `file`, as it was when the job was planned.

@@ -7,14 +7,16 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
 use super::error::RunError;
-use super::job::{Job, beside, parsed};
-use super::restore::{Found, Lookup, restore};
+use super::job::{Job, JobInput, beside, parsed};
+use super::outputs::{self, New, Outputs};
+use super::restore::{Found, Lookup};
 use super::room::Room;
 use crate::bake::report::AssetReport;
-use crate::bake::{Baked, Files, Places, Settings, Source, bake, publish, read_file};
+use crate::bake::{Baked, Files, Places, Settings, Source, bake};
 use crate::cache::{CacheError, Entry, Warn};
 use crate::digest::{Digest, digest};
 use crate::gltf::document::Container;
+use crate::input_file::read_file;
 
 /// What a job did.
 #[derive(Clone, Debug)]
@@ -25,6 +27,8 @@ pub struct Done {
     pub bytes: u64,
     /// All outputs, the document last.
     pub written: Vec<Written>,
+    /// Files of an earlier bake of the asset that were removed, since its new document does not name them.
+    pub removed: Vec<PathBuf>,
     /// What is in them.
     pub report: AssetReport,
     /// Whether they were baked before.
@@ -43,8 +47,8 @@ pub struct Written {
 }
 
 impl Done {
-    /// What is written: the files that `entry` lists.
-    fn new(job: &Job, entry: Entry, is_cached: bool) -> Self {
+    /// Describes what was written: the files that `entry` lists. Copies have the digests that were planned.
+    fn new(job: &Job, entry: Entry, removed: Vec<PathBuf>, is_cached: bool) -> Self {
         let copies = entry.copies.iter().filter_map(|copy| {
             let copy = copy.as_path();
             let input = job.input(copy)?;
@@ -57,17 +61,17 @@ impl Done {
         });
         let (written, bytes): (Vec<Written>, Vec<u64>) = copies.chain(files).unzip();
         let output = job.output.join(entry.document.path.as_path());
-        Self { output, bytes: bytes.iter().sum(), written, report: entry.report, is_cached }
+        Self { output, bytes: bytes.iter().sum(), written, removed, report: entry.report, is_cached }
     }
 }
 
 /// The part of a job that needs neither the places of outputs nor other jobs.
 pub struct Prepared {
-    outputs: Result<Outputs, RunError>,
+    outputs: Result<Ready, RunError>,
     warnings: Vec<CacheError>,
 }
 
-enum Outputs {
+enum Ready {
     Found(Box<Found>),
     /// With its entry, if there is a cache.
     Baked(Box<(Option<Entry>, Baked)>),
@@ -77,7 +81,7 @@ enum Outputs {
 /// may be prepared side by side, as far as there is `room` for those that are baked; `advance` is as in [`bake`].
 pub fn prepare(job: &Job, mut lookup: Option<Lookup<'_>>, room: &Room, advance: &dyn Fn(f32)) -> Prepared {
     let outputs = match lookup.as_mut().and_then(Lookup::fetch) {
-        Some(found) => Ok(Outputs::Found(Box::new(found))),
+        Some(found) => Ok(Ready::Found(Box::new(found))),
         None => baked(job, room, advance).and_then(|baked| {
             let entry = match lookup.as_mut() {
                 None => None,
@@ -87,7 +91,7 @@ pub fn prepare(job: &Job, mut lookup: Option<Lookup<'_>>, room: &Room, advance: 
                     Some(entry)
                 }
             };
-            Ok(Outputs::Baked(Box::new((entry, baked))))
+            Ok(Ready::Baked(Box::new((entry, baked))))
         }),
     };
     Prepared { outputs, warnings: lookup.map(|lookup| lookup.warnings).unwrap_or_default() }
@@ -100,22 +104,37 @@ pub fn prepare(job: &Job, mut lookup: Option<Lookup<'_>>, room: &Room, advance: 
 pub fn finish(job: &Job, prepared: Prepared, places: &mut Places, warn: Warn<'_>) -> Result<Done, RunError> {
     prepared.warnings.into_iter().for_each(warn);
     let done = match prepared.outputs? {
-        Outputs::Found(found) => Done::new(job, restore(job, places, *found)?, true),
-        Outputs::Baked(baked) => {
+        Ready::Found(found) => {
+            let removed = outputs::write(job, &found.outputs(), places)?;
+            Done::new(job, found.into_entry(), removed, true)
+        }
+        Ready::Baked(baked) => {
             let (entry, baked) = *baked;
             let name = name(job, &baked);
             // Outputs are hashed while the disk is waited for.
-            let (published, entry) = rayon::join(
-                || publish(&baked, &job.output.join(&name), &job.source, places),
+            let (removed, entry) = rayon::join(
+                || outputs::write(job, &baked_outputs(&name, &baked), places),
                 || entry.map_or_else(|| Entry::new(job.id, &name, &baked), Ok),
             );
-            published?;
-            Done::new(job, entry?, false)
+            Done::new(job, entry?, removed?, false)
         }
     };
     match job.missing_output() {
         None => Ok(done),
-        Some(path) => Err(RunError::NoOutput { path: path.to_owned() }),
+        Some(path) => {
+            let was_written = done.written.iter().any(|file| file.path.starts_with(path)) && !path.exists();
+            Err(RunError::NoOutput { path: path.to_owned(), was_written })
+        }
+    }
+}
+
+/// Returns all that is to be written of `baked`, whose document is called `name`.
+fn baked_outputs<'b>(name: &'b Path, baked: &'b Baked) -> Outputs<'b> {
+    let new = |path, bytes| New { path, bytes: Some(bytes) };
+    Outputs {
+        copies: baked.copies.iter().map(|copy| (copy.as_path(), true)).collect(),
+        files: baked.files.iter().map(|file| new(file.path.as_path(), file.bytes.as_slice())).collect(),
+        document: new(name, &baked.document),
     }
 }
 
@@ -156,14 +175,14 @@ fn name(job: &Job, baked: &Baked) -> PathBuf {
 /// The files of a job: what is read must be what was hashed.
 struct Inputs<'j> {
     source: &'j Path,
-    digests: BTreeMap<&'j Path, Option<Digest>>,
+    planned: BTreeMap<&'j Path, &'j JobInput>,
     changed: Mutex<Option<PathBuf>>,
 }
 
 impl<'j> Inputs<'j> {
     fn new(job: &'j Job) -> Self {
-        let digests = job.inputs.iter().map(|input| (input.path.as_path(), input.blake3)).collect();
-        Self { source: &job.source, digests, changed: Mutex::new(None) }
+        let planned = job.inputs.iter().map(|input| (input.path.as_path(), input)).collect();
+        Self { source: &job.source, planned, changed: Mutex::new(None) }
     }
 
     /// The document.
@@ -184,7 +203,7 @@ impl<'j> Inputs<'j> {
     }
 
     fn check(&self, path: &Path, found: Option<Digest>) {
-        let planned = self.digests.get(path).copied().flatten();
+        let planned = self.planned.get(path).and_then(|input| input.blake3);
         // What was there and is gone has changed, too; what was not there is missed by who needs it.
         if found != planned
             && let Ok(mut changed) = self.changed.lock()
@@ -196,6 +215,12 @@ impl<'j> Inputs<'j> {
         }
     }
 
+    /// Returns length and BLAKE3 of what the document refers to as `file`, as it was planned.
+    fn planned(&self, file: &Path) -> Option<(u64, Digest)> {
+        let input = self.planned.get(beside(self.source, file).as_path())?;
+        Some((input.bytes, input.blake3?))
+    }
+
     fn changed(&self) -> Option<PathBuf> {
         self.changed.lock().ok().and_then(|changed| changed.clone())
     }
@@ -204,6 +229,21 @@ impl<'j> Inputs<'j> {
 impl Files for Inputs<'_> {
     fn read(&self, file: &Path) -> io::Result<Vec<u8>> {
         self.checked(&beside(self.source, file))
+    }
+
+    /// The job's id rests on the digests of the plan: a file with another is not copied.
+    fn digest(&self, file: &Path) -> io::Result<Digest> {
+        match self.planned(file) {
+            Some((_, blake3)) => Ok(blake3),
+            None => self.read(file).map(|bytes| digest(&bytes)),
+        }
+    }
+
+    fn length(&self, file: &Path) -> io::Result<u64> {
+        match self.planned(file) {
+            Some((bytes, _)) => Ok(bytes),
+            None => self.read(file).map(|bytes| bytes.len() as u64),
+        }
     }
 
     fn read_to_hash(&self, file: &Path) -> io::Result<Vec<u8>> {
@@ -231,8 +271,11 @@ mod tests {
     #[test]
     fn of_all_that_changed_the_first_by_name_is_told() {
         let paths = ["b.png", "a.png", "c.png"];
-        let digests = paths.iter().map(|path| (Path::new(path), Some(digest(b"a file that is gone")))).collect();
-        let inputs = Inputs { source: Path::new("asset.gltf"), digests, changed: Mutex::new(None) };
+        let input =
+            |path: &&str| JobInput { path: path.into(), blake3: Some(digest(b"a file that is gone")), bytes: 1 };
+        let planned: Vec<JobInput> = paths.iter().map(input).collect();
+        let planned = planned.iter().map(|input| (input.path.as_path(), input)).collect();
+        let inputs = Inputs { source: Path::new("asset.gltf"), planned, changed: Mutex::new(None) };
         for path in paths {
             assert!(inputs.read(Path::new(path)).is_err());
         }
@@ -244,10 +287,10 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.png");
         std::fs::write(&path, "as planned").unwrap();
-        let planned = digest(b"as planned");
+        let planned = JobInput { path: path.clone(), blake3: Some(digest(b"as planned")), bytes: 10 };
         let source = folder.path().join("asset.gltf");
         let inputs =
-            || Inputs { source: &source, digests: [(path.as_path(), Some(planned))].into(), changed: Mutex::new(None) };
+            || Inputs { source: &source, planned: [(path.as_path(), &planned)].into(), changed: Mutex::new(None) };
         for (hashed, changed) in [(&b"as planned"[..], None), (b"another", Some(path.clone()))] {
             let inputs = inputs();
             assert_eq!(inputs.read_to_hash(Path::new("a.png")).unwrap(), b"as planned");
@@ -266,7 +309,10 @@ mod tests {
         }
         let source = folder.path().join("brushed.gltf");
         let job = Job::new(&source, &folder.path().join("baked"), &serde_json::Map::new()).unwrap();
-        let bake = || baked(&job, &Room::new(1), &|_| ());
+        let bake = || {
+            let prepared = prepare(&job, None, &Room::new(1), &|_| ());
+            finish(&job, prepared, &mut Places::default(), &mut |_| ())
+        };
         assert!(bake().is_ok());
         assert_eq!(job.inputs.len(), 5);
         for input in &job.inputs {

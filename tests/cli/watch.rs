@@ -84,14 +84,97 @@ fn a_file_that_is_being_written_waits_and_one_that_is_broken_is_tried_again() {
     std::thread::sleep(std::time::Duration::from_millis(100));
     file.write_all(rest).expect("bytes");
     assert_eq!(session.settle(folder), ["baked assets/knobs/knobs.gltf"]);
+    let good = hashes(&folder.join("out/knobs"));
     fs::write(&image, half).expect("a file");
-    let told = session.settle(folder);
-    assert_eq!(told, ["failed assets/knobs/knobs.gltf", "removed assets/knobs/knobs.gltf"]);
-    assert_as_baked(folder, "broken");
+    assert_eq!(session.settle(folder), ["failed assets/knobs/knobs.gltf"]);
+    assert_eq!(hashes(&folder.join("out/knobs")), good, "good outputs go with one broken save");
+    session.assert_as_baked(folder, "broken");
     fs::write(&image, &bytes).expect("a file");
     assert_eq!(session.settle(folder), ["baked assets/knobs/knobs.gltf"]);
     assert_as_baked(folder, "whole again");
-    assert!(session.stop().err.contains("assets/knobs/knobs.gltf"));
+    let err = session.stop().err;
+    assert!(err.starts_with("error: assets/knobs/knobs.gltf: "), "{err}");
+    assert!(err.ends_with("; out/knobs/knobs.gltf stays as it was last baked\n"), "{err}");
+}
+
+/// The document itself is broken, then its asset goes. What was never baked has nothing to keep.
+#[test]
+fn the_last_good_outputs_stay_until_their_source_is_gone() {
+    let scene = scene();
+    let folder = scene.path();
+    fs::write(folder.join("assets/never.gltf"), "{").expect("a file");
+    let mut session = Session::start(folder, "");
+    let events = session.until("idle");
+    let failed = events.iter().find(|event| event["event"] == "failed").expect("an event");
+    assert_eq!((failed["input"].as_str(), failed.get("kept")), (Some("assets/never.gltf"), None));
+    let good = hashes(&folder.join("out"));
+    let document = folder.join("assets/brushed/brushed.gltf");
+    let text = fs::read(&document).expect("a file");
+    for broken in [&b""[..], &text[..text.len() / 2], b"{]"] {
+        fs::write(folder.join("beside"), broken).expect("a file");
+        rename(folder, "beside", "assets/brushed/brushed.gltf");
+        let events = session.until("idle");
+        let failed = events.iter().find(|event| event["event"] == "failed").expect("an event");
+        assert_eq!(failed["input"], "assets/brushed/brushed.gltf");
+        assert_eq!(failed["kept"], "out/brushed/brushed.gltf");
+        assert_eq!(events.last().expect("an event")["failed"], 2);
+        assert_eq!(hashes(&folder.join("out")), good);
+    }
+    fs::remove_file(&document).expect("a file");
+    assert_eq!(session.settle(folder), ["removed assets/brushed/brushed.gltf"]);
+    assert!(!folder.join("out/brushed").exists());
+    assert_as_baked(folder, "in the end");
+    assert_eq!(session.stop().code, 0);
+}
+
+/// A place of the last good outputs is needed by another asset: what is left of them is not whole.
+#[test]
+fn last_good_outputs_give_way_to_an_asset_that_can_be_baked() {
+    let scene = scene();
+    let folder = scene.path();
+    let at = |name: &str| folder.join("assets").join(name);
+    // Both are in one folder, and copy an image of one name.
+    let document = |image: &str| {
+        format!(
+            r#"{{"asset":{{"version":"2.0"}},"images":[{{"uri":"{image}"}},{{"uri":"n.png"}}],
+            "textures":[{{"source":1}}],"materials":[{{"normalTexture":{{"index":0}}}}]}}"#
+        )
+    };
+    fs::copy(fixtures().join("maps/line_normal.png"), at("n.png")).expect("a file");
+    fs::copy(fixtures().join("brushed/brushed_colour.png"), at("c.png")).expect("a file");
+    fs::write(at("one.gltf"), document("c.png")).expect("a file");
+    let mut session = Session::start(folder, "");
+    session.until("idle");
+    fs::write(at("one.gltf"), "{").expect("a file");
+    assert_eq!(session.settle(folder), ["failed assets/one.gltf"]);
+    assert!(folder.join("out/one.gltf").is_file());
+    session.assert_as_baked(folder, "broken");
+    // The name of the broken asset's folder of textures, as a folder of sources.
+    fs::create_dir(at("one.roughcast")).expect("a folder");
+    fs::copy(fixtures().join("brushed/brushed_colour.png"), at("one.roughcast/n.normal.ktx2")).expect("a file");
+    fs::write(at("two.gltf"), document("one.roughcast/n.normal.ktx2")).expect("a file");
+    let told = session.settle(folder);
+    assert_eq!(told, ["baked assets/two.gltf", "removed assets/one.gltf"]);
+    assert_as_baked(folder, "in the end");
+    assert_eq!(session.stop().code, 0);
+}
+
+#[test]
+fn outputs_of_earlier_bakes_are_not_baked() {
+    let scene = scene();
+    let folder = scene.path();
+    crate::process::done(folder, "bake assets/waves -o assets/earlier -q");
+    let mut session = Session::start(folder, "");
+    let events = session.until("idle");
+    assert_eq!(events.iter().filter(|event| event["event"] == "baked").count(), 3, "{events:?}");
+    crate::process::done(folder, "bake assets/brushed -o assets/later -q --no-config");
+    assert_eq!(session.settle(folder), Vec::<String>::new());
+    assert_as_baked(folder, "in the end");
+    let run = session.stop();
+    assert_eq!((run.code, run.err.lines().count()), (0, 1), "{}", run.err);
+    assert!(
+        run.err.starts_with("note: left out 1 file(s) that Roughcast has baked, such as assets/earlier/waves.gltf")
+    );
 }
 
 /// More happens than the system keeps until it is read: of the last changes it tells only that there were some.

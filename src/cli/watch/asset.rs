@@ -32,16 +32,26 @@ pub struct Asset {
 pub enum State {
     /// It has these outputs.
     Done(Vec<Written>),
-    /// It has none.
+    /// It cannot be baked as it is.
     Failed {
         /// Why.
         error: String,
         /// Whether to try at every look, since it does not depend on the asset's files alone.
         again: bool,
+        /// Outputs of its last good bake, which stay.
+        kept: Vec<Written>,
     },
 }
 
 impl Asset {
+    /// Returns its outputs: those of the asset as it is, or of its last good bake.
+    pub fn outputs(&self) -> &[Written] {
+        match &self.state {
+            State::Done(written) => written,
+            State::Failed { kept, .. } => kept,
+        }
+    }
+
     /// Files that look other than they did; `None` where there is no reason to plan the asset.
     pub fn changed(&self, input: &Input, resolved: &Resolved) -> Option<Looks> {
         let mut is_certain = self.output == input.folder && self.values == resolved.values;

@@ -49,6 +49,9 @@ pub enum Event<'e> {
         input: Option<&'e str>,
         /// What is wrong.
         error: &'e str,
+        /// The document of its last good bake, which stays with its files.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        kept: Option<&'e Path>,
     },
     /// Outputs that no asset has any more are gone.
     Removed {
@@ -57,7 +60,7 @@ pub enum Event<'e> {
         /// The files.
         files: Vec<Name<'e>>,
     },
-    /// The outputs are those of a bake of the folder as it is.
+    /// The outputs are those of a bake of the folder as it is, beside the last good ones of assets that cannot be baked.
     Idle {
         /// Number of assets.
         assets: usize,
@@ -135,14 +138,15 @@ impl<'w> Teller<'w> {
         self.tell(&Event::Baked { input: &name, output: Name(&done.output), status, files, bytes: done.bytes, seconds })
     }
 
-    /// An asset, or everything, cannot be baked.
-    pub fn failed(&mut self, input: Option<&str>, error: &str) -> io::Result<()> {
+    /// An asset, or everything, cannot be baked; the document `kept` of an earlier bake stays.
+    pub fn failed(&mut self, input: Option<&str>, error: &str, kept: Option<&Path>) -> io::Result<()> {
         self.has_news = true;
+        let stays = kept.map_or_else(String::new, |kept| format!("; {} stays as it was last baked", kept.display()));
         match input {
-            Some(input) => writeln!(self.err, "error: {input}: {error}")?,
-            None => writeln!(self.err, "error: {error}")?,
+            Some(input) => writeln!(self.err, "error: {input}: {error}{stays}")?,
+            None => writeln!(self.err, "error: {error}{stays}")?,
         }
-        self.tell(&Event::Failed { input, error })
+        self.tell(&Event::Failed { input, error, kept })
     }
 
     /// Files were removed.
@@ -163,6 +167,11 @@ impl<'w> Teller<'w> {
     /// Nothing is left to do, if there was anything.
     pub fn idle(&mut self, (assets, failed): (usize, usize)) -> io::Result<()> {
         if std::mem::take(&mut self.has_news) { self.tell(&Event::Idle { assets, failed }) } else { Ok(()) }
+    }
+
+    /// Tells a person what need not be changed, unless errors only are asked for.
+    pub fn note(&mut self, note: &dyn Display) -> io::Result<()> {
+        if self.is_quiet { Ok(()) } else { writeln!(self.err, "note: {note}") }
     }
 
     /// Complains of what does not stop anything.

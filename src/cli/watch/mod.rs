@@ -1,6 +1,7 @@
 //! `roughcast watch`.
 
 mod asset;
+mod documents;
 mod events;
 mod hook;
 mod round;
@@ -23,7 +24,8 @@ use round::Round;
 /// Bake a folder of glTF assets, and bake again what changes.
 ///
 /// Outputs are always those of a bake of the folder as it is: they change with the glTF files, their images and buffers
-/// and roughcast.toml, and go when their asset goes or cannot be baked. Ctrl-C ends it when the asset at work is done.
+/// and roughcast.toml, and go when their asset goes. Those of an asset that cannot be baked stay as they were last baked.
+/// Ctrl-C ends it when the asset at work is done.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example:\n  roughcast watch assets -o baked --on-change 'touch reload.txt'")]
 pub struct Args {

@@ -1,26 +1,24 @@
 //! One look at the folder: what is to be baked, what is gone, and what must wait since it is still being written.
 
+mod work;
+
 use std::collections::{BTreeMap, HashSet};
 use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 
 use super::Args;
 use super::asset::{Asset, Looks, Planned, State};
+use super::documents::Documents;
 use super::events::Teller;
-use crate::bake::{Places, PublishError};
-use crate::cache::{Cache, CacheError};
+use crate::cache::Cache;
 use crate::cli::inputs::{Input, InputError};
 use crate::cli::selection::Selected;
 use crate::config::Resolved;
-use crate::plan::{self, Lookup, Room, RunError};
 use crate::watch::{Ledger, Look, Scope, Settling, real};
-
-/// After how long a lock or a vanished disk is tried again.
-const RETRY: Duration = Duration::from_secs(1);
 
 /// All that is remembered from one look to the next.
 pub struct Round {
@@ -30,6 +28,9 @@ pub struct Round {
     settling: Settling,
     assets: BTreeMap<PathBuf, Asset>,
     configs: BTreeMap<PathBuf, Option<Look>>,
+    documents: Documents,
+    /// Whether somebody was told of documents that are left out.
+    told_of_baked: bool,
     ledger: Ledger,
     scope: Scope,
     /// What is wrong with the folder, and whether it was told: it is when it is still wrong at the next look.
@@ -57,6 +58,8 @@ impl Round {
             settling: Settling::new(window),
             assets: BTreeMap::new(),
             configs: BTreeMap::new(),
+            documents: Documents::default(),
+            told_of_baked: false,
             ledger: Ledger::default(),
             scope: Scope::default(),
             complaints: BTreeMap::new(),
@@ -129,8 +132,13 @@ impl Round {
         let folder = &args.folder;
         let (mut selected, mut wrong) = (None, Vec::new());
         if folder.is_dir() {
-            match args.selection.find(std::slice::from_ref(folder)) {
+            let is_baked = &mut |path: &Path| self.documents.is_baked(path);
+            match args.selection.find_by(std::slice::from_ref(folder), is_baked) {
                 Ok(found) => {
+                    if let Some(note) = found.note_of_baked().filter(|_| !self.told_of_baked) {
+                        self.told_of_baked = true;
+                        teller.note(&note)?;
+                    }
                     // Assets of a folder without any are still to come.
                     let errors = found.errors.iter().filter(|error| !matches!(error, InputError::EmptyFolder { .. }));
                     wrong.extend(errors.map(ToString::to_string));
@@ -147,7 +155,7 @@ impl Round {
         for complaint in wrong {
             let was_told = before.get(&complaint).copied();
             if was_told == Some(false) || (first && was_told.is_none()) {
-                teller.failed(None, &complaint)?;
+                teller.failed(None, &complaint, None)?;
             }
             self.complaints.insert(complaint, first || was_told.is_some());
         }
@@ -199,94 +207,4 @@ impl Round {
         };
         planned.into_iter().zip(selected).map(are_new_settled).collect()
     }
-
-    /// Bakes what is `planned`; returns after how long to try again, if that may help.
-    fn work(
-        &mut self,
-        selected: &[(Input, Resolved)],
-        mut planned: Vec<Option<Planned>>,
-        stop: &AtomicBool,
-        teller: &mut Teller<'_>,
-    ) -> io::Result<Option<Duration>> {
-        for ((input, resolved), slot) in selected.iter().zip(&mut planned) {
-            if let Some(known) = self.assets.get_mut(&input.path)
-                && let Some(planned) = slot.take_if(|planned| known.is_as(planned, input))
-            {
-                // Touched, or changed and changed back.
-                (known.seen, known.values) = (planned.seen, resolved.values.clone());
-            }
-        }
-        let look_up =
-            |planned: &Option<Planned>| Some(Lookup::new(planned.as_ref()?.job.as_ref().ok()?, self.cache.as_ref()?));
-        let lookups: Vec<Option<Lookup>> = planned.par_iter().map(look_up).collect();
-        let (mut places, room) = (Places::default(), Room::new(1));
-        let mut retry: Option<Duration> = None;
-        let mut soon = |after: Option<Duration>| retry = [retry, after].into_iter().flatten().min();
-        for (((input, resolved), planned), lookup) in selected.iter().zip(planned).zip(lookups) {
-            let Some(Planned { job, seen }) = planned else {
-                // An asset keeps its places unless one before it takes them, as in a bake of all.
-                if let Some(Asset { state, .. }) = self.assets.get_mut(&input.path)
-                    && let State::Done(written) = state
-                    && !written.iter().all(|file| places.hold(&file.path, &file.source))
-                {
-                    *state = State::Failed { error: String::new(), again: true };
-                    soon(Some(Duration::ZERO));
-                }
-                continue;
-            };
-            if stop.load(Ordering::Acquire) {
-                break;
-            }
-            let (start, name) = (Instant::now(), input.path.display().to_string());
-            let id = job.as_ref().ok().map(|job| job.id);
-            let mut warn = |error: CacheError| {
-                let whose = if error.is_general() { String::new() } else { format!("{name}: ") };
-                // The bake does not depend on who reads this.
-                let _ = teller.warn(&format_args!("{whose}{error}"));
-            };
-            let result = job.and_then(|job| {
-                let prepared = plan::prepare(&job, lookup, &room, &|_| ());
-                plan::finish(&job, prepared, &mut places, &mut warn)
-            });
-            let state = match result {
-                Ok(done) => {
-                    teller.baked(name, &done, start.elapsed().as_secs_f64())?;
-                    self.ledger.set(&input.path, &self.output, &done.written);
-                    State::Done(done.written)
-                }
-                Err(error) => {
-                    soon(retry_after(&error));
-                    let text = error.to_string();
-                    let known = self.assets.get(&input.path);
-                    // A file that was written to meanwhile is one that had not settled.
-                    let is_news = !matches!(error, RunError::Changed { .. });
-                    if is_news && !known.is_some_and(|known| known.has_failed_so(&text, &seen)) {
-                        teller.failed(Some(&name), &text)?;
-                    }
-                    if !keeps_outputs(&error) {
-                        self.ledger.set(&input.path, &self.output, &[]);
-                    }
-                    let again = keeps_outputs(&error) || matches!(error, RunError::Publish(_));
-                    State::Failed { error: text, again }
-                }
-            };
-            let asset = Asset { output: input.folder.clone(), values: resolved.values.clone(), id, seen, state };
-            self.assets.insert(input.path.clone(), asset);
-        }
-        Ok(retry)
-    }
-}
-
-/// When to try again, even if nothing happens.
-fn retry_after(error: &RunError) -> Option<Duration> {
-    match error {
-        RunError::Changed { .. } => Some(Duration::ZERO),
-        _ => error.is_passing().then_some(RETRY),
-    }
-}
-
-/// Whether nothing is wrong with the asset itself.
-fn keeps_outputs(error: &RunError) -> bool {
-    let is_of_disk = matches!(error, RunError::Publish(PublishError::Write { .. }) | RunError::NoOutput { .. });
-    error.is_passing() || is_of_disk
 }

@@ -83,7 +83,7 @@ fn a_baked_asset_as_input() {
     let again = scene.folder.path().join("again");
     for form in ["fallback", "strict", "dual"] {
         bake(&scene.input(), &scene.output(), &["--gltf", form]);
-        let line = refused(&scene, &[&scene.output().join("bad")], &again);
+        let line = refused(&scene, &[&scene.output().join("bad/brushed.gltf")], &again);
         assert_says(&line, &["brushed.gltf: ", "Brushed steel", "Roughcast has baked", "original"]);
         assert!(!again.exists());
     }
@@ -135,7 +135,9 @@ fn a_full_and_a_read_only_disk() {
                 return;
             }
         };
-        assert_says(&one_line(&run), &["bad/brushed.gltf: ", "expected to write ", part]);
+        assert_eq!(run.code, 4, "a disk may have room again: {}", run.err);
+        assert_says(&run.err, &["error: ", "bad/brushed.gltf: ", "expected to write ", part]);
+        assert_eq!(run.err.lines().count(), 1, "{}", run.err);
         assert!(!run.out.contains(".roughcast-") && !run.out.contains("brushed.gltf"), "{}", run.out);
     }
 }

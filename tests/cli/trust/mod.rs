@@ -1,4 +1,5 @@
 //! What files of strangers may not do: nothing is lost, and no one is let in.
 
 mod decoders;
+mod publish;
 mod validated;

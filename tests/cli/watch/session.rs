@@ -1,6 +1,6 @@
 //! A running `roughcast watch`, and what it tells.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
@@ -23,6 +23,8 @@ static MARKS: AtomicU64 = AtomicU64::new(0);
 pub struct Session {
     child: Child,
     events: Receiver<Value>,
+    /// Files of the last good bake of each asset, as far as they were not told to be removed.
+    baked: BTreeMap<String, BTreeSet<String>>,
 }
 
 impl Session {
@@ -47,7 +49,7 @@ impl Session {
                 }
             }
         });
-        Self { child, events }
+        Self { child, events, baked: BTreeMap::new() }
     }
 
     /// The next event, which satisfies the schema.
@@ -62,7 +64,25 @@ impl Session {
         let schema = jsonschema::validator_for(&schema).expect("a schema");
         let errors: Vec<String> = schema.iter_errors(&event).map(|e| format!("{}: {e}", e.instance_path())).collect();
         assert!(errors.is_empty(), "{event}: {errors:#?}");
+        self.note(&event);
         event
+    }
+
+    /// Takes note of files that came and went.
+    fn note(&mut self, event: &Value) {
+        let Some(files) = event["files"].as_array() else { return };
+        let files = files.iter().map(|file| file.as_str().expect("a path").to_owned()).collect();
+        if event["event"] == "baked" {
+            self.baked.insert(event["input"].as_str().expect("an input").to_owned(), files);
+        } else {
+            self.baked.values_mut().for_each(|known| known.retain(|file| !files.contains(file)));
+        }
+    }
+
+    /// Expects `out` to be what a bake of `assets` writes to a new folder, beside the last good outputs of assets that it cannot
+    /// bake.
+    pub fn assert_as_baked(&self, folder: &Path, context: &str) {
+        assert_as_baked_beside(folder, context, &self.baked);
     }
 
     /// Events up to one of the kind `kind`, which is the last.
@@ -127,10 +147,24 @@ impl Drop for Session {
 
 /// Expects `out` to be what a bake of `assets` writes to a new folder.
 pub fn assert_as_baked(folder: &Path, context: &str) {
+    assert_as_baked_beside(folder, context, &BTreeMap::new());
+}
+
+/// Expects that bake beside the files in `kept` of assets that it cannot bake.
+fn assert_as_baked_beside(folder: &Path, context: &str, kept: &BTreeMap<String, BTreeSet<String>>) {
     let clean = folder.join("clean");
-    let run = roughcast_in(folder, "bake assets -o clean -q".split(' '));
+    let run = roughcast_in(folder, "bake assets -o clean --json".split(' '));
     assert!(matches!(run.code, 0 | 1), "{context}: {}", run.err);
-    let (expected, found) = (hashes(&clean), hashes(&folder.join("out")));
+    let (mut expected, found) = (hashes(&clean), hashes(&folder.join("out")));
+    let report: Value = serde_json::from_str(&run.out).expect("a report");
+    let assets = report["assets"].as_array().expect("assets").iter();
+    let failed = assets.filter(|asset| asset["status"] == "failed").filter_map(|asset| asset["input"].as_str());
+    for file in failed.filter_map(|input| kept.get(input)).flatten() {
+        let name = file.strip_prefix("out/").expect("an output").to_owned();
+        // Its bytes are those of a bake that is gone.
+        let bytes = found.get(&name).cloned().unwrap_or_default();
+        expected.entry(name).or_insert(bytes);
+    }
     let names = |all: &BTreeMap<String, String>| all.keys().cloned().collect::<Vec<_>>();
     assert_eq!(names(&found), names(&expected), "{context}\n{}", run.err);
     assert_eq!(found, expected, "{context}");
