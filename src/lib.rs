@@ -29,6 +29,7 @@ pub mod remote;
 pub mod render;
 pub mod roughness;
 pub mod symmetric;
+mod text;
 pub mod texture;
 pub mod watch;
 

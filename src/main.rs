@@ -1,20 +1,24 @@
 //! Command line of Roughcast.
 
-use std::io;
+use std::io::{self, ErrorKind};
 use std::process::ExitCode;
 
 use clap::Parser;
-use roughcast::cli::{Cli, run};
+use roughcast::cli::{Cli, Outcome, run};
 
 fn main() -> ExitCode {
-    let cli = Cli::parse();
-    match run(cli, &mut io::stdout(), &mut io::stderr()) {
-        Ok(outcome) => outcome.code().into(),
-        // A reader that has seen enough (`roughcast ... | head`) is no failure.
-        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("error: expected to write output, found: {error}");
-            ExitCode::from(4)
-        }
+    let outcome = match Cli::try_parse() {
+        Ok(cli) => run(cli, &mut io::stdout(), &mut io::stderr()),
+        Err(message) => show(&message),
+    };
+    outcome.code().into()
+}
+
+/// Prints help, a version or what is wrong with the arguments.
+fn show(message: &clap::Error) -> Outcome {
+    match (message.use_stderr(), message.print()) {
+        (true, _) => Outcome::Usage,
+        (false, Err(error)) if error.kind() != ErrorKind::BrokenPipe => Outcome::Retry,
+        (false, _) => Outcome::Done,
     }
 }

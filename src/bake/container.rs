@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 
 use super::asset::NewFile;
 use super::compact::compact;
+use super::names::portable_stem;
 use super::reader::Reader;
 use super::source::{Source, SourceError};
 use crate::gltf::document::{Container, Document, DocumentError, holds_buffer_0};
@@ -54,7 +55,8 @@ pub fn to_gltf(source: &Source<'_>) -> Result<(Document, Option<NewFile>), Conta
     let Some(bin) = source.document.bin().filter(|_| holds_buffer_0(&root)) else {
         return Ok((Document::gltf(json), None));
     };
-    let path = format!("{}.roughcast/{}.bin", source.stem, source.stem);
+    let stem = portable_stem(source.stem);
+    let path = format!("{stem}.roughcast/{stem}.bin");
     json.set("/buffers/0/uri", &encode_path(&path))?;
     let length: usize = json.read("/buffers/0/byteLength")?.unwrap_or(bin.len());
     let bytes = bin.get(..length).unwrap_or(bin).to_vec();

@@ -37,6 +37,7 @@ pub use chain::{Chain, GridError, kept_bytes};
 pub use container::ContainerError;
 pub use extension::EXTENSION;
 pub use job::JobError;
+pub use names::portable_stem;
 pub use png::encode_png;
 pub use provenance::DocumentProvenance;
 pub use publish::{

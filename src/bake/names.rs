@@ -2,7 +2,13 @@
 
 use std::collections::{BTreeSet, HashMap};
 
-/// Gives out paths in the folder `<stem>.roughcast`, relative to the document.
+/// Returns what names beside the document begin with for the asset whose file is called `stem` without its extension. A `:` or
+/// `\` becomes `_`, since no URI may name it ([`crate::gltf::uri`]).
+pub fn portable_stem(stem: &str) -> String {
+    stem.replace([':', '\\'], "_")
+}
+
+/// Gives out paths in the folder `<portable stem>.roughcast`, relative to the document.
 pub struct Names {
     folder: String,
     taken: BTreeSet<String>,
@@ -13,7 +19,7 @@ pub struct Names {
 impl Names {
     /// For the asset whose file is called `stem` without its extension.
     pub fn new(stem: &str) -> Self {
-        Self { folder: format!("{stem}.roughcast"), taken: BTreeSet::new(), last: HashMap::new() }
+        Self { folder: format!("{}.roughcast", portable_stem(stem)), taken: BTreeSet::new(), last: HashMap::new() }
     }
 
     /// `<folder>/<stem>.<content>`, numbered from the second of its kind on; without an extension.
@@ -48,6 +54,7 @@ mod tests {
         assert_eq!(names.unique("Brass", "roughness"), "helmet.roughcast/Brass.roughness");
         assert_eq!(names.unique("a/b:c*", "normal"), "helmet.roughcast/a_b_c_.normal");
         assert_eq!(names.unique("BRASS", "normal"), "helmet.roughcast/BRASS.normal-3");
+        assert_eq!(Names::new("a:b\\c").unique("Brass", "normal"), "a_b_c.roughcast/Brass.normal");
     }
 
     /// Each would try all numbers before its own: 5 * 10^9 of them.

@@ -8,14 +8,15 @@ use std::time::SystemTime;
 
 use super::Outcome;
 use super::cached::CacheOptions;
-use super::depfile::depfile;
-use super::jobs::{self, JobOptions};
+use super::depfile;
+use super::jobs::{self, JobOptions, Planned};
 use super::output_lock::{Kind, OutputLock};
 use super::remote::RemoteOptions;
 use super::report::{Asset, Report, Status};
 use super::selection::Selection;
 use super::work::{Work, Worked};
 use crate::bake::{Settings, write_file};
+use crate::text::printable;
 
 /// Bake glTF assets: KTX2 textures with the lost roughness in their mips, and a glTF that refers to them.
 ///
@@ -29,7 +30,8 @@ pub struct Args {
     /// Write what was done, chosen and skipped to a JSON file.
     #[arg(long, value_name = "FILE")]
     report: Option<PathBuf>,
-    /// Write which files each output was made from, as a Makefile for Make and Ninja.
+    /// Write which files each output was made from, as a Makefile for Make and Ninja. An asset whose files
+    /// have names that these cannot read fails.
     #[arg(long, value_name = "FILE")]
     depfile: Option<PathBuf>,
     /// Print that report instead of a summary.
@@ -78,7 +80,7 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
             let (is_safe, so_far) = selected.complain(args.quiet, err)?;
             if args.print_config {
                 for (input, resolved) in &selected.assets {
-                    print(out, &format!("# {}\n{resolved}\n", input.path.display()))?;
+                    writeln!(out, "# {}\n{resolved}", printable(&input.path.display().to_string()))?;
                 }
             }
             if args.print_config || !is_safe {
@@ -94,11 +96,18 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
             (jobs::plan(&selected.assets), selected.errors, selected.settings, selected.configs, selected.remote)
         }
     };
-    let planned = match args.jobs.choose(planned) {
+    let mut planned = match args.jobs.choose(planned) {
         Ok(planned) => planned,
         Err(reason) => return usage(err, &reason),
     };
-    let dependencies = depfile(planned.iter().filter_map(|planned| planned.job.as_ref().ok()), &configs);
+    let (dependencies, refused) = match args.depfile {
+        Some(_) => depfile::split(&mut planned, &configs),
+        None => Default::default(),
+    };
+    for (planned, error) in &refused {
+        outcome = outcome.and(Outcome::Failed);
+        writeln!(err, "error: {}: {error}", planned.name)?;
+    }
     let remote = match args.remote.options(server.as_ref()) {
         Ok(remote) => remote,
         Err(reason) => return usage(err, &reason),
@@ -111,7 +120,7 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
         is_quiet: args.quiet,
     };
     let Worked { assets, outcome: ended, remote } = work.run(planned, err, &mut |asset, _| {
-        if args.quiet || args.json { Ok(()) } else { print(out, &asset.summary()) }
+        if args.quiet || args.json { Ok(()) } else { out.write_all(asset.summary().as_bytes()) }
     })?;
     outcome = outcome.and(ended);
     if args.depfile.is_some() {
@@ -121,10 +130,13 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
         }
     }
     let failed = failed.iter().map(|e| Asset::failed(e.path().display().to_string(), None, 0.0, e.to_string(), false));
+    let refused = refused.into_iter().map(|(Planned { name, job }, error)| {
+        Asset::failed(name, job.ok().map(|job| job.id), 0.0, error.to_string(), false)
+    });
     let report = Report {
         version: env!("CARGO_PKG_VERSION"),
         settings: settings.to_json(settings.model),
-        assets: failed.chain(assets).collect(),
+        assets: failed.chain(refused).chain(assets).collect(),
         remote,
     };
     let json = if args.json || args.report.is_some() {
@@ -141,15 +153,7 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
         }
     }
     if args.json {
-        print(out, &json)?;
+        out.write_all(json.as_bytes())?;
     }
     Ok(outcome)
-}
-
-/// A reader that has seen enough (`roughcast bake ... | head`) does not end the bake.
-fn print(out: &mut dyn Write, text: &str) -> io::Result<()> {
-    match out.write_all(text.as_bytes()) {
-        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
-        result => result,
-    }
 }

@@ -19,6 +19,7 @@ use crate::compare::{Comparison, OURS, Ours, chart, compare, csv, page};
 use crate::gltf::document::Document;
 use crate::gltf::material::{LayerKind, materials};
 use crate::render::{Material, Subject};
+use crate::text::printable;
 use crate::texture::Target;
 use crate::texture::uastc::Effort;
 
@@ -78,7 +79,7 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
             if args.json {
                 writeln!(out, "{}", text(&report(&comparisons)))?;
             } else if !args.quiet {
-                files.iter().try_for_each(|path| writeln!(out, "{}", path.display()))?;
+                files.iter().try_for_each(|path| writeln!(out, "{}", printable(&path.display().to_string())))?;
                 comparisons.iter().try_for_each(|comparison| out.write_all(summary(comparison).as_bytes()))?;
             }
             Ok(Outcome::Done)
@@ -87,7 +88,7 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
 }
 
 fn summary(comparison: &Comparison) -> String {
-    let mut text = format!("{}\n", comparison.material.escape_debug());
+    let mut text = format!("{}\n", printable(&comparison.material));
     for entry in &comparison.entries {
         let chosen = if entry.chosen { "  chosen" } else { "" };
         text += &format!("  {:<18} {:.3}{chosen}\n", entry.name, entry.error);

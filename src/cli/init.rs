@@ -6,6 +6,7 @@ use std::path::PathBuf;
 
 use super::Outcome;
 use crate::config::{FILE_NAME, TEMPLATE};
+use crate::text::printable;
 
 /// Write a commented roughcast.toml: every setting with its default.
 #[derive(Debug, clap::Args)]
@@ -25,7 +26,7 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
     let file = OpenOptions::new().write(true).create_new(true).open(&path);
     match file.and_then(|mut file| file.write_all(TEMPLATE.as_bytes())) {
         Ok(()) => {
-            writeln!(out, "wrote {}", path.display())?;
+            writeln!(out, "wrote {}", printable(&path.display().to_string()))?;
             Ok(Outcome::Done)
         }
         Err(error) => {

@@ -15,6 +15,7 @@ use crate::gltf::texture::ImageLocation;
 use crate::inspect::{
     DocumentFacts, ExtractError, TextureFacts, document_text, extract, inspect_document, inspect_texture, texture_text,
 };
+use crate::text::printable;
 use crate::texture::ktx2::ReadError;
 
 /// Tell what is in a KTX2 or glTF file: levels, formats, ranges, where it comes from.
@@ -79,7 +80,7 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
                 };
                 out.write_all(text.as_bytes())?;
                 for path in written {
-                    writeln!(out, "wrote {}", path.display())?;
+                    writeln!(out, "wrote {}", printable(&path.display().to_string()))?;
                 }
             }
             Ok(Outcome::Done)

@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use clap::CommandFactory;
 
 use super::{Cli, Outcome};
+use crate::text::printable;
 
 /// Write the manual pages: one for the tool and one for each command.
 #[derive(Debug, clap::Args)]
@@ -25,7 +26,7 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
     let pages = fs::create_dir_all(&args.folder).and_then(|()| clap_mangen::generate_to(Cli::command(), &args.folder));
     match pages {
         Ok(()) => {
-            writeln!(out, "wrote {}", args.folder.display())?;
+            writeln!(out, "wrote {}", printable(&args.folder.display().to_string()))?;
             Ok(Outcome::Done)
         }
         Err(error) => {

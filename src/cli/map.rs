@@ -18,6 +18,7 @@ use crate::digest::digest;
 use crate::map::{
     DecodeError, DecodeOptions, HeightMap, Image, MapError, NormalLayout, NormalMap, decode, decode_colours,
 };
+use crate::text::printable;
 use crate::texture::ktx2::{Key, Provenance, SourceDigest};
 
 /// Bake one bare normal or height map into KTX2 files.
@@ -155,7 +156,7 @@ impl Written {
             let chain = &texture.chain;
             text += &format!(
                 "{}: {}, {} x {}, {} levels, {:.1} kB\n",
-                path.display(),
+                printable(&path.display().to_string()),
                 texture.content.name(),
                 chain.width,
                 chain.height,
@@ -167,7 +168,7 @@ impl Written {
             text += &format!("model {}{}\n", self.baked.model.name(), choice.summary());
         }
         for note in &self.baked.notes {
-            text += &format!("note: {note}\n");
+            text += &format!("note: {}\n", printable(note));
         }
         text
     }

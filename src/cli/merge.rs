@@ -7,6 +7,7 @@ use super::Outcome;
 use super::jobs::{JobsError, read_plan};
 use crate::bake::{read_file, write_file};
 use crate::plan::{Merged, Told};
+use crate::text::printable;
 
 /// Tell what is missing and what failed of a plan that was run in parts.
 ///
@@ -75,7 +76,7 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
         writeln!(out, "{jobs} jobs: {done} done, {} failed, {} missing", failed.len(), missing.len())?;
         for (word, list) in [("failed", failed), ("missing", missing)] {
             for open in list {
-                writeln!(out, "{word} {}: {}", open.source, open.reason)?;
+                writeln!(out, "{word} {}: {}", printable(&open.source), printable(&open.reason))?;
             }
         }
     }

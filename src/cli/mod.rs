@@ -23,13 +23,17 @@ mod remote;
 mod render;
 mod report;
 mod selection;
+mod streams;
+mod threads;
 mod view;
 mod watch;
 mod work;
 
-use std::io::Write;
+use std::io::{self, Write};
 
 use clap::{Parser, Subcommand};
+
+use streams::{Messages, Results};
 
 /// Bakes the roughness that mipmapped normal maps lose into KTX2 textures and glTF materials.
 #[derive(Debug, Parser)]
@@ -39,7 +43,7 @@ use clap::{Parser, Subcommand};
 pub struct Cli {
     #[command(subcommand)]
     command: Command,
-    /// Worker threads; 0 takes one per core. The bytes do not depend on it.
+    /// Worker threads, 64 or 4 per core at most; 0 takes 1 per core. Bytes do not depend on it.
     #[arg(long, global = true, default_value_t = 0, value_name = "N", display_order = 900)]
     threads: usize,
 }
@@ -102,12 +106,26 @@ impl Outcome {
 
 /// Runs a command line. Results go to `out`, complaints and progress to `err`.
 ///
-/// # Errors
-/// When `out` or `err` cannot be written to.
-pub fn run(cli: Cli, out: &mut dyn Write, err: &mut dyn Write) -> std::io::Result<Outcome> {
-    if cli.threads > 0 {
-        // A second pool in one process is refused; the first one stays, and the bytes are the same.
-        let _ = rayon::ThreadPoolBuilder::new().num_threads(cli.threads).build_global();
+/// What becomes of `err` changes nothing. When results cannot be printed, the work is done all the same, and the outcome is
+/// [`Outcome::Retry`] unless it is worse; a reader of `out` that has gone is no failure.
+pub fn run(cli: Cli, out: &mut dyn Write, err: &mut dyn Write) -> Outcome {
+    let (mut results, mut messages) = (Results::new(out), Messages(err));
+    let complain = |messages: &mut Messages<'_>, error: &io::Error| {
+        let _ = writeln!(messages, "error: expected to print the results, found: {error}; free space and run it again");
+        Outcome::Retry
+    };
+    let outcome = run_command(cli, &mut results, &mut messages);
+    let outcome = outcome.unwrap_or_else(|error| complain(&mut messages, &error));
+    match results.finish() {
+        Ok(()) => outcome,
+        Err(error) => outcome.and(complain(&mut messages, &error)),
+    }
+}
+
+fn run_command(cli: Cli, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<Outcome> {
+    if let Err(error) = threads::start(cli.threads, err) {
+        writeln!(err, "error: {error}")?;
+        return Ok(Outcome::Retry);
     }
     match cli.command {
         Command::Bake(args) => bake::run(&args, out, err),

@@ -8,6 +8,7 @@ use super::jobs::plan;
 use super::merge;
 use super::selection::Selection;
 use crate::plan::Plan;
+use crate::text::printable;
 
 /// Print the jobs that a bake would run, and run none.
 ///
@@ -91,12 +92,13 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
         writeln!(out, "{}", serde_json::to_string_pretty(&plan).map_err(io::Error::other)?)?;
     } else {
         for job in &jobs {
-            let to = job.output.display();
+            let (from, to) = (job.source.display().to_string(), job.output.display().to_string());
             writeln!(
                 out,
-                "{:.12}  {} -> {to}, {} inputs, {:.1} MB",
+                "{:.12}  {} -> {}, {} inputs, {:.1} MB",
                 job.id,
-                job.source.display(),
+                printable(&from),
+                printable(&to),
                 job.inputs.len(),
                 job.cost as f64 / 1e6
             )?;

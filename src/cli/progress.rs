@@ -6,6 +6,7 @@ use std::time::Duration;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::remote::Counts;
+use crate::text::printable;
 
 /// Steps per asset.
 const STEPS: f32 = 1000.0;
@@ -39,7 +40,7 @@ impl Progress {
         let before = self.along.get(index).map_or(now, |along| along.fetch_max(now, Ordering::Relaxed));
         self.bar.inc(now.saturating_sub(before));
         if !self.is_counted.load(Ordering::Relaxed) {
-            self.bar.set_message(name.to_owned());
+            self.bar.set_message(printable(name).into_owned());
         }
     }
 

@@ -10,6 +10,7 @@ use crate::bake::report::{AssetReport, Choice};
 use crate::digest::Digest;
 use crate::plan::Done;
 use crate::remote::{Counts, Origin};
+use crate::text::printable;
 
 /// What a run did.
 #[derive(Debug, Serialize)]
@@ -129,17 +130,17 @@ impl Asset {
         }
     }
 
-    /// One line per asset, then one per layer that has something to say.
+    /// Returns one line for the asset, then one for each layer and each note, as a terminal may show them.
     pub fn summary(&self) -> String {
+        let input = printable(&self.input);
         let mut text = match self.status {
             Status::Failed => return String::new(),
             Status::Cached => {
-                return format!("cached {}: {:.1} MB, {:.2} s\n", self.input, self.bytes as f64 / 1e6, self.seconds);
+                return format!("cached {input}: {:.1} MB, {:.2} s\n", self.bytes as f64 / 1e6, self.seconds);
             }
-            Status::Copied => format!("copied {}: no normal or height maps\n", self.input),
+            Status::Copied => format!("copied {input}: no normal or height maps\n"),
             Status::Baked => format!(
-                "baked {}: {} texture(s), {:.1} MB, {:.2} s\n",
-                self.input,
+                "baked {input}: {} texture(s), {:.1} MB, {:.2} s\n",
                 self.report.textures.len(),
                 self.bytes as f64 / 1e6,
                 self.seconds
@@ -155,9 +156,9 @@ impl Asset {
             let finest = layer.finest.map_or_else(String::new, |f| {
                 format!(", sampled from level {} on, typically {}", f.level, f.typical_level)
             });
-            text += &format!("  {}{which}: {model}{judged}{finest}\n", layer.material);
+            text += &format!("  {}{which}: {model}{judged}{finest}\n", printable(&layer.material));
             for note in &layer.notes {
-                text += &format!("    note: {note}\n");
+                text += &format!("    note: {}\n", printable(note));
             }
         }
         text

@@ -36,6 +36,9 @@ pub fn row(entry: &Entry) -> Vec<String> {
     cells
 }
 
+/// Returns `text` as a cell. Spreadsheets run what begins as a formula; an apostrophe in front makes it text (OWASP, "CSV
+/// Injection").
 fn quoted(text: &str) -> String {
+    let text = if text.starts_with(['=', '+', '-', '@', '\t', '\r']) { &format!("'{text}") } else { text };
     if text.contains(['"', ',', '\r', '\n']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
 }

@@ -28,6 +28,16 @@ fn every_entry_is_a_row_and_names_are_quoted() {
 }
 
 #[test]
+fn names_of_materials_are_no_formulas() {
+    for name in ["=cmd|' /C calc'!A0", "+1", "-1", "@sum", "\tx"] {
+        let text = csv(&[comparison(name)]);
+        assert!(text.lines().skip(1).all(|line| line.starts_with(&format!("'{name},model "))), "{text}");
+    }
+    let text = csv(&[comparison("\r=1,\"")]);
+    assert!(text.contains("\r\n\"'\r=1,\"\"\",model 0,"), "{text}");
+}
+
+#[test]
 fn every_entry_is_labelled_and_hostile_names_are_text() {
     let svg = chart(&comparison("<script>&\u{1}"));
     assert!(svg.contains("&lt;script&gt;&amp;\u{fffd}") && !svg.contains("<script"));

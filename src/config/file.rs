@@ -2,11 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use globset::{GlobBuilder, GlobMatcher};
+use globset::GlobSet;
 use serde_json::json;
 use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
+use super::globs::{GlobError, globs};
 use super::layers::Layer;
 use super::remote::RemoteValues;
 use super::values::Values;
@@ -33,7 +34,7 @@ pub struct Config {
 #[derive(Clone, Debug)]
 struct Override {
     patterns: Vec<String>,
-    globs: Vec<GlobMatcher>,
+    globs: GlobSet,
     values: Values,
 }
 
@@ -41,9 +42,11 @@ struct Override {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ConfigError {
     /// Not TOML.
-    #[error("expected TOML, found: {reason}")]
+    #[error("line {line}: expected TOML, found: {reason}")]
     Syntax {
-        /// What the parser says, with the line.
+        /// Line, from 1.
+        line: usize,
+        /// What the parser says.
         reason: String,
     },
     /// A key that is no setting.
@@ -69,6 +72,14 @@ pub enum ConfigError {
         /// What the reader says.
         reason: String,
     },
+    /// A glob that cannot be matched.
+    #[error("line {line}: files: {error}")]
+    Glob {
+        /// Line, from 1.
+        line: usize,
+        /// What is wrong with it.
+        error: GlobError,
+    },
 }
 
 fn suggest(name: &Option<String>) -> String {
@@ -81,9 +92,11 @@ impl Config {
     /// # Errors
     /// [`ConfigError`] for the first thing that is wrong, whether or not an asset would need it.
     pub fn parse(text: &str, path: &Path) -> Result<Self, ConfigError> {
-        let table =
-            DeTable::parse(text).map_err(|e| ConfigError::Syntax { reason: e.to_string().trim_end().into() })?;
         let reader = Reader { text };
+        let table = DeTable::parse(text).map_err(|error| ConfigError::Syntax {
+            line: reader.line(error.span().map_or(0, |span| span.start)),
+            reason: error.message().replace('\n', ", "),
+        })?;
         let (defaults, rest) = reader.values(table.get_ref(), &["output", "override", "remote"])?;
         let (path, overrides) = (path.to_owned(), Vec::new());
         let mut config = Self { path, output: None, remote: None, defaults, overrides };
@@ -108,7 +121,7 @@ impl Config {
     pub fn layers(&self, asset: &Path) -> Vec<Layer> {
         let place = self.path.display();
         let mut layers = vec![Layer { origin: place.to_string(), values: self.defaults.clone() }];
-        for part in self.overrides.iter().filter(|part| part.globs.iter().any(|glob| glob.is_match(asset))) {
+        for part in self.overrides.iter().filter(|part| part.globs.is_match(asset)) {
             let origin = format!("{place}, override of {}", part.patterns.join(", "));
             layers.push(Layer { origin, values: part.values.clone() });
         }
@@ -184,17 +197,15 @@ impl Reader<'_> {
             DeValue::Array(list) => list.iter().map(Spanned::get_ref).collect(),
             single => vec![single],
         };
-        let (mut patterns, mut globs) = (Vec::new(), Vec::new());
+        let mut patterns = Vec::new();
         for pattern in list {
             let DeValue::String(pattern) = pattern else {
                 return Err(self.wrong("files", files, "neither a glob nor a list of globs"));
             };
-            // As in .gitignore: a name alone is meant wherever it is.
-            let anywhere = if pattern.contains('/') { pattern.to_string() } else { format!("**/{pattern}") };
-            let glob = GlobBuilder::new(&anywhere).literal_separator(true).build();
-            globs.push(glob.map_err(|e| self.wrong("files", files, &e.to_string()))?.compile_matcher());
             patterns.push(pattern.to_string());
         }
+        let line = self.line(files.span().start);
+        let globs = globs(&patterns).map_err(|error| ConfigError::Glob { line, error })?;
         Ok(Override { patterns, globs, values })
     }
 

@@ -6,6 +6,7 @@ use serde_json::{Map, Value};
 
 use super::values::{ValueError, Values};
 use crate::bake::Settings;
+use crate::text::printable;
 
 /// Settings that come from one place.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,7 +54,7 @@ fn name(engine: &super::Engine) -> String {
     serde_json::to_value(engine).ok().and_then(|v| v.as_str().map(str::to_owned)).unwrap_or_default()
 }
 
-/// As lines of TOML, each with its origin.
+/// Lines of TOML, each with its origin, as a terminal may show them.
 impl Display for Resolved {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let lines: Vec<(String, &str)> = Values::names()
@@ -66,6 +67,6 @@ impl Display for Resolved {
             })
             .collect();
         let width = lines.iter().map(|(line, _)| line.len()).max().unwrap_or(0);
-        lines.iter().try_for_each(|(line, origin)| writeln!(f, "{line:width$}  # {origin}"))
+        lines.iter().try_for_each(|(line, origin)| writeln!(f, "{line:width$}  # {}", printable(origin)))
     }
 }

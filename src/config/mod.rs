@@ -4,11 +4,13 @@
 //! `engine` stands for what it needs in its own layer, beneath the other values of that layer.
 
 mod file;
+mod globs;
 mod layers;
 mod remote;
 mod values;
 
 pub use file::{Config, ConfigError, FILE_NAME, TEMPLATE};
+pub use globs::GlobError;
 pub use layers::{Layer, Resolved, resolve};
 pub use remote::RemoteValues;
 pub use values::{Engine, FrameName, ValueError, Values};

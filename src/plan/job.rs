@@ -9,7 +9,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::{Map, Value, json};
 
 use super::error::RunError;
-use crate::bake::{Settings, Survey, hash_file, read_file, survey};
+use crate::bake::{Settings, Survey, hash_file, portable_stem, read_file, survey};
 use crate::config::Values;
 use crate::digest::{Digest, digest};
 use crate::gltf::document::{Container, Document};
@@ -212,7 +212,8 @@ fn outputs(survey: &Survey, settings: &Settings, stem: &str, folder: &Path) -> V
     let is_glb = if survey.has_bumps { settings.glb } else { survey.container == Container::Glb };
     let mut outputs = vec![file(folder.join(format!("{stem}.{}", if is_glb { "glb" } else { "gltf" })))];
     if survey.has_bumps && !is_glb {
-        outputs.push(JobOutput { path: folder.join(format!("{stem}.roughcast")), kind: OutputKind::Folder });
+        let name = format!("{}.roughcast", portable_stem(stem));
+        outputs.push(JobOutput { path: folder.join(name), kind: OutputKind::Folder });
     }
     if !is_glb {
         outputs.extend(survey.buffers.iter().map(|buffer| file(folded(&folder.join(buffer)))));

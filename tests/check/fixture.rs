@@ -19,7 +19,7 @@ pub struct Bake {
 pub fn roughcast(arguments: &[&str]) -> (Outcome, String, String) {
     let cli = Cli::try_parse_from(std::iter::once("roughcast").chain(arguments.iter().copied())).unwrap();
     let (mut out, mut err) = (Vec::new(), Vec::new());
-    let outcome = run(cli, &mut out, &mut err).unwrap();
+    let outcome = run(cli, &mut out, &mut err);
     (outcome, String::from_utf8(out).unwrap(), String::from_utf8(err).unwrap())
 }
 

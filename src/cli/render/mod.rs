@@ -20,6 +20,7 @@ use crate::render::{
     Difference, EnvironmentFilter, Filter, Reflection, Shader, Subject, Tone, filtered, highlight, relative_l1,
     supersampled,
 };
+use crate::text::printable;
 use columns::{Column, Columns};
 pub(super) use error::RenderError;
 use input::Input;
@@ -223,7 +224,7 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
 }
 
 fn summary(sheet: &SheetReport) -> String {
-    let mut text = format!("{}\n", sheet.path);
+    let mut text = format!("{}\n", printable(&sheet.path));
     for Row { distance, columns, noise } in &sheet.rows {
         for Scored { name, difference } in columns {
             text += &format!(

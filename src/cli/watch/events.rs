@@ -9,6 +9,7 @@ use serde::{Serialize, Serializer};
 
 use crate::cli::report::{Asset, Status};
 use crate::plan::{Done, Written};
+use crate::text::printable;
 use crate::watch::Removed;
 
 /// A line of `--json`.
@@ -114,11 +115,13 @@ impl<'w> Teller<'w> {
         match event {
             _ if self.is_quiet => Ok(()),
             Event::Started { folder, output, .. } => {
-                let (folder, output) = (folder.0.display(), output.0.display());
+                let (folder, output) = (folder.0.display().to_string(), output.0.display().to_string());
+                let (folder, output) = (printable(&folder), printable(&output));
                 writeln!(self.out, "watching {folder}, baking to {output}; Ctrl-C ends")
             }
             Event::Removed { input, files } => {
-                writeln!(self.out, "removed {}: {} file(s) of it", input.0.display(), files.len())
+                let input = input.0.display().to_string();
+                writeln!(self.out, "removed {}: {} file(s) of it", printable(&input), files.len())
             }
             _ => Ok(()),
         }?;

@@ -129,9 +129,8 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
         }
         if let Some(hook) = &hook
             && let Some(changes) = teller.take_changes()
-            && let Err(error) = hook.run(&changes, &stop)
         {
-            teller.warn(&error)?;
+            hook.run(&changes, &stop).iter().try_for_each(|error| teller.warn(error))?;
         }
         let is_followed = wakes.as_ref().is_none_or(|wakes| wakes.is_following(round.scope()));
         if !is_followed {

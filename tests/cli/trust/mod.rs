@@ -1,5 +1,6 @@
 //! What files of strangers may not do: nothing is lost, and no one is let in.
 
 mod decoders;
+mod edges;
 mod publish;
 mod validated;
