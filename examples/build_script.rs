@@ -9,8 +9,8 @@ use std::error::Error;
 use std::fs;
 use std::path::PathBuf;
 
-use roughcast::bake::Places;
 use roughcast::config::resolve;
+use roughcast::output::Guard;
 use roughcast::plan::{Job, Room, finish, prepare};
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -23,14 +23,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     sources.retain(|path| path.extension().is_some_and(|e| e == "gltf" || e == "glb"));
     sources.sort();
     let settings = resolve(&[])?.values;
-    let (mut places, room) = (Places::default(), Room::new(1));
+    let (mut guard, room) = (Guard::inside(&output), Room::new(1));
     for source in sources {
         let job = Job::new(&source, &output, &settings)?;
         for input in &job.inputs {
             println!("cargo::rerun-if-changed={}", input.path.display());
         }
         let prepared = prepare(&job, None, &room, &|_| {});
-        finish(&job, prepared, &mut places, &mut |_| {})?;
+        finish(&job, prepared, &mut guard, &mut |_| {})?;
     }
     Ok(())
 }

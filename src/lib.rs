@@ -23,6 +23,7 @@ pub mod judge;
 pub mod lobe;
 pub mod map;
 pub mod memory;
+pub mod output;
 pub mod plan;
 pub mod pyramid;
 pub mod remote;

@@ -3,7 +3,8 @@
 use std::error::Error;
 use std::path::Path;
 
-use roughcast::bake::{encode_png, write_file};
+use roughcast::bake::encode_png;
+use roughcast::output::Guard;
 use roughcast::texture::uastc::Effort;
 
 const GAP: u32 = 8;
@@ -38,7 +39,8 @@ impl Canvas {
 
 /// Writes the canvas to a file of `folder`.
 pub fn write(folder: &Path, name: &str, canvas: Canvas) -> Result<(), Box<dyn Error>> {
-    write_file(&folder.join(name), &encode_png(&canvas.rgba, canvas.width, canvas.side, Effort::Best)?)?;
+    let png = encode_png(&canvas.rgba, canvas.width, canvas.side, Effort::Best)?;
+    Guard::default().place(&folder.join(name))?.write(&png)?;
     println!("\n{name}");
     Ok(())
 }

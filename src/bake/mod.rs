@@ -18,7 +18,6 @@ pub(crate) mod notes;
 mod plan;
 mod png;
 mod provenance;
-mod publish;
 mod pyramids;
 mod reader;
 mod relief;
@@ -37,12 +36,9 @@ pub use chain::{Chain, GridError, kept_bytes};
 pub use container::ContainerError;
 pub use extension::EXTENSION;
 pub use job::JobError;
-pub use names::portable_stem;
+pub use names::{fit_name, output_stem, portable_stem};
 pub use png::encode_png;
 pub use provenance::DocumentProvenance;
-pub use publish::{
-    Places, PublishError, UNFINISHED, case_folded, claim, copy_file, sweep, write_file, write_unsynced,
-};
 pub use pyramids::Range;
 pub use relief::Relief;
 pub use settings::{Form, Model, Profile, Settings};

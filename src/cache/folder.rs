@@ -9,9 +9,9 @@ use walkdir::WalkDir;
 
 use super::entry::{Entry, Fits, MAX_ENTRY_BYTES, Stored, Unusable};
 use super::error::CacheError;
-use crate::bake::{UNFINISHED, write_unsynced};
 use crate::digest::{Digest, digest};
 use crate::input_file::{check_file, open_file, read_file};
+use crate::output::{Place, is_abandoned};
 
 /// A cache in a folder.
 #[derive(Clone, Debug)]
@@ -75,7 +75,7 @@ impl Folder {
     pub fn put_entry(&self, entry: &Entry) -> Result<(), CacheError> {
         let path = self.path("jobs", entry.job);
         let text = entry.to_bytes().map_err(|e| failed(&path)(e.into()))?;
-        write_unsynced(&path, &text).map_err(failed(&path))
+        self.write(&path, &text)
     }
 
     /// Stores the bytes of `stored`, also over a blob that is there: it may be damaged.
@@ -84,7 +84,7 @@ impl Folder {
     /// [`CacheError::Io`].
     pub fn put_blob(&self, stored: &Stored, bytes: &[u8]) -> Result<(), CacheError> {
         let path = self.path("blobs", stored.blake3);
-        write_unsynced(&path, bytes).map_err(failed(&path))
+        self.write(&path, bytes)
     }
 
     /// Marks `entry` and its blobs as used, unless that was done within the hour: a run that has nothing to do would write
@@ -104,19 +104,22 @@ impl Folder {
         }
     }
 
-    /// Removes what was not used for longest until at most `limit` bytes are left. Files that no cache writes stay, and do
-    /// not count.
+    /// Removes what killed runs left half written, and what was not used for longest until at most `limit` bytes are left. Files
+    /// that no cache writes stay, and do not count.
     ///
     /// # Errors
     /// [`CacheError::Io`] where the folder cannot be listed.
     pub fn trim(&self, limit: u64) -> Result<(), CacheError> {
         let mut files = Vec::new();
         for kind in ["jobs", "blobs"].map(|kind| self.root.join(kind)).iter().filter(|kind| kind.exists()) {
-            for entry in WalkDir::new(kind).min_depth(2).max_depth(2) {
+            // A link would lead to files that are none of the cache.
+            for entry in WalkDir::new(kind).follow_root_links(false).min_depth(2).max_depth(2) {
                 // Other processes remove files too.
                 let Ok(entry) = entry else { continue };
                 let Ok(facts) = entry.metadata() else { continue };
-                if facts.is_file() && is_of_cache(entry.path()) {
+                if is_abandoned(entry.file_name(), &facts) {
+                    let _ = fs::remove_file(entry.path());
+                } else if facts.is_file() && is_of_cache(entry.path()) {
                     let used = facts.modified().map_err(failed(entry.path()))?;
                     files.push((used, entry.into_path(), facts.len()));
                 }
@@ -134,6 +137,10 @@ impl Folder {
         Ok(())
     }
 
+    fn write(&self, path: &Path, bytes: &[u8]) -> Result<(), CacheError> {
+        Place::below(&self.root, path).and_then(|place| place.write_unsynced(bytes)).map_err(failed(path))
+    }
+
     fn path(&self, kind: &str, digest: Digest) -> PathBuf {
         self.root.join(kind).join(format!("{digest:.2}")).join(digest.to_string())
     }
@@ -144,7 +151,7 @@ fn is_of_cache(path: &Path) -> bool {
     let name = |path: &Path| path.file_name().and_then(|name| name.to_str()).map(str::to_owned);
     let (Some(file), Some(folder)) = (name(path), path.parent().and_then(name)) else { return false };
     let is_named = file.parse::<Digest>().is_ok_and(|digest| format!("{digest:.2}") == folder);
-    is_named || file.starts_with(UNFINISHED)
+    is_named
 }
 
 /// How exactly the order of eviction is known.

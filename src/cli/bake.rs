@@ -15,7 +15,8 @@ use super::remote::RemoteOptions;
 use super::report::{Asset, Report, Status};
 use super::selection::Selection;
 use super::work::{Work, Worked};
-use crate::bake::{Settings, write_file};
+use crate::bake::Settings;
+use crate::output::PublishError;
 use crate::text::printable;
 
 /// Bake glTF assets: KTX2 textures with the lost roughness in their mips, and a glTF that refers to them.
@@ -69,9 +70,10 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
     let mut outcome = Outcome::Done;
     // Held until all outputs are written. Jobs of a plan take none: other parts of the plan write to their folders, too.
     let mut _lock = None;
-    let (planned, failed, settings, configs, server) = match args.jobs.planned(args.selection.output.as_deref()) {
+    let planned = args.jobs.planned(args.selection.output.as_deref());
+    let (planned, failed, settings, configs, server, output) = match planned {
         Some(Err(reason)) => return usage(err, &reason),
-        Some(Ok(planned)) => (planned, Vec::new(), Settings::default(), Vec::new(), None),
+        Some(Ok(planned)) => (planned, Vec::new(), Settings::default(), Vec::new(), None, None),
         None => {
             let selected = match args.selection.find(&args.inputs) {
                 Ok(selected) => selected,
@@ -93,8 +95,17 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
                     message.map_or(Ok(()), |message| writeln!(err, "note: {message}")).map(|()| true)
                 })?;
             }
-            (jobs::plan(&selected.assets), selected.errors, selected.settings, selected.configs, selected.remote)
+            let output = Some(selected.output);
+            let planned = jobs::plan(&selected.assets);
+            (planned, selected.errors, selected.settings, selected.configs, selected.remote, output)
         }
+    };
+    let mut guard = jobs::guard(&planned, output.as_deref(), configs.iter().chain(args.jobs.plan_file()));
+    let mut place = |path: &Option<PathBuf>| path.as_ref().map(|path| guard.place(path)).transpose();
+    let places = (|| Ok::<_, PublishError>([place(&args.report)?, place(&args.depfile)?]))();
+    let [report_place, depfile_place] = match places {
+        Ok(places) => places,
+        Err(reason) => return usage(err, &reason),
     };
     let mut planned = match args.jobs.choose(planned) {
         Ok(planned) => planned,
@@ -119,7 +130,7 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
         check: &|job| args.jobs.check(job),
         is_quiet: args.quiet,
     };
-    let Worked { assets, outcome: ended, remote } = work.run(planned, err, &mut |asset, _| {
+    let Worked { assets, outcome: ended, remote } = work.run(planned, &mut guard, err, &mut |asset, _| {
         if args.quiet || args.json { Ok(()) } else { out.write_all(asset.summary().as_bytes()) }
     })?;
     outcome = outcome.and(ended);
@@ -144,9 +155,9 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
     } else {
         String::new()
     };
-    for (path, text) in [(&args.report, &json), (&args.depfile, &dependencies)] {
-        if let Some(path) = path
-            && let Err(error) = write_file(path, text.as_bytes())
+    for (place, text) in [(report_place, &json), (depfile_place, &dependencies)] {
+        if let Some(place) = place
+            && let Err(error) = place.write(text.as_bytes())
         {
             writeln!(err, "error: {error}")?;
             outcome = outcome.and(Outcome::Failed);

@@ -1,9 +1,8 @@
 //! `roughcast compare`.
 
 use std::collections::BTreeSet;
-use std::fs;
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 
 use serde_json::{Value, json};
@@ -14,7 +13,7 @@ use super::progress::Progress;
 use super::render::RenderError;
 use super::render::columns::{file_name, read_back};
 use super::render::input::Input;
-use crate::bake::{BakeError, Baked, Form, Model, Settings, Source, bake, write_file};
+use crate::bake::{BakeError, Baked, Form, Model, Settings, Source, bake};
 use crate::compare::{Comparison, OURS, Ours, chart, compare, csv, page};
 use crate::gltf::document::Document;
 use crate::gltf::material::{LayerKind, materials};
@@ -117,15 +116,13 @@ fn compare_all(args: &Args) -> Result<(Vec<Comparison>, Vec<PathBuf>), RenderErr
         let name = file_name("", &comparison.material, &mut taken);
         files.push((format!("compare-{name}.svg"), chart(comparison)));
     }
-    let same = |path: &Path| fs::canonicalize(path).ok().is_some_and(|p| fs::canonicalize(&args.input).ok() == Some(p));
-    let files: Vec<(PathBuf, String)> = files.into_iter().map(|(name, text)| (args.output.join(name), text)).collect();
-    if let Some((path, _)) = files.iter().find(|(path, _)| same(path)) {
-        return Err(RenderError::OverInput { path: path.clone() });
+    let mut guard = input.guard(Some(&args.input));
+    let mut places = Vec::with_capacity(files.len());
+    for (name, text) in files {
+        places.push((guard.place(&args.output.join(name))?, text));
     }
-    for (path, text) in &files {
-        write_file(path, text.as_bytes())?;
-    }
-    Ok((comparisons, files.into_iter().map(|(path, _)| path).collect()))
+    places.iter().try_for_each(|(place, text)| place.write(text.as_bytes()))?;
+    Ok((comparisons, places.iter().map(|(place, _)| place.path().to_owned()).collect()))
 }
 
 fn of_document(args: &Args, source: &Source<'_>) -> Result<Vec<Comparison>, RenderError> {

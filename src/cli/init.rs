@@ -1,11 +1,11 @@
 //! `roughcast init`.
 
-use std::fs::OpenOptions;
 use std::io::{self, Write};
 use std::path::PathBuf;
 
 use super::Outcome;
 use crate::config::{FILE_NAME, TEMPLATE};
+use crate::output::Guard;
 use crate::text::printable;
 
 /// Write a commented roughcast.toml: every setting with its default.
@@ -23,8 +23,8 @@ pub struct Args {
 /// When `out` or `err` cannot be written to.
 pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<Outcome> {
     let path = args.folder.join(FILE_NAME);
-    let file = OpenOptions::new().write(true).create_new(true).open(&path);
-    match file.and_then(|mut file| file.write_all(TEMPLATE.as_bytes())) {
+    let written = Guard::default().place(&path).map_err(io::Error::other);
+    match written.and_then(|place| place.write_new(TEMPLATE.as_bytes())) {
         Ok(()) => {
             writeln!(out, "wrote {}", printable(&path.display().to_string()))?;
             Ok(Outcome::Done)

@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 
 use walkdir::WalkDir;
 
-use crate::bake::case_folded;
+use crate::bake::output_stem;
+use crate::output::case_folded;
 
 /// An asset to bake.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,7 +17,7 @@ pub struct Input {
     pub path: PathBuf,
     /// Its output folder, and its name there without extension.
     pub folder: PathBuf,
-    /// File name without extension.
+    /// File name without extension, as far as it fits into names of outputs.
     pub stem: String,
 }
 
@@ -215,8 +216,8 @@ fn find_one(argument: &Path, output: &Path, is_baked: &mut dyn FnMut(&Path) -> b
 
 fn input(path: &Path, folder: PathBuf) -> Result<Input, InputError> {
     let stem = path.file_stem().and_then(|s| s.to_str());
-    let stem = stem.ok_or_else(|| InputError::NotUtf8 { path: path.to_owned() })?.to_owned();
-    Ok(Input { path: path.to_owned(), folder, stem })
+    let stem = stem.ok_or_else(|| InputError::NotUtf8 { path: path.to_owned() })?;
+    Ok(Input { path: path.to_owned(), folder, stem: output_stem(stem) })
 }
 
 fn folder_of(path: &Path) -> &Path {
@@ -227,7 +228,7 @@ fn is_asset(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("gltf") || e.eq_ignore_ascii_case("glb"))
 }
 
-/// The folder without links and dots, if it exists.
+/// The folder without links and dots, whether or not it exists.
 fn real(folder: &Path) -> Option<PathBuf> {
-    fs::canonicalize(if folder.as_os_str().is_empty() { Path::new(".") } else { folder }).ok()
+    crate::output::real(folder).ok()
 }

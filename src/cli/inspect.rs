@@ -1,7 +1,6 @@
 //! `roughcast inspect`.
 
 use std::collections::BTreeSet;
-use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
@@ -9,12 +8,14 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::Outcome;
-use crate::bake::{PublishError, Source, SourceError, read_file, write_file};
+use super::sources::protect;
+use crate::bake::{Source, SourceError, output_stem, read_file};
 use crate::gltf::document::{Document, DocumentError};
 use crate::gltf::texture::ImageLocation;
 use crate::inspect::{
     DocumentFacts, ExtractError, TextureFacts, document_text, extract, inspect_document, inspect_texture, texture_text,
 };
+use crate::output::{Guard, PublishError};
 use crate::text::printable;
 use crate::texture::ktx2::ReadError;
 
@@ -47,8 +48,6 @@ enum InspectError {
     Extract { image: String, error: ExtractError },
     #[error(transparent)]
     Publish(#[from] PublishError),
-    #[error("expected an output folder apart from the inputs, found that {} is one; choose another", path.display())]
-    OverInput { path: PathBuf },
 }
 
 /// What a file is.
@@ -90,11 +89,12 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
 
 fn inspect(args: &Args) -> Result<(Facts, Vec<PathBuf>), InspectError> {
     let bytes = read_file(&args.file)?;
-    let mut inputs: BTreeSet<PathBuf> = fs::canonicalize(&args.file).into_iter().collect();
+    let mut guard = Guard::default();
+    guard.add_source(&args.file);
     if bytes.starts_with(&ktx2::MAGIC) || args.file.extension().is_some_and(|e| e.eq_ignore_ascii_case("ktx2")) {
         let facts = inspect_texture(&bytes)?;
         let written = match &args.extract {
-            Some(folder) => write_levels(&stem(&args.file), &bytes, folder, &inputs)?,
+            Some(folder) => write_levels(&stem(&args.file), &bytes, folder, &mut guard)?,
             None => Vec::new(),
         };
         return Ok((Facts::Ktx2(Box::new(facts)), written));
@@ -106,7 +106,7 @@ fn inspect(args: &Args) -> Result<(Facts, Vec<PathBuf>), InspectError> {
     let mut written = Vec::new();
     if let Some(output) = &args.extract {
         let images = images(&document)?;
-        inputs.extend(images.iter().filter_map(|(name, _)| fs::canonicalize(folder.join(name)).ok()));
+        protect(&mut guard, &args.file, &document);
         let mut taken = BTreeSet::new();
         for (image, location) in images {
             let bytes =
@@ -116,7 +116,7 @@ fn inspect(args: &Args) -> Result<(Facts, Vec<PathBuf>), InspectError> {
                 // Case-insensitive file systems see one file where names differ by case only.
                 let numbered = |n: u32| if n == 1 { stem.clone() } else { format!("{stem}-{n}") };
                 let unique = (1..).map(numbered).find(|name| taken.insert(name.to_lowercase())).unwrap_or_default();
-                written.extend(write_levels(&unique, &bytes, output, &inputs)?);
+                written.extend(write_levels(&unique, &bytes, output, &mut guard)?);
             }
         }
     }
@@ -137,25 +137,17 @@ fn images(document: &Document) -> Result<Vec<(String, ImageLocation)>, DocumentE
     Ok(list.iter().enumerate().filter_map(image).collect())
 }
 
-fn write_levels(
-    stem: &str,
-    bytes: &[u8],
-    folder: &Path,
-    inputs: &BTreeSet<PathBuf>,
-) -> Result<Vec<PathBuf>, InspectError> {
+fn write_levels(stem: &str, bytes: &[u8], folder: &Path, guard: &mut Guard) -> Result<Vec<PathBuf>, InspectError> {
     let pictures = extract(bytes).map_err(|error| InspectError::Extract { image: stem.to_owned(), error })?;
     let mut written = Vec::with_capacity(pictures.len());
     for picture in pictures {
-        let path = folder.join(format!("{stem}.level{}.{}", picture.level, picture.extension));
-        if fs::canonicalize(&path).is_ok_and(|path| inputs.contains(&path)) {
-            return Err(InspectError::OverInput { path });
-        }
-        write_file(&path, &picture.bytes)?;
-        written.push(path);
+        let place = guard.place(&folder.join(format!("{stem}.level{}.{}", picture.level, picture.extension)))?;
+        place.write(&picture.bytes)?;
+        written.push(place.path().to_owned());
     }
     Ok(written)
 }
 
 fn stem(path: &Path) -> String {
-    path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+    output_stem(&path.file_stem().unwrap_or_default().to_string_lossy())
 }

@@ -10,6 +10,7 @@ use super::inputs::Input;
 use super::part::{Part, PartError};
 use crate::bake::read_file;
 use crate::config::Resolved;
+use crate::output::Guard;
 use crate::plan::{Job, Misplaced, Plan, RunError, confine};
 
 /// A job by its asset's name for a person, or why it cannot be planned.
@@ -27,6 +28,15 @@ pub fn plan(assets: &[(Input, Resolved)]) -> Vec<Planned> {
         job: Job::new(&input.path, &input.folder, &resolved.values),
     });
     planned.collect()
+}
+
+/// What decides where a run of `planned` may write: nowhere but inside `output`, if that is known, never over what the jobs or
+/// the run itself read (`others`).
+pub fn guard<'p>(planned: &[Planned], output: Option<&Path>, others: impl IntoIterator<Item = &'p PathBuf>) -> Guard {
+    let mut guard = output.map_or_else(Guard::default, Guard::inside);
+    others.into_iter().for_each(|path| guard.add_source(path));
+    planned.iter().filter_map(|planned| planned.job.as_ref().ok()).for_each(|job| job.protect(&mut guard));
+    guard
 }
 
 /// What a plan has settled: all of a selection, by the ids of arguments and of groups of them.
@@ -120,6 +130,11 @@ impl JobOptions {
     /// Returns whether other runs may bake other jobs of the same selection at the same time.
     pub fn are_parts(&self) -> bool {
         self.job.is_some() || self.shard.is_some()
+    }
+
+    /// The file of the plan, if one is named.
+    pub fn plan_file(&self) -> Option<&PathBuf> {
+        self.plan.as_ref()
     }
 
     /// Checks that a job of a plan is what its files make of it now.

@@ -1,12 +1,13 @@
 //! `roughcast man`.
 
-use std::fs;
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use clap::CommandFactory;
+use clap::{Command, CommandFactory};
+use clap_mangen::Man;
 
 use super::{Cli, Outcome};
+use crate::output::Guard;
 use crate::text::printable;
 
 /// Write the manual pages: one for the tool and one for each command.
@@ -23,16 +24,32 @@ pub struct Args {
 /// # Errors
 /// When `out` or `err` cannot be written to.
 pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<Outcome> {
-    let pages = fs::create_dir_all(&args.folder).and_then(|()| clap_mangen::generate_to(Cli::command(), &args.folder));
-    match pages {
+    let mut pages = Vec::new();
+    // Subcommands have pages of their own; `help` tells what they say.
+    let mut command = Cli::command().disable_help_subcommand(true);
+    command.build();
+    add_pages(command, &mut pages)?;
+    let mut guard = Guard::default();
+    let written = pages.iter().try_for_each(|(name, page)| guard.place(&args.folder.join(name))?.write(page));
+    match written {
         Ok(()) => {
             writeln!(out, "wrote {}", printable(&args.folder.display().to_string()))?;
             Ok(Outcome::Done)
         }
         Err(error) => {
-            let folder = args.folder.display();
-            writeln!(err, "error: {folder}: expected a folder that can be written to, found: {error}")?;
+            writeln!(err, "error: {error}")?;
             Ok(Outcome::Failed)
         }
     }
+}
+
+/// Adds the pages of `command` and its subcommands, each with its file name.
+fn add_pages(command: Command, pages: &mut Vec<(String, Vec<u8>)>) -> io::Result<()> {
+    for subcommand in command.get_subcommands().filter(|subcommand| !subcommand.is_hide_set()) {
+        add_pages(subcommand.clone(), pages)?;
+    }
+    let (man, mut page) = (Man::new(command), Vec::new());
+    man.render(&mut page)?;
+    pages.push((man.get_filename(), page));
+    Ok(())
 }

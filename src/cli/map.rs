@@ -10,14 +10,14 @@ use super::Outcome;
 use super::options::{LobeName, TextureOptions, finite, unit_interval};
 use crate::bake::report::{Choice, Content};
 use crate::bake::{
-    BareBake, BareError, BareTexture, OwnRoughness, PublishError, Relief, Settings, bake_map, notes, read_file,
-    write_file,
+    BareBake, BareError, BareTexture, OwnRoughness, Relief, Settings, bake_map, notes, output_stem, read_file,
 };
 use crate::bump::Wrap;
 use crate::digest::digest;
 use crate::map::{
     DecodeError, DecodeOptions, HeightMap, Image, MapError, NormalLayout, NormalMap, decode, decode_colours,
 };
+use crate::output::{Guard, PublishError};
 use crate::text::printable;
 use crate::texture::ktx2::{Key, Provenance, SourceDigest};
 
@@ -31,7 +31,7 @@ use crate::texture::ktx2::{Key, Provenance, SourceDigest};
 pub struct Args {
     /// PNG, JPEG, EXR, TIFF, TGA, HDR, WebP or KTX2.
     image: PathBuf,
-    /// The KTX2 file to write.
+    /// The KTX2 file to write, with the extension .ktx2.
     #[arg(short, long, value_name = "OUT.ktx2")]
     output: PathBuf,
     /// The image holds heights, not normals.
@@ -94,8 +94,8 @@ enum MapCommandError {
     Bake(#[from] BareError),
     #[error(transparent)]
     Publish(#[from] PublishError),
-    #[error("{}: expected an output apart from the source, found the source itself; choose another with -o", path.display())]
-    OverSource { path: PathBuf },
+    #[error("-o {}: expected the name of a .ktx2 file, found another extension; name it {}", path.display(), path.with_extension("ktx2").display())]
+    NotKtx2 { path: PathBuf },
 }
 
 /// Bakes the map that `args` name.
@@ -111,7 +111,7 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
     match bake(args, &settings) {
         Err(error) => {
             writeln!(err, "error: {error}")?;
-            Ok(Outcome::Failed)
+            Ok(if matches!(error, MapCommandError::NotKtx2 { .. }) { Outcome::Usage } else { Outcome::Failed })
         }
         Ok(written) => {
             if args.json {
@@ -175,6 +175,12 @@ impl Written {
 }
 
 fn bake(args: &Args, settings: &Settings) -> Result<Written, MapCommandError> {
+    let mut guard = Guard::default();
+    [Some(&args.image), args.roughness.as_ref()].into_iter().flatten().for_each(|input| guard.add_source(input));
+    let first = guard.place(&args.output)?;
+    if !args.output.extension().is_some_and(|e| e.eq_ignore_ascii_case("ktx2")) {
+        return Err(MapCommandError::NotKtx2 { path: args.output.clone() });
+    }
     let bytes = read(&args.image)?;
     let image = decoded(&args.image, &bytes, args.layer.clone(), settings, decode)?;
     let mut sources = vec![source_digest(&args.image, &bytes)];
@@ -212,22 +218,17 @@ fn bake(args: &Args, settings: &Settings) -> Result<Written, MapCommandError> {
     if is_jpeg {
         baked.notes.push(notes::JPEG.to_owned());
     }
-    let mut places = Vec::new();
-    for (index, texture) in baked.textures.iter().enumerate() {
-        let path = if index == 0 { args.output.clone() } else { beside(&args.output, texture.content) };
-        let inputs = [Some(&args.image), args.roughness.as_ref()].into_iter().flatten();
-        for input in inputs {
-            if is_same_file(input, &path) {
-                return Err(MapCommandError::OverSource { path });
-            }
-        }
-        places.push((path, texture_keys(texture, args, &baked, &sources, settings)));
+    let mut places = vec![first];
+    for texture in baked.textures.iter().skip(1) {
+        places.push(guard.place(&beside(&args.output, texture.content))?);
     }
+    let keys: Vec<_> =
+        baked.textures.iter().map(|texture| texture_keys(texture, args, &baked, &sources, settings)).collect();
     let mut written = Vec::new();
-    for (texture, (path, keys)) in baked.textures.iter_mut().zip(places) {
+    for (texture, (place, keys)) in baked.textures.iter_mut().zip(places.into_iter().zip(keys)) {
         let bytes = texture.chain.take_ktx2(&keys).map_err(|error| BareError::Encode(error.into()))?;
-        write_file(&path, &bytes)?;
-        written.push((path, bytes.len() as u64));
+        place.write(&bytes)?;
+        written.push((place.path().to_owned(), bytes.len() as u64));
     }
     Ok(Written { baked, files: written })
 }
@@ -296,12 +297,8 @@ fn texture_keys(
 
 /// `wool.ktx2` -> `wool.roughness.ktx2`.
 fn beside(output: &Path, content: Content) -> PathBuf {
-    let stem = output.file_stem().unwrap_or_default().to_string_lossy();
+    let stem = output_stem(&output.file_stem().unwrap_or_default().to_string_lossy());
     output.with_file_name(format!("{stem}.{}.ktx2", content.name()))
-}
-
-fn is_same_file(a: &Path, b: &Path) -> bool {
-    matches!((std::fs::canonicalize(a), std::fs::canonicalize(b)), (Ok(a), Ok(b)) if a == b)
 }
 
 fn wrap_modes(text: &str) -> Result<[Wrap; 2], String> {

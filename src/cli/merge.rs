@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 
 use super::Outcome;
 use super::jobs::{JobsError, read_plan};
-use crate::bake::{read_file, write_file};
+use crate::bake::read_file;
+use crate::output::Guard;
 use crate::plan::{Merged, Told};
 use crate::text::printable;
 
@@ -50,6 +51,16 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
             return Ok(Outcome::Usage);
         }
     };
+    let mut guard = Guard::default();
+    plan.jobs.iter().for_each(|job| job.protect(&mut guard));
+    args.reports.iter().chain([&args.plan]).for_each(|path| guard.add_source(path));
+    let rest = match args.rest.as_ref().map(|path| guard.place(path)).transpose() {
+        Ok(rest) => rest,
+        Err(error) => {
+            writeln!(err, "error: {error}")?;
+            return Ok(Outcome::Usage);
+        }
+    };
     for (path, report) in args.reports.iter().zip(&reports) {
         if report.is_foreign(&plan) {
             writeln!(err, "warning: {}: expected a report of this plan, found none of its jobs there", path.display())?;
@@ -62,9 +73,9 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
         (true, false) => Outcome::Failed,
         (true, true) => Outcome::Done,
     };
-    if let Some(path) = &args.rest {
+    if let Some(place) = rest {
         let json = serde_json::to_string_pretty(&merged.rest(&plan)).map_err(io::Error::other)? + "\n";
-        if let Err(error) = write_file(path, json.as_bytes()) {
+        if let Err(error) = place.write(json.as_bytes()) {
             writeln!(err, "error: {error}")?;
             outcome = outcome.and(Outcome::Failed);
         }

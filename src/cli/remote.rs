@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use crate::config::RemoteValues;
+use super::trusted::{NamedServer, is_harmless};
 use crate::remote::{Header, Options, Tls};
 
 /// The variable that headers are taken from, a line for each.
@@ -97,19 +97,57 @@ pub enum RemoteOptionError {
         /// The system's error.
         error: std::io::Error,
     },
+    /// A server that assets name, and headers that are not for it.
+    #[error(
+        "{}: expected no server beside {HEADERS}, found url = {url:?}; the headers go only to a server that --remote, \
+         --config or the roughcast.toml of the working folder names",
+        config.display()
+    )]
+    HeaderForAssets {
+        /// The configuration that came with the assets.
+        config: PathBuf,
+        /// The server.
+        url: String,
+    },
+    /// A file that is not for assets to name: it would be sent to the server.
+    #[error(
+        "{}: expected {key} of [remote] below the working folder and in no hidden folder, found {}; if it is meant, name \
+         the configuration with --config",
+        config.display(), path.display()
+    )]
+    FileElsewhere {
+        /// The configuration that came with the assets.
+        config: PathBuf,
+        /// The key.
+        key: &'static str,
+        /// The file.
+        path: PathBuf,
+    },
     /// The running tool cannot be found.
     #[error("--remote: expected to find the running tool, found: {0}; name one with --remote-tool")]
     Tool(std::io::Error),
 }
 
 impl RemoteOptions {
-    /// What is said of a server, if one is named; `file` is what holds where flags say nothing.
+    /// What is said of a server, if one is named; `named` is what holds where flags say nothing.
     ///
     /// # Errors
     /// [`RemoteOptionError`].
-    pub fn options(&self, file: Option<&RemoteValues>) -> Result<Option<Options>, RemoteOptionError> {
-        let file = file.cloned().unwrap_or_default();
+    pub fn options(&self, named: Option<&NamedServer>) -> Result<Option<Options>, RemoteOptionError> {
+        let file = named.map(|named| named.values.clone()).unwrap_or_default();
         let Some(url) = self.remote.clone().or(file.url).filter(|_| !self.no_remote) else { return Ok(None) };
+        let headers = self.headers()?;
+        if let Some(NamedServer { values, config, is_trusted: false }) = named {
+            if self.remote.is_none() && !headers.is_empty() {
+                return Err(RemoteOptionError::HeaderForAssets { config: config.clone(), url });
+            }
+            let files =
+                [("ca", &values.ca), ("cert", &values.cert), ("key", &values.key), ("tool", &values.tool)].into_iter();
+            let mut files = files.filter_map(|(key, path)| Some((key, path.as_ref()?)));
+            if let Some((key, path)) = files.find(|(_, path)| !is_harmless(path)) {
+                return Err(RemoteOptionError::FileElsewhere { config: config.clone(), key, path: path.clone() });
+            }
+        }
         let tool = match self.remote_tool.clone().or(file.tool) {
             Some(tool) => tool,
             None => env::current_exe().map_err(RemoteOptionError::Tool)?,
@@ -124,7 +162,7 @@ impl RemoteOptions {
             url,
             instance: self.remote_instance.clone().or(file.instance).unwrap_or_default(),
             platform,
-            headers: self.headers()?,
+            headers,
             tls: Tls { authority: self.remote_ca.clone().or(file.ca), identity: cert.zip(key) },
             jobs: self.remote_jobs.or(file.jobs).unwrap_or(64).min(MOST_JOBS) as usize,
             timeout: timeout.map(Duration::from_secs),

@@ -1,16 +1,17 @@
 //! Which assets a command is about, and which settings hold for each.
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use super::Outcome;
 use super::inputs::{self, Input, InputError};
 use super::options::{DocumentOptions, LobeName, TextureOptions};
+use super::trusted::{self, NamedServer};
 use super::view::ViewOptions;
 use crate::bake::{Settings, read_file};
-use crate::config::{Config, ConfigError, FILE_NAME, Layer, RemoteValues, Resolved, ValueError, Values, resolve};
+use crate::config::{Config, ConfigError, FILE_NAME, Layer, Resolved, ValueError, Values, resolve};
+use crate::output;
 use crate::plan::recorded;
 use crate::texture::EncodeError;
 
@@ -69,6 +70,18 @@ pub enum SelectionError {
     /// A target that this build does not have.
     #[error(transparent)]
     Encode(#[from] EncodeError),
+    /// A configuration that came with assets sends outputs to a folder that is not for it to name.
+    #[error(
+        "{}: expected `output` below the working folder and in no hidden folder, found {}; if outputs belong there, name \
+         the folder with -o",
+        config.display(), path.display()
+    )]
+    OutputElsewhere {
+        /// The configuration.
+        config: PathBuf,
+        /// The folder.
+        path: PathBuf,
+    },
     /// No output folder.
     #[error("expected an output folder, found none; name it with -o, or as `output` in {FILE_NAME}")]
     NoOutput,
@@ -89,7 +102,7 @@ pub struct Selected {
     /// Configurations that were read.
     pub configs: Vec<PathBuf>,
     /// The server that the configuration of the first input names.
-    pub remote: Option<RemoteValues>,
+    pub remote: Option<NamedServer>,
 }
 
 impl Selected {
@@ -142,8 +155,12 @@ impl Selection {
         let first = arguments.first().ok_or(SelectionError::NoOutput)?;
         let folder = if first.is_dir() { first.as_path() } else { first.parent().unwrap_or(Path::new("")) };
         let found = self.settings.config(&mut configs, folder)?;
-        let output = self.output.clone().or_else(|| found.and_then(Found::output_folder));
-        let (output, remote) = (output.ok_or(SelectionError::NoOutput)?, found.and_then(Found::remote));
+        let output = match &self.output {
+            Some(output) => Some(output.clone()),
+            None => found.and_then(|found| found.output_folder().transpose()).transpose()?,
+        };
+        let remote = found.and_then(Found::remote);
+        let output = output.ok_or(SelectionError::NoOutput)?;
         let selected = Selected { remote, ..self.settings.select(configs, arguments, &output, is_baked)? };
         for (_, resolved) in &selected.assets {
             resolved.settings.target.check_available()?;
@@ -215,6 +232,8 @@ pub fn is_baked(path: &Path) -> bool {
 struct Found {
     config: Config,
     root: PathBuf,
+    /// Whether the user chose it, and not whoever made the assets: see [`super::trusted`].
+    is_trusted: bool,
 }
 
 impl Found {
@@ -225,12 +244,20 @@ impl Found {
         path.strip_prefix(&self.root).map_or_else(|_| asset.to_owned(), Path::to_owned)
     }
 
-    fn output_folder(&self) -> Option<PathBuf> {
-        self.config.output.as_ref().map(|output| self.folder().join(output))
+    /// The output folder that the configuration names.
+    fn output_folder(&self) -> Result<Option<PathBuf>, SelectionError> {
+        let Some(output) = &self.config.output else { return Ok(None) };
+        let path = self.folder().join(output);
+        if self.is_trusted || trusted::is_harmless(&path) {
+            return Ok(Some(path));
+        }
+        Err(SelectionError::OutputElsewhere { config: self.config.path.clone(), path })
     }
 
-    fn remote(&self) -> Option<RemoteValues> {
-        self.config.remote.clone().map(|remote| remote.in_folder(self.folder()))
+    /// The server that the configuration names.
+    fn remote(&self) -> Option<NamedServer> {
+        let values = self.config.remote.clone()?.in_folder(self.folder());
+        Some(NamedServer { values, config: self.config.path.clone(), is_trusted: self.is_trusted })
     }
 
     /// Its folder, as it was named.
@@ -247,7 +274,7 @@ impl Configs {
     fn named(&mut self, path: &Path) -> Result<Option<&Found>, SelectionError> {
         let root = real(path.parent().unwrap_or(Path::new("")));
         if !self.0.contains_key(&root) {
-            self.0.insert(root.clone(), Some(read(path, &root)?));
+            self.0.insert(root.clone(), Some(read(path, &root, true)?));
         }
         Ok(self.0.get(&root).and_then(Option::as_ref))
     }
@@ -257,19 +284,21 @@ impl Configs {
         let start = real(folder);
         if !self.0.contains_key(&start) {
             let roots = start.ancestors().find(|root| root.join(FILE_NAME).is_file());
-            let found = roots.map(|root| read(&named_from_here(&root.join(FILE_NAME)), root)).transpose()?;
+            let read =
+                |root: &Path| read(&named_from_here(&root.join(FILE_NAME)), root, trusted::is_working_folder(root));
+            let found = roots.map(read).transpose()?;
             self.0.insert(start.clone(), found);
         }
         Ok(self.0.get(&start).and_then(Option::as_ref))
     }
 }
 
-fn read(path: &Path, root: &Path) -> Result<Found, SelectionError> {
+fn read(path: &Path, root: &Path, is_trusted: bool) -> Result<Found, SelectionError> {
     let failed = |error| SelectionError::Read { path: path.to_owned(), error };
     let bytes = read_file(path).map_err(failed)?;
     let text = String::from_utf8(bytes).map_err(|e| failed(io::Error::new(io::ErrorKind::InvalidData, e)))?;
     let config = Config::parse(&text, path).map_err(|error| SelectionError::Config { path: path.to_owned(), error })?;
-    Ok(Found { config, root: root.to_owned() })
+    Ok(Found { config, root: root.to_owned(), is_trusted })
 }
 
 /// Relative to the working folder where it is below it: what a person wrote, and what is the same on every machine.
@@ -277,8 +306,7 @@ fn named_from_here(path: &Path) -> PathBuf {
     path.strip_prefix(real(Path::new(""))).map_or_else(|_| path.to_owned(), Path::to_owned)
 }
 
-/// The folder without links and dots; as it is where it does not exist.
+/// The folder without links and dots; as it is where it cannot be resolved.
 fn real(folder: &Path) -> PathBuf {
-    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned())
+    output::real(folder).unwrap_or_else(|_| folder.to_owned())
 }

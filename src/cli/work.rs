@@ -9,8 +9,9 @@ use super::Outcome;
 use super::jobs::Planned;
 use super::progress::Progress;
 use super::report::Asset;
-use crate::bake::{Places, Settings};
+use crate::bake::Settings;
 use crate::cache::{Cache, CacheError};
+use crate::output::Guard;
 use crate::plan::{self, Job, Lookup, Room, RunError};
 use crate::remote::{Counts, Errand, JobFailure, Options, Remote, Wait};
 
@@ -38,14 +39,22 @@ pub struct Work<'a> {
     pub is_quiet: bool,
 }
 
+/// Where outputs and complaints of a run go.
+struct Outlet<'a> {
+    guard: &'a mut Guard,
+    progress: &'a Progress,
+    err: &'a mut dyn Write,
+}
+
 impl Work<'_> {
-    /// Runs `planned` and tells of each, with what complaints go to.
+    /// Runs `planned` and tells of each, with what complaints go to. `guard` decides what may be written.
     ///
     /// # Errors
     /// When `err` cannot be written to, or `tell` cannot tell.
     pub fn run(
         &self,
         planned: Vec<Planned>,
+        guard: &mut Guard,
         err: &mut dyn Write,
         tell: &mut dyn FnMut(&Asset, &mut dyn Write) -> io::Result<()>,
     ) -> io::Result<Worked> {
@@ -78,7 +87,8 @@ impl Work<'_> {
         let progress = Progress::new(planned.len(), self.is_quiet);
         let (mut assets, mut outcome) = (Vec::with_capacity(planned.len()), Outcome::Done);
         let mut publish = |wait: Wait<'_>| {
-            self.publish(&planned, cache.as_ref(), &progress, wait, err, &mut |asset, ended, err| {
+            let outlet = Outlet { guard: &mut *guard, progress: &progress, err: &mut *err };
+            self.publish(&planned, cache.as_ref(), outlet, wait, &mut |asset, ended, err| {
                 outcome = outcome.and(ended);
                 progress.suspend(|| tell(&asset, err))?;
                 assets.push(asset);
@@ -106,12 +116,11 @@ impl Work<'_> {
         &self,
         planned: &[Planned],
         cache: Option<&Cache>,
-        progress: &Progress,
+        outlet: Outlet<'_>,
         wait: Wait<'_>,
-        err: &mut dyn Write,
         take: &mut dyn FnMut(Asset, Outcome, &mut dyn Write) -> io::Result<()>,
     ) -> io::Result<()> {
-        let mut places = Places::default();
+        let Outlet { guard, progress, err } = outlet;
         let threads = rayon::current_num_threads();
         let room = Room::new(threads);
         let told = |error: &RunError| JobFailure::from(error);
@@ -141,7 +150,7 @@ impl Work<'_> {
                 let _ = progress.suspend(|| writeln!(err, "warning: {whose}{error}"));
             };
             let result = prepared.and_then(|(job, origin, prepared)| {
-                let done = plan::finish(job, prepared, &mut places, &mut warn);
+                let done = plan::finish(job, prepared, guard, &mut warn);
                 let done = done.and_then(|done| Ok((job.typed_settings()?, done))).map_err(|error| told(&error))?;
                 Ok((job, origin, done))
             });

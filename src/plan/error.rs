@@ -4,12 +4,13 @@ use std::io;
 use std::path::PathBuf;
 
 use super::passing::{is_passing, is_passing_write};
-use crate::bake::{BakeError, ContainerError, GridError, JobError, PublishError, SourceError};
+use crate::bake::{BakeError, ContainerError, GridError, JobError, SourceError};
 use crate::cache::NotRelative;
 use crate::config::ValueError;
 use crate::digest::Digest;
 use crate::gltf::document::DocumentError;
 use crate::memory::OutOfMemory;
+use crate::output::PublishError;
 use crate::texture::EncodeError;
 
 /// Why a job fails. The caller adds the asset's name.

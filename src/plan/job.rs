@@ -9,11 +9,12 @@ use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::{Map, Value, json};
 
 use super::error::RunError;
-use crate::bake::{Settings, Survey, hash_file, portable_stem, read_file, survey};
+use crate::bake::{Settings, Survey, hash_file, output_stem, portable_stem, read_file, survey};
 use crate::config::Values;
 use crate::digest::{Digest, digest};
 use crate::gltf::document::{Container, Document};
 use crate::memory;
+use crate::output::Guard;
 
 /// The bake of one asset. Paths are relative to the working folder, if the command line's are.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -175,6 +176,12 @@ impl Job {
         self.outputs.iter().find(|output| !is_there(output)).map(|output| output.path.as_path())
     }
 
+    /// Tells `guard` which files the job reads and which it will write.
+    pub fn protect(&self, guard: &mut Guard) {
+        self.inputs.iter().for_each(|input| guard.add_source(&input.path));
+        self.outputs.iter().for_each(|output| guard.declare(&output.path));
+    }
+
     /// The input that the document refers to as `file`.
     pub fn input(&self, file: &Path) -> Option<&JobInput> {
         let path = beside(&self.source, file);
@@ -198,7 +205,7 @@ fn relative<'de, D: Deserializer<'de>>(deserializer: D) -> Result<PathBuf, D::Er
 }
 
 fn stem(source: &Path) -> String {
-    source.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+    output_stem(&source.file_stem().unwrap_or_default().to_string_lossy())
 }
 
 fn typed(settings: &Map<String, Value>) -> Result<Settings, RunError> {

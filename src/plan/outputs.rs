@@ -1,6 +1,5 @@
 //! Writing what a job makes: copies of its inputs, then new files, then the document.
 
-use std::collections::BTreeSet;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -9,7 +8,7 @@ use rayon::prelude::*;
 use super::error::RunError;
 use super::job::{Job, beside};
 use super::previous::Previous;
-use crate::bake::{Places, PublishError, claim, copy_file, sweep, write_file};
+use crate::output::{Guard, Outputs as Wanted, Place, PublishError, Staged};
 
 /// All outputs of a job, by their paths in its output folder.
 pub struct Outputs<'o> {
@@ -29,47 +28,49 @@ pub struct New<'o> {
     pub bytes: Option<&'o [u8]>,
 }
 
-/// Writes `outputs` of `job`, the document last: whoever sees it sees everything that it names. Returns which files of an
-/// earlier bake of the asset were removed, since its new document does not name them.
+/// Writes `outputs` of `job` where `guard` allows it, the document last: whoever sees it sees everything that it names. Either all
+/// outputs are there afterwards, or none that was not there before. Returns which files of an earlier bake of the asset were
+/// removed, since its new document does not name them.
 ///
 /// # Errors
-/// [`RunError`]; no source is ever overwritten: see [`claim`]. Inputs are copied as they were planned, or not at all.
-pub fn write(job: &Job, outputs: &Outputs<'_>, places: &mut Places) -> Result<Vec<PathBuf>, RunError> {
+/// [`RunError`]; no source is ever overwritten: see [`Guard`]. Inputs are copied as they were planned, or not at all.
+pub fn write(job: &Job, outputs: &Outputs<'_>, guard: &mut Guard) -> Result<Vec<PathBuf>, RunError> {
     let Outputs { copies, files, document } = outputs;
     let target = job.output.join(document.path);
     let names: Vec<&Path> = files.iter().map(|file| file.path).collect();
     let copied: Vec<PathBuf> = copies.iter().map(|(copy, _)| (*copy).to_owned()).collect();
-    claim(&names, &copied, &target, &job.source, places).map_err(|error| gone(job, error))?;
+    let wanted = Wanted { source: &job.source, document: &target, files: &names, copies: &copied };
+    let reserved = guard.reserve(&wanted).map_err(|error| gone(job, error))?;
     let previous = document.bytes.and_then(|_| Previous::at(&target));
     if let Some(previous) = &previous {
         previous.check(job)?;
     }
-    let below = names.iter().filter_map(|file| file.parent()).chain([Path::new("")]);
-    let below: BTreeSet<PathBuf> = below.map(|below| Path::new(".").join(&job.output).join(below)).collect();
-    below.iter().for_each(|folder| sweep(folder));
-    let absent: Vec<&Path> = copies.iter().filter(|(_, is_absent)| *is_absent).map(|(copy, _)| *copy).collect();
-    // Each waits for its own disk blocks. Of all failures the first file's is told.
-    let copied: Vec<_> = absent.par_iter().map(|file| copy(job, file)).collect();
-    copied.into_iter().collect::<Result<(), _>>()?;
-    let put = |file: &New<'_>| file.bytes.map_or(Ok(()), |bytes| write_file(&job.output.join(file.path), bytes));
-    let written: Vec<_> = files.par_iter().map(put).collect();
-    written.into_iter().collect::<Result<(), _>>()?;
-    put(document)?;
+    // Each waits for its own disk blocks. If several fail, the error of the first one is returned.
+    let absent = copies.par_iter().zip(&reserved.copies).filter(|((_, is_absent), _)| *is_absent);
+    let staged: Vec<Result<Staged, RunError>> = absent.map(|((file, _), place)| copy(job, file, place)).collect();
+    let mut staged = staged.into_iter().collect::<Result<Vec<_>, _>>()?;
+    let stage = |(file, place): (&New<'_>, &Place)| Some(place.stage(file.bytes?));
+    let new: Vec<Result<Staged, PublishError>> = files.par_iter().zip(&reserved.files).filter_map(stage).collect();
+    for file in new {
+        staged.push(file?);
+    }
+    let document = document.bytes.map(|bytes| reserved.document.stage(bytes)).transpose()?;
+    reserved.show(staged, document)?;
     match previous {
-        Some(previous) if job.typed_settings()?.provenance => Ok(previous.remove_stale(job, places)),
+        Some(previous) if job.typed_settings()?.provenance => Ok(previous.remove_stale(job, guard)),
         _ => Ok(Vec::new()),
     }
 }
 
-/// Copies an input that the document refers to as `file`, if it is as it was planned.
-fn copy(job: &Job, file: &Path) -> Result<(), RunError> {
-    let (from, to) = (beside(&job.source, file), job.output.join(file));
-    let is_planned = match job.input(file).and_then(|input| input.blake3) {
-        Some(planned) => copy_file(&from, &to, planned).map_err(|error| gone(job, error))?,
+/// Copies an input that the document refers to as `file` beside `place`, if it is as it was planned.
+fn copy(job: &Job, file: &Path, place: &Place) -> Result<Staged, RunError> {
+    let from = beside(&job.source, file);
+    let staged = match job.input(file).and_then(|input| input.blake3) {
+        Some(planned) => place.stage_copy(&from, planned).map_err(|error| gone(job, error))?,
         // It came after the plan.
-        None => false,
+        None => None,
     };
-    if is_planned { Ok(()) } else { Err(RunError::Changed { path: from }) }
+    staged.ok_or(RunError::Changed { path: from })
 }
 
 /// Tells an input that went away since it was planned from one that was never there.

@@ -7,11 +7,13 @@ use std::path::{Component, Path, PathBuf};
 use super::error::RunError;
 use super::job::Job;
 use super::restore::holds;
-use crate::bake::{DocumentProvenance, Places, check_file};
+use crate::bake::DocumentProvenance;
 use crate::digest::Digest;
 use crate::gltf::document::{Container, Document};
 use crate::gltf::json::Json;
 use crate::gltf::uri::relative_path;
+use crate::input_file::check_file;
+use crate::output::Guard;
 
 /// What an output document records.
 pub struct Previous {
@@ -43,9 +45,9 @@ impl Previous {
         Err(RunError::OtherSource { path: self.path.clone(), found: found.clone(), source_name })
     }
 
-    /// Removes files of the earlier document that are as it recorded them, unless they are outputs of this run, which `places`
+    /// Removes files of the earlier document that are as it recorded them, unless they are outputs of this run, which `guard`
     /// knows, or inputs of `job`. Returns those that were removed.
-    pub fn remove_stale(&self, job: &Job, places: &Places) -> Vec<PathBuf> {
+    pub fn remove_stale(&self, job: &Job, guard: &mut Guard) -> Vec<PathBuf> {
         let folder = PathBuf::from(format!("{}.roughcast", job.stem()));
         let own = job.output.join(&folder);
         // What a link leads to is not ours.
@@ -53,8 +55,8 @@ impl Previous {
             return Vec::new();
         }
         let inputs: Vec<PathBuf> = job.inputs.iter().filter_map(|input| fs::canonicalize(&input.path).ok()).collect();
-        let is_stale = |path: &Path, blake3: Digest| {
-            !places.is_taken(path)
+        let mut is_stale = |path: &Path, blake3: Digest| {
+            !guard.is_taken(path)
                 && fs::symlink_metadata(path).is_ok_and(|facts| facts.is_file())
                 && fs::canonicalize(path).is_ok_and(|real| !inputs.contains(&real))
                 && holds(path, blake3)

@@ -12,11 +12,12 @@ use super::outputs::{self, New, Outputs};
 use super::restore::{Found, Lookup};
 use super::room::Room;
 use crate::bake::report::AssetReport;
-use crate::bake::{Baked, Files, Places, Settings, Source, bake};
+use crate::bake::{Baked, Files, Settings, Source, bake};
 use crate::cache::{CacheError, Entry, Warn};
 use crate::digest::{Digest, digest};
 use crate::gltf::document::Container;
 use crate::input_file::read_file;
+use crate::output::Guard;
 
 /// What a job did.
 #[derive(Clone, Debug)]
@@ -97,15 +98,15 @@ pub fn prepare(job: &Job, mut lookup: Option<Lookup<'_>>, room: &Room, advance: 
     Prepared { outputs, warnings: lookup.map(|lookup| lookup.warnings).unwrap_or_default() }
 }
 
-/// Writes what was prepared; `warn` is told what is wrong with the cache.
+/// Writes what was prepared where `guard` allows it; `warn` is told what is wrong with the cache.
 ///
 /// # Errors
 /// [`RunError`], also of the bake; other jobs are not concerned.
-pub fn finish(job: &Job, prepared: Prepared, places: &mut Places, warn: Warn<'_>) -> Result<Done, RunError> {
+pub fn finish(job: &Job, prepared: Prepared, guard: &mut Guard, warn: Warn<'_>) -> Result<Done, RunError> {
     prepared.warnings.into_iter().for_each(warn);
     let done = match prepared.outputs? {
         Ready::Found(found) => {
-            let removed = outputs::write(job, &found.outputs(), places)?;
+            let removed = outputs::write(job, &found.outputs(), guard)?;
             Done::new(job, found.into_entry(), removed, true)
         }
         Ready::Baked(baked) => {
@@ -113,7 +114,7 @@ pub fn finish(job: &Job, prepared: Prepared, places: &mut Places, warn: Warn<'_>
             let name = name(job, &baked);
             // Outputs are hashed while the disk is waited for.
             let (removed, entry) = rayon::join(
-                || outputs::write(job, &baked_outputs(&name, &baked), places),
+                || outputs::write(job, &baked_outputs(&name, &baked), guard),
                 || entry.map_or_else(|| Entry::new(job.id, &name, &baked), Ok),
             );
             Done::new(job, entry?, removed?, false)
@@ -311,7 +312,7 @@ mod tests {
         let job = Job::new(&source, &folder.path().join("baked"), &serde_json::Map::new()).unwrap();
         let bake = || {
             let prepared = prepare(&job, None, &Room::new(1), &|_| ());
-            finish(&job, prepared, &mut Places::default(), &mut |_| ())
+            finish(&job, prepared, &mut Guard::default(), &mut |_| ())
         };
         assert!(bake().is_ok());
         assert_eq!(job.inputs.len(), 5);

@@ -4,6 +4,7 @@ use std::collections::{BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 
 use crate::config::FILE_NAME;
+use crate::output;
 
 /// The paths that matter, without links and dots in their folders.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -54,17 +55,9 @@ impl Scope {
     }
 }
 
-/// `path` without links and dots, as far as it exists.
+/// `path` without links and dots, whether or not it exists; as it is where it cannot be resolved.
 pub fn real(path: &Path) -> PathBuf {
-    let path = if path.as_os_str().is_empty() { Path::new(".") } else { path };
-    let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-    for folder in absolute.ancestors() {
-        if let Ok(real) = folder.canonicalize() {
-            let rest = absolute.strip_prefix(folder).unwrap_or(Path::new(""));
-            return if rest.as_os_str().is_empty() { real } else { real.join(rest) };
-        }
-    }
-    absolute
+    output::real(path).or_else(|_| std::path::absolute(path)).unwrap_or_else(|_| path.to_owned())
 }
 
 #[cfg(test)]

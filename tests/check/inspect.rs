@@ -123,7 +123,7 @@ fn images_of_the_document_are_not_extracted_over() {
     let (document, folder) = (bake.document(), bake.baked.join("ridges.roughcast"));
     let (outcome, _, err) = roughcast(&["inspect", document.to_str().unwrap(), "--extract", folder.to_str().unwrap()]);
     assert_eq!(outcome, Outcome::Failed);
-    assert!(err.contains("bumps.normal.level0.png is one"), "{err}");
+    assert!(err.contains("bumps.normal.level0.png: expected a file of its own, found that it is a source"), "{err}");
     assert_eq!(fs::read(&picture).unwrap(), fs::read(bake.source.join("bumps.png")).unwrap());
 }
 

@@ -126,6 +126,6 @@ fn bad_input_is_one_clear_error() {
     assert!(!Path::new(&out).exists());
     fs::write(at("highlight.png"), &picture).expect("a file");
     let run = roughcast(["render", &at("highlight.png"), "-o", &at(""), "--scene", "highlight"]);
-    assert!(run.code == 1 && run.err.contains("is the input"), "{}", run.err);
+    assert!(run.code == 1 && run.err.contains("is a source of this run"), "{}", run.err);
     assert!(fs::read(at("highlight.png")).expect("a file") == picture);
 }

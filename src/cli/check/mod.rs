@@ -203,7 +203,12 @@ impl Args {
         let name = target.path.display().to_string();
         let folder = target.path.parent().unwrap_or(Path::new(""));
         let mut findings = Findings::new(&name, "");
-        let source_path = self.source.as_ref().map(|folder| folder.join(&target.below));
+        // The output may have a shorter name than its source.
+        let known = sources.assets.get(&target.key());
+        let source_path = self
+            .source
+            .as_ref()
+            .map(|folder| known.map_or_else(|| folder.join(&target.below), |asset| asset.input.path.clone()));
         let source_folder = source_path.as_deref().and_then(Path::parent).unwrap_or(Path::new("")).to_owned();
         let read_source = |path: &Path| read_file(&source_folder.join(path));
         let origin = source_path.and_then(|path| match source_document(&path) {
@@ -216,7 +221,7 @@ impl Args {
             }
         });
         // Without a word on settings, any will do; a fix will bake with the defaults then.
-        let asset = sources.assets.get(&target.key()).filter(|_| sources.is_configured || self.fix);
+        let asset = known.filter(|_| sources.is_configured || self.fix);
         let scope = Scope { settings: asset.map(|asset| &asset.resolved.settings), ..self.scope(origin.as_ref()) };
         let checked = check::check_document(&name, &bytes, &|path| self.read(&folder.join(path)), &scope);
         let mut findings = findings.into_list();
@@ -272,7 +277,9 @@ impl Args {
         };
         let (cache, settings) = (cache.as_ref(), Settings::default());
         let work = Work { cache, settings: &settings, remote: None, check: &|_| Ok(()), is_quiet: false };
-        let worked = work.run(jobs::plan(&assets), err, &mut |asset, err| match &asset.output {
+        let planned = jobs::plan(&assets);
+        let mut guard = jobs::guard(&planned, None, &[]);
+        let worked = work.run(planned, &mut guard, err, &mut |asset, err| match &asset.output {
             Some(output) if asset.status != Status::Failed => {
                 writeln!(err, "baked again: {} -> {output}", asset.input)
             }

@@ -6,7 +6,7 @@ use std::path::Path;
 use serde_json::Value;
 
 use super::RenderError;
-use crate::bake::{Baked, EXTENSION, Form, Model, Profile, Settings, Source, bake};
+use crate::bake::{Baked, EXTENSION, Form, Model, Profile, Settings, Source, bake, fit_name};
 use crate::check::{RoughnessModel, RoughnessPyramid};
 use crate::gltf::document::Document;
 use crate::gltf::material::{BumpSource, Layer, LayerKind, materials};
@@ -74,11 +74,14 @@ pub fn columns(source: &Source<'_>, settings: &Settings) -> Result<Vec<Columns>,
     if columns.is_empty() { Err(RenderError::NoBumps) } else { Ok(columns) }
 }
 
+/// Most bytes of the names of an asset and of a material in the name of a picture or a chart.
+const MOST_NAME: usize = 80;
+
 /// `helmet` and `Glass / Plastic` become `helmet.Glass___Plastic`; a number is added to names that are taken.
 pub fn file_name(stem: &str, material: &str, taken: &mut BTreeSet<String>) -> String {
     let safe = |c: char| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' };
-    let name: String = material.chars().take(80).map(safe).collect();
-    let name = if stem.is_empty() { name } else { format!("{stem}.{name}") };
+    let name = fit_name(&material.chars().map(safe).collect::<String>(), MOST_NAME);
+    let name = if stem.is_empty() { name } else { format!("{}.{name}", fit_name(stem, MOST_NAME)) };
     let numbered = |n: u32| if n == 1 { name.clone() } else { format!("{name}-{n}") };
     // Case-insensitive file systems see one file where names differ by case only.
     (1..).map(numbered).find(|name| taken.insert(name.to_lowercase())).unwrap_or_default()

@@ -3,12 +3,13 @@
 use std::io;
 use std::path::PathBuf;
 
-use crate::bake::{BakeError, PublishError, SourceError};
+use crate::bake::{BakeError, SourceError};
 use crate::gltf::document::DocumentError;
 use crate::gltf::json::JsonError;
 use crate::gltf::material::MaterialError;
 use crate::gltf::texture::TextureError;
 use crate::map::DecodeError;
+use crate::output::PublishError;
 use crate::texture::ktx2::ReadError;
 
 /// Why nothing is drawn.
@@ -38,8 +39,6 @@ pub enum RenderError {
     NoBumps,
     #[error(transparent)]
     Publish(#[from] PublishError),
-    #[error("expected an output folder apart from the input, found that {} is the input; choose another with -o", path.display())]
-    OverInput { path: PathBuf },
     #[error("expected to encode {}, found: {reason}; choose a smaller --width", path.display())]
     Encode { path: PathBuf, reason: String },
 }

@@ -8,10 +8,12 @@ use serde_json::json;
 use super::RenderError;
 use super::columns::{Columns, columns};
 use crate::bake::{Settings, Source, read_file};
+use crate::cli::sources::protect;
 use crate::gltf::document::Document;
 use crate::gltf::uri::encode_path;
 use crate::inspect::encode_exr;
 use crate::map::{Image, Samples};
+use crate::output::Guard;
 use crate::render::{Subject, waves};
 
 /// Texels of the waves along each side.
@@ -69,6 +71,16 @@ impl Input {
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let kind = height_scale.map_or(MapKind::Normals, MapKind::Heights);
         Ok(Self::Map { bytes, name, kind })
+    }
+
+    /// What keeps the input, which was read from `path`, and its files from being written over.
+    pub fn guard(&self, path: Option<&Path>) -> Guard {
+        let mut guard = Guard::default();
+        match (self, path) {
+            (Self::Asset { document, .. }, Some(path)) => protect(&mut guard, path, document),
+            (_, path) => path.iter().for_each(|path| guard.add_source(path)),
+        }
+        guard
     }
 
     /// Bakes every material with bumps. A bare map gets `roughness`, else what suits `subject`.

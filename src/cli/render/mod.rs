@@ -239,7 +239,7 @@ fn summary(sheet: &SheetReport) -> String {
 
 fn draw_all(args: &Args) -> Result<Vec<SheetReport>, RenderError> {
     let input = Input::read(args.input.as_deref(), args.height.then_some(args.height_scale))?;
-    let folder = Folder::new(args);
+    let mut folder = Folder::new(args, &input);
     let scenes = args.scenes();
     let progress = Progress::new(scenes.len(), args.quiet);
     let mut sheets = Vec::new();
@@ -272,7 +272,7 @@ fn draw_all(args: &Args) -> Result<Vec<SheetReport>, RenderError> {
             let advance = |share: f32| {
                 progress.set(index, (done as f32 + share) / materials.len() as f32, &columns.name);
             };
-            sheets.push(draw(args, subject, columns, &folder, &advance)?);
+            sheets.push(draw(args, subject, columns, &mut folder, &advance)?);
         }
     }
     progress.finish();
@@ -284,7 +284,7 @@ fn draw(
     args: &Args,
     subject: Subject,
     columns: &Columns,
-    folder: &Folder<'_>,
+    folder: &mut Folder<'_>,
     advance: &(dyn Fn(f32) + Sync),
 ) -> Result<SheetReport, RenderError> {
     let distances = if args.distance.is_empty() { subject.distances() } else { args.distance.as_slice() };

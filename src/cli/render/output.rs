@@ -1,12 +1,12 @@
 //! Pictures as files: a sheet, and each by itself.
 
-use std::fs;
-use std::path::PathBuf;
+use std::path::Path;
 
-use super::{Args, RenderError};
-use crate::bake::{encode_png, write_file};
+use super::{Args, Input, RenderError};
+use crate::bake::encode_png;
 use crate::inspect::encode_exr;
 use crate::map::{Image, Samples};
+use crate::output::Guard;
 use crate::render::{Panel, Picture, Sheet, Tone};
 use crate::texture::uastc::Effort;
 
@@ -35,18 +35,18 @@ impl Shown {
 /// The output folder.
 pub struct Folder<'a> {
     args: &'a Args,
-    input: Option<PathBuf>,
+    guard: Guard,
 }
 
 impl<'a> Folder<'a> {
-    /// The one that `args` name.
-    pub fn new(args: &'a Args) -> Self {
-        Self { args, input: args.input.as_ref().and_then(|path| fs::canonicalize(path).ok()) }
+    /// The one that `args` name, for pictures of `input`.
+    pub fn new(args: &'a Args, input: &Input) -> Self {
+        Self { args, guard: input.guard(args.input.as_deref()) }
     }
 
     /// Writes a sheet of rows, each with its distance where there are several, and every picture. Returns the sheet's
     /// path.
-    pub fn write(&self, stem: &str, rows: &[(Option<f64>, Vec<Shown>)]) -> Result<String, RenderError> {
+    pub fn write(&mut self, stem: &str, rows: &[(Option<f64>, Vec<Shown>)]) -> Result<String, RenderError> {
         for (distance, row) in rows {
             let distance = distance.map_or(String::new(), |d| format!(".d{d}"));
             for Shown { name, picture, tone, .. } in row {
@@ -57,7 +57,7 @@ impl<'a> Folder<'a> {
                     let [width, height] = picture.size;
                     let samples = Samples::F32(picture.pixels.iter().flatten().copied().collect());
                     let encoded = encode_exr(Image { width, height, channels: 3, samples });
-                    self.write_file(path, encoded)?;
+                    self.write_file(&path, encoded)?;
                 }
             }
         }
@@ -66,21 +66,19 @@ impl<'a> Folder<'a> {
         self.write_sheet(stem, Sheet::of_rows(&sheet))
     }
 
-    fn write_sheet(&self, stem: &str, sheet: Option<Sheet>) -> Result<String, RenderError> {
+    fn write_sheet(&mut self, stem: &str, sheet: Option<Sheet>) -> Result<String, RenderError> {
         let path = self.args.output.join(format!("{stem}.png"));
         let encoded = match sheet {
             Some(sheet) => encode_png(&sheet.rgba, sheet.width, sheet.height, Effort::Best),
             None => Err("more pixels than a file can hold".to_owned()),
         };
-        self.write_file(path, encoded)
+        self.write_file(&path, encoded)
     }
 
-    fn write_file(&self, path: PathBuf, encoded: Result<Vec<u8>, String>) -> Result<String, RenderError> {
-        if self.input.is_some() && fs::canonicalize(&path).ok() == self.input {
-            return Err(RenderError::OverInput { path });
-        }
-        let bytes = encoded.map_err(|reason| RenderError::Encode { path: path.clone(), reason })?;
-        write_file(&path, &bytes)?;
+    fn write_file(&mut self, path: &Path, encoded: Result<Vec<u8>, String>) -> Result<String, RenderError> {
+        let place = self.guard.place(path)?;
+        let bytes = encoded.map_err(|reason| RenderError::Encode { path: path.to_owned(), reason })?;
+        place.write(&bytes)?;
         Ok(path.display().to_string())
     }
 }

@@ -18,6 +18,7 @@ use crate::cache::Cache;
 use crate::cli::inputs::{Input, InputError};
 use crate::cli::selection::Selected;
 use crate::config::Resolved;
+use crate::output::Guard;
 use crate::watch::{Ledger, Look, Scope, Settling, real};
 
 /// All that is remembered from one look to the next.
@@ -206,5 +207,14 @@ impl Round {
             planned.filter(|planned| are_settled(&planned.new_files(input, self.assets.get(&input.path))))
         };
         planned.into_iter().zip(selected).map(are_new_settled).collect()
+    }
+
+    /// What decides where this look may write.
+    fn guard(&self, planned: &[Option<Planned>]) -> Guard {
+        let mut guard = Guard::inside(&self.output);
+        self.configs.keys().for_each(|path| guard.add_source(path));
+        self.assets.values().flat_map(|asset| &asset.seen).for_each(|(path, _)| guard.add_source(path));
+        planned.iter().flatten().flat_map(|planned| &planned.seen).for_each(|(path, _)| guard.add_source(path));
+        guard
     }
 }

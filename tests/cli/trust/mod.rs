@@ -4,3 +4,4 @@ mod decoders;
 mod edges;
 mod publish;
 mod validated;
+mod writing;

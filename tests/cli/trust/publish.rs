@@ -1,4 +1,4 @@
-//! What is published: inputs as they were planned, places of their own, nothing stale, and of one run only.
+//! What is published: inputs as they were planned, guard of their own, nothing stale, and of one run only.
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
@@ -6,7 +6,7 @@ use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use roughcast::bake::Places;
+use roughcast::output::Guard;
 use roughcast::cache::Cache;
 use roughcast::config::resolve;
 use roughcast::plan::{Job, Lookup, Room, RunError, finish, prepare};
@@ -49,7 +49,7 @@ fn a_file_that_changes_before_it_is_copied_is_not_published() {
             let lookup = is_cached.then(|| Lookup::new(&job, &cache));
             prepare(&job, lookup, &Room::new(1), &|_| ())
         };
-        let finish = |prepared| finish(&job, prepared, &mut Places::default(), &mut |error| panic!("{error}"));
+        let finish = |prepared| finish(&job, prepared, &mut Guard::default(), &mut |error| panic!("{error}"));
         for name in ["brushed_colour.png", "brushed.bin"] {
             let path = folder.join("in").join(name);
             let bytes = fs::read(&path).expect("a file");

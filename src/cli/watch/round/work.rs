@@ -10,11 +10,11 @@ use rayon::prelude::*;
 use super::super::asset::{Asset, Planned, State};
 use super::super::events::Teller;
 use super::Round;
-use crate::bake::{Places, PublishError};
 use crate::cache::CacheError;
 use crate::cli::inputs::Input;
 use crate::cli::output_lock::{Kind, OutputLock};
 use crate::config::Resolved;
+use crate::output::{Guard, PublishError};
 use crate::plan::{self, Lookup, Room, RunError, Written};
 use crate::watch::Removed;
 
@@ -52,7 +52,7 @@ impl Round {
         let look_up =
             |planned: &Option<Planned>| Some(Lookup::new(planned.as_ref()?.job.as_ref().ok()?, self.cache.as_ref()?));
         let lookups: Vec<Option<Lookup>> = planned.par_iter().map(look_up).collect();
-        let (mut places, room) = (Places::default(), Room::new(1));
+        let (mut guard, room) = (self.guard(&planned), Room::new(1));
         let mut retry: Option<Duration> = None;
         let mut soon = |after: Option<Duration>| retry = [retry, after].into_iter().flatten().min();
         for (((input, resolved), planned), lookup) in selected.iter().zip(planned).zip(lookups) {
@@ -60,7 +60,7 @@ impl Round {
                 // An asset keeps its places unless one before it takes them, as in a bake of all.
                 if let Some(Asset { state, .. }) = self.assets.get_mut(&input.path)
                     && let State::Done(written) = state
-                    && !written.iter().all(|file| places.hold(&file.path, &file.source))
+                    && !written.iter().all(|file| guard.hold(&file.path, &file.source))
                 {
                     *state = State::Failed { error: String::new(), again: true, kept: std::mem::take(written) };
                     soon(Some(Duration::ZERO));
@@ -79,7 +79,7 @@ impl Round {
             };
             let result = job.and_then(|job| {
                 let prepared = plan::prepare(&job, lookup, &room, &|_| ());
-                plan::finish(&job, prepared, &mut places, &mut warn)
+                plan::finish(&job, prepared, &mut guard, &mut warn)
             });
             let state = match result {
                 Ok(done) => {
@@ -111,16 +111,16 @@ impl Round {
             let asset = Asset { output: input.folder.clone(), values: resolved.values.clone(), id, seen, state };
             self.assets.insert(input.path.clone(), asset);
         }
-        self.drop_mixed(selected, &mut places);
+        self.drop_mixed(selected, &mut guard);
         Ok(retry)
     }
 
     /// Gives up outputs of assets that cannot be baked where another asset needs a place among them: they are not whole any
     /// more.
-    fn drop_mixed(&mut self, selected: &[(Input, Resolved)], places: &mut Places) {
+    fn drop_mixed(&mut self, selected: &[(Input, Resolved)], guard: &mut Guard) {
         for (input, _) in selected {
             if let Some(Asset { state: State::Failed { kept, .. }, .. }) = self.assets.get_mut(&input.path)
-                && !kept.iter().all(|file| places.hold(&file.path, &file.source))
+                && !kept.iter().all(|file| guard.hold(&file.path, &file.source))
             {
                 kept.clear();
                 self.ledger.set(&input.path, &self.output, &[]);

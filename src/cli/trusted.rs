@@ -1,0 +1,33 @@
+//! Which configurations are the user's own.
+//!
+//! A `roughcast.toml` is trusted if `--config` names it or if it lies in the working folder. Any other one was found beside
+//! the assets and may have come with them, from strangers. The folders and files that such a configuration names must lie
+//! below the working folder, outside of hidden folders, and the server that it names gets no headers.
+
+use std::path::{Component, Path, PathBuf};
+
+use crate::config::RemoteValues;
+use crate::output::real;
+
+/// The server that a configuration names.
+pub struct NamedServer {
+    /// What the configuration says of the server.
+    pub values: RemoteValues,
+    /// The configuration.
+    pub config: PathBuf,
+    /// Whether the configuration is trusted.
+    pub is_trusted: bool,
+}
+
+/// Returns whether `folder`, which has neither links nor dots, is the working folder.
+pub fn is_working_folder(folder: &Path) -> bool {
+    real(Path::new("")).is_ok_and(|here| here == folder)
+}
+
+/// Returns whether a configuration that came with assets may name `path`: it lies below the working folder, and neither it
+/// nor a folder on the way is hidden. Keys and settings of other programs are in hidden folders of the user's own.
+pub fn is_harmless(path: &Path) -> bool {
+    let (Ok(here), Ok(path)) = (real(Path::new("")), real(path)) else { return false };
+    let is_visible = |part: Component<'_>| !part.as_os_str().as_encoded_bytes().starts_with(b".");
+    path.strip_prefix(here).is_ok_and(|below| below.components().next().is_some() && below.components().all(is_visible))
+}

@@ -1,0 +1,179 @@
+//! The one place that decides whether a path may be written.
+
+use std::collections::hash_map::Entry;
+use std::collections::{HashMap, HashSet};
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use super::case::case_folded;
+use super::error::PublishError;
+use super::place::Place;
+use super::real::real;
+use super::sweep::sweep;
+
+/// Decides whether paths may be written: it knows what a run reads, what its jobs will write, and what was written before.
+///
+/// A source is never written, by whatever links and dots it is reached. Two outputs never share a place. Outputs of assets
+/// stay inside the output folder.
+#[derive(Debug, Default)]
+pub struct Guard {
+    /// The output folder; that of each document where none is known.
+    root: Option<PathBuf>,
+    /// Files that are read, without links and dots.
+    sources: HashSet<PathBuf>,
+    /// Files that jobs will write, and folders whose files they will write.
+    declared: HashSet<PathBuf>,
+    /// Outputs of the run, by their places in lower case: systems that ignore case know each by one name.
+    taken: HashMap<PathBuf, Taken>,
+    /// Folders, as they are named, and without links and dots.
+    folders: HashMap<PathBuf, PathBuf>,
+    /// Folders in which nothing is left of runs that were killed.
+    swept: HashSet<PathBuf>,
+}
+
+/// An output of the run.
+#[derive(Debug)]
+struct Taken {
+    /// Its place.
+    path: PathBuf,
+    /// The source that it is a copy of, or its own place.
+    source: PathBuf,
+}
+
+impl Guard {
+    /// Returns the guard of a run whose outputs stay inside `root`.
+    pub fn inside(root: &Path) -> Self {
+        Self { root: Some(root.components().collect()), ..Self::default() }
+    }
+
+    /// Protects a file that the run reads, and the file that it is a link to.
+    pub fn add_source(&mut self, path: &Path) {
+        if path.is_symlink() {
+            self.sources.extend(fs::canonicalize(path));
+        }
+        // What cannot be resolved cannot be read either.
+        let file = self.real_file(path);
+        self.sources.extend(file);
+    }
+
+    /// Protects an output, or a folder of outputs, that a job of the run will write. Only the job itself may.
+    pub fn declare(&mut self, path: &Path) {
+        let file = self.real_file(path);
+        self.declared.extend(file);
+    }
+
+    /// Takes the place of a file that the user names.
+    ///
+    /// # Errors
+    /// [`PublishError`] where it is a source or an output of the run, or no file.
+    pub fn place(&mut self, path: &Path) -> Result<Place, PublishError> {
+        let failed = |error| PublishError::Write { path: path.to_owned(), error };
+        let file = self.real_file(path).map_err(failed)?;
+        // Systems that ignore case know the file by one name. A link is replaced, not what it names.
+        let existing = if path.is_symlink() { None } else { fs::canonicalize(path).ok() };
+        let in_use = |found| Err(PublishError::InUse { path: path.to_owned(), found });
+        for file in existing.iter().chain([&file]) {
+            if self.sources.contains(file) {
+                return in_use("a source");
+            }
+            let is_declared = || file.ancestors().any(|above| self.declared.contains(above));
+            if self.taken.contains_key(&case_folded(file)) || is_declared() {
+                return in_use("an output");
+            }
+        }
+        check_replaceable(path)?;
+        self.taken.insert(case_folded(&file), Taken { path: file.clone(), source: file });
+        Ok(Place::new(path))
+    }
+
+    /// Keeps the place `path` for a copy of `source`, or for the output itself, which is there from an earlier run. Returns
+    /// whether it was free.
+    pub fn hold(&mut self, path: &Path, source: &Path) -> bool {
+        let (Ok(file), Ok(source)) = (self.real_file(path), self.real_file(source)) else { return false };
+        self.take(path, file, source).is_ok()
+    }
+
+    /// Returns whether an output of the run is at `path`, or would be on a file system that ignores case.
+    pub fn is_taken(&mut self, path: &Path) -> bool {
+        self.real_file(path).is_ok_and(|file| self.taken.contains_key(&case_folded(&file)))
+    }
+
+    /// Takes the place `file`, which is named `path`, for a copy of `source` or for the output itself.
+    pub(super) fn take(&mut self, path: &Path, file: PathBuf, source: PathBuf) -> Result<(), PublishError> {
+        match self.taken.entry(case_folded(&file)) {
+            Entry::Occupied(taken) if !is_same_file(&taken.get().source, &source) => {
+                let (path, taken) = (path.to_owned(), taken.get());
+                Err(if taken.path == file {
+                    PublishError::SamePlace { path, other: taken.source.clone() }
+                } else {
+                    PublishError::SameName { path, other: taken.path.clone() }
+                })
+            }
+            Entry::Occupied(_) => Ok(()),
+            Entry::Vacant(free) => {
+                free.insert(Taken { path: file, source });
+                Ok(())
+            }
+        }
+    }
+
+    /// Returns the place of the output `path` of the asset whose outputs are in `folder`, and sweeps its own folder once.
+    pub(super) fn output(&mut self, path: &Path, folder: &Path) -> Result<PathBuf, PublishError> {
+        let failed = |error| PublishError::Write { path: path.to_owned(), error };
+        let root = self.root.clone().unwrap_or_else(|| folder.to_owned());
+        let file = self.real_file(path).map_err(failed)?;
+        if !file.starts_with(self.real_folder(&root).map_err(failed)?) {
+            return Err(match link_between(&root, path) {
+                Some((link, target)) => PublishError::Linked { path: path.to_owned(), link, target },
+                None => PublishError::Outside { path: path.to_owned(), folder: root },
+            });
+        }
+        if self.sources.contains(&file) {
+            return Err(PublishError::OverSource { path: path.to_owned() });
+        }
+        check_replaceable(path)?;
+        if let Some(folder) = file.parent()
+            && self.swept.insert(folder.to_owned())
+        {
+            sweep(folder);
+        }
+        Ok(file)
+    }
+
+    /// Returns `path` without links and dots in its folder. A link at its end stays: writing replaces it.
+    pub(super) fn real_file(&mut self, path: &Path) -> io::Result<PathBuf> {
+        let name = path.file_name().ok_or_else(|| io::Error::from(io::ErrorKind::IsADirectory))?;
+        Ok(self.real_folder(path.parent().unwrap_or(Path::new("")))?.join(name))
+    }
+
+    /// Resolves each folder once.
+    fn real_folder(&mut self, folder: &Path) -> io::Result<&PathBuf> {
+        match self.folders.entry(folder.to_owned()) {
+            Entry::Occupied(known) => Ok(known.into_mut()),
+            Entry::Vacant(new) => Ok(new.insert(real(folder)?)),
+        }
+    }
+}
+
+/// Returns the first link on the way from the folder `root` to the file `path`, and where it leads.
+fn link_between(root: &Path, path: &Path) -> Option<(PathBuf, PathBuf)> {
+    let folders: Vec<&Path> = path.ancestors().skip(1).take_while(|folder| *folder != root).collect();
+    let link = folders.into_iter().rev().find(|folder| folder.is_symlink())?;
+    Some((link.to_owned(), real(link).ok()?))
+}
+
+/// Checks that what is at `path` is a file or a link to one: a rename would replace a pipe or a device.
+fn check_replaceable(path: &Path) -> Result<(), PublishError> {
+    match fs::metadata(path) {
+        Ok(facts) if facts.is_dir() => {
+            Err(PublishError::Write { path: path.to_owned(), error: io::ErrorKind::IsADirectory.into() })
+        }
+        Ok(facts) if !facts.is_file() => Err(PublishError::NotAFile { path: path.to_owned() }),
+        _ => Ok(()),
+    }
+}
+
+fn is_same_file(a: &Path, b: &Path) -> bool {
+    a == b || matches!((fs::canonicalize(a), fs::canonicalize(b)), (Ok(a), Ok(b)) if a == b)
+}

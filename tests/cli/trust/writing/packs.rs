@@ -1,0 +1,92 @@
+//! A `roughcast.toml` that came with assets is not one of the user's own.
+
+use super::*;
+use crate::process::{roughcast_in, roughcast_with};
+
+/// `home/.profile`, and a pack in `away` whose buffer is called so, with `config`.
+fn pack(config: &str) -> TempDir {
+    let scene = tempdir().expect("a folder");
+    let folder = scene.path();
+    fs::create_dir(folder.join("home")).expect("a folder");
+    fs::write(folder.join("home/.profile"), "mine").expect("a file");
+    let pack = folder.join("away/pack");
+    copy(&fixtures().join("brushed"), &pack);
+    fs::rename(pack.join("brushed.bin"), pack.join(".profile")).expect("a file");
+    let text = fs::read_to_string(pack.join("brushed.gltf")).expect("a document");
+    fs::write(pack.join("brushed.gltf"), text.replace("brushed.bin", ".profile")).expect("a file");
+    fs::write(pack.join("roughcast.toml"), config).expect("a file");
+    scene
+}
+
+fn output(name: &str) -> String {
+    format!("output = '{name}'\nmodel = 'none'\n")
+}
+
+#[test]
+fn it_sends_outputs_to_no_folder_outside_of_the_working_folder() {
+    for name in ["../../home", "../../home/new", "..", "../../away", "../.config", "../out/.hidden/x"] {
+        let scene = pack(&output(name));
+        let folder = scene.path().join("away");
+        let before = hashes(scene.path());
+        for line in ["bake pack -q", "bake pack/brushed.gltf -q", "plan pack", "watch pack"] {
+            let run = run(&folder, line);
+            assert_eq!(run.code, 2, "{line}: {}", run.err);
+            for part in ["pack/roughcast.toml: expected `output` below the working folder", "name the folder with -o"] {
+                assert!(run.err.contains(part), "{line}: {}", run.err);
+            }
+        }
+        assert_eq!(hashes(scene.path()), before, "{name}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn it_sends_them_through_no_link_either() {
+    let scene = pack(&output("../out"));
+    let folder = scene.path().join("away");
+    std::os::unix::fs::symlink("../home", folder.join("out")).expect("a link");
+    let run = run(&folder, "bake pack -q");
+    assert_eq!(run.code, 2, "{}", run.err);
+    assert_eq!(fs::read(scene.path().join("home/.profile")).expect("a file"), b"mine");
+}
+
+#[test]
+fn a_file_of_the_users_own_names_any_folder() {
+    let scene = pack(&output("../../home/new"));
+    let folder = scene.path().join("away");
+    done(&folder, "bake pack -q --config pack/roughcast.toml");
+    let named = hashes(&scene.path().join("home/new"));
+    fs::remove_dir_all(scene.path().join("home/new")).expect("a folder");
+    done(&folder.join("pack"), "bake . -q");
+    assert_eq!(hashes(&scene.path().join("home/new")), named, "that of the working folder");
+    done(&folder, "bake pack -q -o ../home/other");
+    assert_eq!(hashes(&scene.path().join("home/other")), named, "-o wins");
+    fs::write(folder.join("pack/roughcast.toml"), output("../baked")).expect("a file");
+    done(&folder, "bake pack -q");
+    assert_eq!(hashes(&folder.join("baked")), named, "below the working folder");
+}
+
+#[test]
+fn its_server_gets_no_headers_and_no_files_from_elsewhere() {
+    let header = [("ROUGHCAST_REMOTE_HEADER", "authorization=secret")];
+    let remote = |rest: &str| format!("[remote]\nurl = 'grpc://localhost:1'\nretries = 0\n{rest}");
+    let scene = pack(&remote(""));
+    let folder = scene.path().join("away");
+    let words = |line: &'static str| line.split(' ');
+    let run = roughcast_with(&header, &folder, words("bake pack -o O -q"));
+    assert_eq!(run.code, 2, "{}", run.err);
+    assert!(run.err.contains("pack/roughcast.toml: expected no server beside ROUGHCAST_REMOTE_HEADER"), "{}", run.err);
+    assert!(!run.err.contains("secret"), "{}", run.err);
+    // These are the user's own, and go on to where the server is asked.
+    for (line, place) in [("bake . -o ../O -q", "pack"), ("bake pack -o O -q --config pack/roughcast.toml", ".")] {
+        let run = roughcast_with(&header, &folder.join(place), words(line));
+        assert!(run.code != 0 && !run.err.contains("expected no server"), "{}", run.err);
+    }
+    for key in ["tool", "ca", "cert", "key"] {
+        fs::write(folder.join("pack/roughcast.toml"), remote(&format!("{key} = '../../home/.profile'\n")))
+            .expect("a file");
+        let run = roughcast_in(&folder, words("bake pack -o O -q"));
+        let says = format!("pack/roughcast.toml: expected {key} of [remote] below the working folder");
+        assert!(run.code == 2 && run.err.contains(&says), "{}", run.err);
+    }
+}
