@@ -1,21 +1,22 @@
 //! A baked glTF document and everything that it refers to.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::io;
 use std::path::{Path, PathBuf};
 
 use ::gltf::json::{Image, Root};
 use serde_json::Value;
 
 use super::extension::RoughnessPyramid;
+use super::files::{Files, Referred};
 use super::findings::{Code, Finding, Findings};
+use super::held::Held;
 use super::materials::check_materials;
 use super::provenance::check_document_provenance;
 use super::scope::Scope;
 use super::sources::{Sources, Textures};
 use super::texture::{Usage, check_texture};
 use super::variance::{Levels, Ranged, check_variance};
-use crate::bake::{Source, SourceError};
+use crate::bake::SourceError;
 use crate::gltf::document::{Container, Document, DocumentError};
 use crate::gltf::texture::ImageLocation;
 use crate::gltf::uri::{Uri, relative_path};
@@ -31,14 +32,9 @@ pub struct CheckedDocument {
     pub files: Vec<PathBuf>,
 }
 
-/// Checks the document `name`, whose bytes are `bytes`. `read` takes paths relative to it.
-pub fn check_document(
-    name: &str,
-    bytes: &[u8],
-    read: &(dyn Fn(&Path) -> io::Result<Vec<u8>> + Sync),
-    scope: &Scope<'_>,
-) -> CheckedDocument {
-    let mut findings = Findings::new(name, "");
+/// Checks the document `name`, whose bytes are `bytes` and beside which `files` are.
+pub fn check_document(name: &str, bytes: &[u8], files: &dyn Files, scope: &Scope<'_>) -> CheckedDocument {
+    let mut findings = Findings::new(name);
     let parsed = Document::parse(bytes).and_then(|document| {
         let value = document.json().value("")?.unwrap_or_default();
         Ok((document, value))
@@ -62,17 +58,24 @@ pub fn check_document(
     let textures = Textures::of(&root, &mut findings);
     let uses = check_materials(&root, &value, &textures, &mut findings);
     textures.check_declarations(&root, &value, &mut findings);
-    let source = Source { stem: "", document: &document, files: &read };
-    check_buffers(&root, &source, &mut findings);
+    let referred = Referred::new(&document, &value, files, scope.is_deep);
+    check_buffers(&root, &referred, &mut findings);
 
-    let mut images = Images { name, source, root: &root, scope, contents: BTreeMap::new(), list: Vec::new() };
+    let of_images = Findings::new(name);
+    let mut images = Images { name, referred, root: &root, scope, contents: BTreeMap::new(), findings: of_images };
     for image in 0..root.images.len() {
         images.check(image, &textures, &uses.normals, &mut findings);
     }
+    // Materials that share textures and ranges share what is found of their variance.
+    let mut variances: BTreeMap<String, Vec<(u32, String)>> = BTreeMap::new();
     for (pointer, pyramid) in &uses.pyramids {
         check_contents(pointer, pyramid, &textures, &images.contents, &mut findings);
         if scope.is_deep {
-            images.check_variance(pointer, pyramid, &textures, &mut findings);
+            let key = images.variance_key(pyramid, &textures);
+            let found = variances.entry(key).or_insert_with(|| images.check_variance(pyramid, &textures));
+            for (level, message) in found {
+                findings.add(Code::Variance, format!("{pointer}, level {level}"), message.as_str());
+            }
         }
     }
     let is_baked = images.contents.values().any(Option::is_some);
@@ -88,17 +91,17 @@ pub fn check_document(
         }
     }
     let mut list = findings.into_list();
-    list.append(&mut images.list);
-    CheckedDocument { findings: list, files: files(&root) }
+    list.append(&mut images.findings.into_list());
+    CheckedDocument { findings: list, files: named_files(&root) }
 }
 
-fn check_buffers(root: &Root, source: &Source<'_>, findings: &mut Findings) {
+fn check_buffers(root: &Root, referred: &Referred<'_>, findings: &mut Findings) {
     for (index, buffer) in root.buffers.iter().enumerate() {
         let Some(uri) = &buffer.uri else { continue };
         let place = format!("/buffers/{index}");
-        match source.uri(uri) {
-            Ok(bytes) if (bytes.len() as u64) < buffer.byte_length.0 => {
-                let message = format!("expected {} bytes, found {}; bake again", buffer.byte_length.0, bytes.len());
+        match referred.buffer_length(uri) {
+            Ok(length) if length < buffer.byte_length.0 => {
+                let message = format!("expected {} bytes, found {length}; bake again", buffer.byte_length.0);
                 findings.add(Code::BadReference, place, message);
             }
             result => report(result.err(), &place, findings),
@@ -117,12 +120,13 @@ fn report(error: Option<SourceError>, place: &str, findings: &mut Findings) {
 /// The images of a document, checked one by one.
 struct Images<'a> {
     name: &'a str,
-    source: Source<'a>,
+    referred: Referred<'a>,
     root: &'a Root,
     scope: &'a Scope<'a>,
     /// What the provenance of KTX2 images says that they hold; no entry for other images.
     contents: BTreeMap<usize, Option<String>>,
-    list: Vec<Finding>,
+    /// Findings about KTX2 images.
+    findings: Findings,
 }
 
 impl Images<'_> {
@@ -133,74 +137,71 @@ impl Images<'_> {
             findings.add(Code::BadReference, place, "expected a uri or a bufferView, found neither; bake again");
             return;
         };
-        let bytes = match self.source.image(&location) {
-            Ok(bytes) => bytes,
+        let held = match self.referred.image(&location) {
+            Ok(held) => held,
             Err(error) => return report(Some(error), &place, findings),
         };
-        let users = || textures.iter();
-        let is_ktx2 = bytes.starts_with(&ktx2::MAGIC);
         let mime = image.mime_type.as_ref().map(|m| m.0.as_str());
-        for (texture, sources) in users().filter(|(_, t)| t.core == Some(index)) {
-            self.check_core_source(texture, *sources, is_ktx2, &bytes, mime, findings);
+        for (texture, sources) in textures.users(index).filter(|(_, t)| t.core == Some(index)) {
+            check_core_source(texture, sources, &held, mime, findings);
         }
         let usage = Usage {
-            by_basisu: users().any(|(_, t)| t.basisu == Some(index)),
-            normals: users().any(|(i, t)| normals.contains(&i) && [t.core, t.basisu].contains(&Some(index))),
+            by_basisu: textures.users(index).any(|(_, t)| t.basisu == Some(index)),
+            normals: textures.users(index).any(|(texture, _)| normals.contains(&texture)),
         };
-        if is_ktx2 || usage.by_basisu {
-            let mut of_image = match external(&location) {
-                Some(path) => Findings::new(beside(self.name, &path), ""),
-                None => Findings::new(self.name, place),
-            };
-            let content = check_texture(&bytes, usage, self.scope, &mut of_image);
+        if held.is_ktx2() || usage.by_basisu {
+            match external(&location) {
+                Some(path) => self.findings.turn_to(beside(self.name, &path), ""),
+                None => self.findings.turn_to(self.name, place),
+            }
+            let content = check_texture(held.as_ktx2(), usage, self.scope, &mut self.findings);
             self.contents.insert(index, content);
-            self.list.append(&mut of_image.into_list());
         }
     }
 
-    /// The bytes of the KTX2 of a texture.
-    fn ktx2(&self, texture: u32, textures: &Textures) -> Option<Vec<u8>> {
+    /// Reads the KTX2 of a texture.
+    fn ktx2(&self, texture: u32, textures: &Textures) -> Option<Held> {
         let image = self.root.images.get(textures.get(texture as usize).basisu?)?;
-        self.source.image(&location(image)?).ok()
+        self.referred.image(&location(image)?).ok()
     }
 
-    fn check_variance(&self, pointer: &str, pyramid: &RoughnessPyramid, textures: &Textures, findings: &mut Findings) {
-        let Some(offset) = self.ktx2(pyramid.offset_texture.index, textures) else { return };
+    /// Everything that the variance of a pyramid depends on.
+    fn variance_key(&self, pyramid: &RoughnessPyramid, textures: &Textures) -> String {
+        let image = |texture: u32| textures.get(texture as usize).basisu;
+        let roughness = pyramid.roughness_texture.as_ref().map(|info| image(info.index));
+        let ranges = (&pyramid.offset_min, &pyramid.offset_max, &pyramid.roughness_min, &pyramid.roughness_max);
+        format!("{:?}", (image(pyramid.offset_texture.index), roughness, pyramid.roughness_model, ranges))
+    }
+
+    fn check_variance(&self, pyramid: &RoughnessPyramid, textures: &Textures) -> Vec<(u32, String)> {
+        let Some(offset) = self.ktx2(pyramid.offset_texture.index, textures) else { return Vec::new() };
         let roughness = pyramid.roughness_texture.as_ref().and_then(|info| self.ktx2(info.index, textures));
         let roughness = match (&pyramid.roughness_model, &roughness, &pyramid.roughness_min, &pyramid.roughness_max) {
             (Some(model), Some(bytes), Some(min), Some(max)) => {
-                Ktx2::parse(bytes).ok().map(|file| (*model, Ranged { file, min, max }))
+                Ktx2::parse(bytes.as_ktx2()).ok().map(|file| (*model, Ranged { file, min, max }))
             }
             _ => None,
         };
-        let Ok(file) = Ktx2::parse(&offset) else { return };
+        let Ok(file) = Ktx2::parse(offset.as_ktx2()) else { return Vec::new() };
         let offset = Ranged { file, min: &pyramid.offset_min, max: &pyramid.offset_max };
-        check_variance(&Levels { offset, roughness }, pointer, findings);
+        check_variance(&Levels { offset, roughness })
     }
+}
 
-    fn check_core_source(
-        &self,
-        texture: usize,
-        sources: Sources,
-        is_ktx2: bool,
-        bytes: &[u8],
-        mime: Option<&str>,
-        findings: &mut Findings,
-    ) {
-        let place = format!("/textures/{texture}/source");
-        let is_plain = matches!(bytes, [0x89, b'P', b'N', b'G', ..] | [0xFF, 0xD8, 0xFF, ..]);
-        if mime == Some(KTX2_MIME) {
-            let message = "expected image/png, image/jpeg or none, found image/ktx2: validators and Bevy refuse it; bake to \
-                           external files";
-            findings.add(Code::KtxMimeType, place, message);
-        } else if is_ktx2 && sources.basisu == sources.core {
-            let message = "expected PNG or JPEG, found the KTX2 itself: off the specification, as --gltf dual is";
-            findings.add(Code::DualSource, place, message);
-        } else if !is_plain {
-            let message =
-                "expected PNG or JPEG, found something else: some engines show nothing; bake with --gltf fallback";
-            findings.add(Code::SourceFormat, place, message);
-        }
+fn check_core_source(texture: usize, sources: Sources, held: &Held, mime: Option<&str>, findings: &mut Findings) {
+    let place = format!("/textures/{texture}/source");
+    let is_plain = matches!(held.start(), [0x89, b'P', b'N', b'G', ..] | [0xFF, 0xD8, 0xFF, ..]);
+    if mime == Some(KTX2_MIME) {
+        let message = "expected image/png, image/jpeg or none, found image/ktx2: validators and Bevy refuse it; bake to \
+                       external files";
+        findings.add(Code::KtxMimeType, place, message);
+    } else if held.is_ktx2() && sources.basisu == sources.core {
+        let message = "expected PNG or JPEG, found the KTX2 itself: off the specification, as --gltf dual is";
+        findings.add(Code::DualSource, place, message);
+    } else if !is_plain {
+        let message =
+            "expected PNG or JPEG, found something else: some engines show nothing; bake with --gltf fallback";
+        findings.add(Code::SourceFormat, place, message);
     }
 }
 
@@ -228,7 +229,7 @@ fn check_contents(
     }
 }
 
-fn files(root: &Root) -> Vec<PathBuf> {
+fn named_files(root: &Root) -> Vec<PathBuf> {
     let images = root.images.iter().filter_map(|i| i.uri.as_ref());
     let uris = images.chain(root.buffers.iter().filter_map(|b| b.uri.as_ref()));
     uris.filter_map(|uri| relative_path(uri).ok()).collect()

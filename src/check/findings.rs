@@ -1,5 +1,6 @@
 //! What `check` can find: one table. `docs/findings.md` gives cause and remedy of each; a test holds the two together.
 
+use std::collections::BTreeMap;
 use std::fmt;
 use std::str::FromStr;
 
@@ -168,30 +169,73 @@ pub struct Finding {
     pub message: String,
 }
 
-/// The findings about one file, while they are made.
+/// How many findings of one kind are listed of a file; of the others the number is told.
+pub const LISTED: usize = 20;
+
+/// Longest place or message, in characters: names in files may be as long as the files.
+const LONGEST: usize = 1000;
+
+/// Findings, while they are made.
 pub struct Findings {
     file: String,
     /// Place of an image inside the file; empty for a file by itself.
     within: String,
     list: Vec<Finding>,
+    /// How many there are of each file and kind, listed or not.
+    counts: BTreeMap<(String, Code), usize>,
 }
 
 impl Findings {
-    /// For `file`, or for the image at `within` it.
-    pub fn new(file: impl Into<String>, within: impl Into<String>) -> Self {
-        Self { file: file.into(), within: within.into(), list: Vec::new() }
+    /// Collects findings about `file`.
+    pub fn new(file: impl Into<String>) -> Self {
+        Self { file: file.into(), within: String::new(), list: Vec::new(), counts: BTreeMap::new() }
     }
 
-    /// Adds one. `place` is relative to the image where the findings are about one inside a document.
+    /// Turns to another file, or to the image at `within` of one.
+    pub fn turn_to(&mut self, file: impl Into<String>, within: impl Into<String>) {
+        (self.file, self.within) = (file.into(), within.into());
+    }
+
+    /// Adds a finding. `place` is relative to the image where the findings are about one inside a document.
     pub fn add(&mut self, code: Code, place: impl AsRef<str>, message: impl Into<String>) {
+        let count = self.counts.entry((self.file.clone(), code)).or_default();
+        *count += 1;
+        if *count > LISTED {
+            return;
+        }
         let parts = [self.within.as_str(), place.as_ref()];
         let place = parts.into_iter().filter(|p| !p.is_empty()).collect::<Vec<_>>().join(", ");
-        let (severity, file, message) = (code.severity(), self.file.clone(), message.into());
-        self.list.push(Finding { code, severity, file, place, message });
+        let (severity, file) = (code.severity(), self.file.clone());
+        self.list.push(Finding { code, severity, file, place: shortened(place), message: shortened(message.into()) });
     }
 
-    /// All that were added, in their order.
+    /// Returns what was added, in its order. Behind the first of each file stands how many more of a kind were found.
     pub fn into_list(self) -> Vec<Finding> {
-        self.list
+        let mut more: BTreeMap<String, Vec<(Code, usize)>> = BTreeMap::new();
+        for ((file, code), count) in self.counts.into_iter().filter(|(_, count)| *count > LISTED) {
+            more.entry(file).or_default().push((code, count - LISTED));
+        }
+        let mut list = Vec::with_capacity(self.list.len());
+        let mut rest = self.list.into_iter().peekable();
+        while let Some(finding) = rest.next() {
+            let ended = rest.peek().is_none_or(|next| next.file != finding.file).then(|| finding.file.clone());
+            list.push(finding);
+            let Some(file) = ended else { continue };
+            for (code, count) in more.remove(&file).into_iter().flatten() {
+                let message = format!("expected to list every place, found {count} more than the {LISTED} above");
+                let (severity, place) = (code.severity(), String::new());
+                list.push(Finding { code, severity, file: file.clone(), place, message });
+            }
+        }
+        list
     }
+}
+
+/// Cuts a text to a length that can be read.
+fn shortened(mut text: String) -> String {
+    if let Some((end, _)) = text.char_indices().nth(LONGEST) {
+        text.truncate(end);
+        text.push_str("...");
+    }
+    text
 }

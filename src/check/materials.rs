@@ -49,25 +49,29 @@ pub fn check_materials(root: &Root, value: &Value, textures: &Textures, findings
                 }
             }
         }
-        if extension("KHR_materials_anisotropy").is_some() && material.normal_texture.is_none() {
-            check_tangents(root, index, findings);
-        }
     }
+    check_tangents(root, findings);
     uses
 }
 
 /// KHR_materials_anisotropy, section "Anisotropy": without a normal texture the tangent space comes from the mesh.
-fn check_tangents(root: &Root, material: usize, findings: &mut Findings) {
+fn check_tangents(root: &Root, findings: &mut Findings) {
+    let needs_tangents = |index: usize| {
+        let Some(material) = root.materials.get(index) else { return false };
+        let extensions = material.extensions.as_ref().map(|e| &e.others);
+        extensions.is_some_and(|e| e.contains_key("KHR_materials_anisotropy")) && material.normal_texture.is_none()
+    };
     for (mesh, primitives) in root.meshes.iter().map(|m| &m.primitives).enumerate() {
         for (primitive, p) in primitives.iter().enumerate() {
             let has_tangents = p.attributes.keys().any(|key| matches!(key, Checked::Valid(Semantic::Tangents)));
-            if p.material.is_some_and(|m| m.value() == material) && !has_tangents {
-                let message = format!(
-                    "expected a normalTexture in material {material} or TANGENT in its meshes, found neither: the \
-                     direction of the anisotropy means nothing; export with tangents"
-                );
-                findings.add(Code::NoTangentSpace, format!("/meshes/{mesh}/primitives/{primitive}"), message);
-            }
+            let Some(material) = p.material.map(|m| m.value()).filter(|m| !has_tangents && needs_tangents(*m)) else {
+                continue;
+            };
+            let message = format!(
+                "expected a normalTexture in material {material} or TANGENT in its meshes, found neither: the direction \
+                 of the anisotropy means nothing; export with tangents"
+            );
+            findings.add(Code::NoTangentSpace, format!("/meshes/{mesh}/primitives/{primitive}"), message);
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Which images the textures of a document name, and whether the document declares how.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use ::gltf::json::Root;
 use serde_json::Value;
@@ -14,6 +14,8 @@ const BASISU: &str = "KHR_texture_basisu";
 /// What each texture names.
 pub struct Textures {
     list: Vec<Sources>,
+    /// The textures that name an image, in either way.
+    users: BTreeMap<usize, Vec<usize>>,
 }
 
 /// The images of a texture, both within range.
@@ -51,7 +53,14 @@ impl Textures {
             let core = checked(core, "source");
             Sources { core, basisu: checked(basisu, "extensions/KHR_texture_basisu/source") }
         });
-        Self { list: list.collect() }
+        let list: Vec<Sources> = list.collect();
+        let mut users: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for (index, texture) in list.iter().enumerate() {
+            for image in texture.core.into_iter().chain(texture.basisu.filter(|image| texture.core != Some(*image))) {
+                users.entry(image).or_default().push(index);
+            }
+        }
+        Self { list, users }
     }
 
     /// Number of textures.
@@ -59,9 +68,9 @@ impl Textures {
         self.list.len()
     }
 
-    /// Each with its index.
-    pub fn iter(&self) -> impl Iterator<Item = (usize, &Sources)> {
-        self.list.iter().enumerate()
+    /// Returns the textures that name `image`, each with its index.
+    pub fn users(&self, image: usize) -> impl Iterator<Item = (usize, Sources)> {
+        self.users.get(&image).into_iter().flatten().map(|texture| (*texture, self.get(*texture)))
     }
 
     /// The images of a texture.

@@ -1,15 +1,9 @@
 //! Decoded levels: finite, and unit normals where normals are stored.
 
 use super::findings::{Code, Findings};
-use crate::map::{Image, Rgba, Samples};
-use crate::pyramid::Rows;
+use super::storage::Storage;
+use crate::map::Samples;
 use crate::texture::ktx2::{Ktx2, ReadError};
-
-/// Largest mean of |n| - 1 over a level, either way. Measured on 13 real normal maps and a height map at every level:
-/// UASTC at most 0.012 of normal maps and 0.017 of the height map (1024 x 1024 of wool, level 3), since it is fitted to
-/// directions; BC5 and half floats 0.0002; the same normal maps averaged without normalising reach 0.02 to 0.25, but for
-/// two that are all but flat (0 and 0.008).
-pub const MAX_LENGTH_DEVIATION: f32 = 0.019;
 
 /// Decodes every level and looks at its texels.
 pub fn check_texels(file: &Ktx2<'_>, are_normals: bool, findings: &mut Findings) {
@@ -19,8 +13,8 @@ pub fn check_texels(file: &Ktx2<'_>, are_normals: bool, findings: &mut Findings)
             continue;
         }
         let place = format!("level {level}");
-        let image = match file.decode_level(level) {
-            Ok(image) => image,
+        let storage = match Storage::of(file, level) {
+            Ok(storage) => storage,
             Err(ReadError::LevelLength { expected, found, .. }) => {
                 let message = format!("expected {expected} bytes, found {found}; bake again");
                 findings.add(Code::LevelLength, place, message);
@@ -31,7 +25,7 @@ pub fn check_texels(file: &Ktx2<'_>, are_normals: bool, findings: &mut Findings)
                 continue;
             }
         };
-        if let Samples::F32(values) = &image.samples {
+        if let Samples::F32(values) = &storage.image().samples {
             let bad = values.iter().filter(|v| !v.is_finite()).count();
             if bad > 0 {
                 findings.add(
@@ -42,32 +36,68 @@ pub fn check_texels(file: &Ktx2<'_>, are_normals: bool, findings: &mut Findings)
                 continue;
             }
         }
-        let deviation = if are_normals { length_deviation(&image) } else { 0.0 };
-        if deviation.abs() > MAX_LENGTH_DEVIATION {
+        if !are_normals {
+            continue;
+        }
+        let Lengths { deviation, limit } = lengths(&storage);
+        if deviation.abs() > limit {
             let message = format!(
-                "expected unit normals, of lengths within {MAX_LENGTH_DEVIATION} of 1 on average, found \
-                 {deviation:+.3}: engines that rebuild z and those that do not would disagree; bake again"
+                "expected unit normals, found lengths that are off by {deviation:+.4} on average: storage explains \
+                 {limit:.4}; engines that rebuild z and those that do not would disagree; bake again"
             );
             findings.add(Code::NormalLength, place, message);
         }
     }
 }
 
-/// Mean of |n| - 1 over the texels; of two-channel normals only what x and y are too long counts, since z is rebuilt.
-fn length_deviation(image: &Image) -> f32 {
-    let rows = Rgba(image);
-    let mut row = vec![[0.0; 4]; image.width as usize];
-    let mut sum = 0.0_f64;
-    for y in 0..image.height {
-        rows.row(y, &mut row);
-        for texel in &row {
-            let [x, y, z] = [0, 1, 2].map(|c| 2.0 * texel[c] - 1.0);
-            let deviation = match image.channels {
-                1 | 2 => ((x * x + y * y).sqrt() - 1.0).max(0.0),
-                _ => (x * x + y * y + z * z).sqrt() - 1.0,
-            };
-            sum += f64::from(deviation);
+/// The lengths of the normals of a level.
+struct Lengths {
+    /// Mean of |n| - 1; of two-channel normals only what x and y are too long counts, since z is rebuilt.
+    deviation: f64,
+    /// What storage explains of that.
+    limit: f64,
+}
+
+/// Measures the normals of a level.
+///
+/// The limit is the mean over all blocks of what the format makes of unit vectors. Components are 2 texel - 1, so that the
+/// rounding of x, y and z together makes a vector longer or shorter by at most twice the length of the roundings. Texels that
+/// lie on a line between two unit vectors are short: a chord of length c is 1 - sqrt(1 - c^2 / 4) below the sphere in its
+/// middle, and an encoder that evens that out puts its ends above the sphere by as much. No chord of a block is longer than
+/// the diagonal of the box of its texels. Where x and y have weights of their own, each is off by its residual instead.
+fn lengths(storage: &Storage) -> Lengths {
+    let (mut sum, mut most, mut count) = (0.0, 0.0, 0.0);
+    let mut add = |lengths: &mut dyn Iterator<Item = f64>, bound: f64| {
+        for deviation in lengths {
+            (sum, most, count) = (sum + deviation, most + bound, count + 1.0);
         }
+    };
+    if storage.image().channels <= 2 {
+        storage.visit::<2>(|texels, rounding| {
+            let bound = 2.0 * (norm(rounding) + storage.residual(extents(texels)));
+            add(&mut texels.iter().map(|texel| (norm(texel.map(|t| 2.0 * t - 1.0)) - 1.0).max(0.0)), bound);
+        });
+    } else {
+        storage.visit::<3>(|texels, rounding| {
+            let chord = if storage.has_shared_weights() { norm(extents(texels)).min(1.0) } else { 0.0 };
+            // Of vectors, chords are twice those of texels.
+            let sagitta = 1.0 - (1.0 - chord * chord).sqrt();
+            let bound = 2.0 * norm(rounding) + sagitta;
+            add(&mut texels.iter().map(|texel| norm(texel.map(|t| 2.0 * t - 1.0)) - 1.0), bound);
+        });
     }
-    (sum / (f64::from(image.width) * f64::from(image.height))) as f32
+    Lengths { deviation: sum / count, limit: most / count }
+}
+
+/// How far the texels of a block lie apart, channel by channel.
+pub fn extents<const N: usize>(texels: &[[f64; N]]) -> [f64; N] {
+    std::array::from_fn(|c| {
+        let values = || texels.iter().map(|texel| texel[c]);
+        values().fold(f64::MIN, f64::max) - values().fold(f64::MAX, f64::min)
+    })
+}
+
+/// The length of a vector.
+pub fn norm<const N: usize>(vector: [f64; N]) -> f64 {
+    vector.iter().map(|x| x * x).sum::<f64>().sqrt()
 }

@@ -8,8 +8,10 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::Outcome;
+use super::files::Folder;
 use super::sources::protect;
-use crate::bake::{Source, SourceError, output_stem, read_file};
+use crate::bake::{SourceError, output_stem, read_file};
+use crate::check::Referred;
 use crate::gltf::document::{Document, DocumentError};
 use crate::gltf::texture::ImageLocation;
 use crate::inspect::{
@@ -65,7 +67,8 @@ enum Facts {
 pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<Outcome> {
     match inspect(args) {
         Err(error) => {
-            writeln!(err, "error: {}: {error}", args.file.display())?;
+            let line = format!("error: {}: {error}", args.file.display());
+            writeln!(err, "{}", printable(&line))?;
             Ok(Outcome::Failed)
         }
         Ok((facts, written)) => {
@@ -100,23 +103,25 @@ fn inspect(args: &Args) -> Result<(Facts, Vec<PathBuf>), InspectError> {
         return Ok((Facts::Ktx2(Box::new(facts)), written));
     }
     let document = Document::parse(&bytes)?;
+    let root: Value = document.json().value("").map_err(DocumentError::from)?.unwrap_or_default();
     let folder = args.file.parent().unwrap_or(Path::new(""));
-    let source = Source { stem: "", document: &document, files: &|path: &Path| read_file(&folder.join(path)) };
-    let facts = inspect_document(&source)?;
+    let files = Folder(folder.to_owned());
+    let referred = Referred::new(&document, &root, &files, true);
+    let facts = inspect_document(&root, &referred)?;
     let mut written = Vec::new();
     if let Some(output) = &args.extract {
-        let images = images(&document)?;
+        let images = images(&root);
         protect(&mut guard, &args.file, &document);
         let mut taken = BTreeSet::new();
         for (image, location) in images {
-            let bytes =
-                source.image(&location).map_err(|error| InspectError::Source { image: image.clone(), error })?;
-            if bytes.starts_with(&ktx2::MAGIC) {
+            let held =
+                referred.image(&location).map_err(|error| InspectError::Source { image: image.clone(), error })?;
+            if held.is_ktx2() {
                 let stem = stem(Path::new(&image));
                 // Case-insensitive file systems see one file where names differ by case only.
                 let numbered = |n: u32| if n == 1 { stem.clone() } else { format!("{stem}-{n}") };
                 let unique = (1..).map(numbered).find(|name| taken.insert(name.to_lowercase())).unwrap_or_default();
-                written.extend(write_levels(&unique, &bytes, output, &mut guard)?);
+                written.extend(write_levels(&unique, held.as_ktx2(), output, &mut guard)?);
             }
         }
     }
@@ -124,8 +129,8 @@ fn inspect(args: &Args) -> Result<(Facts, Vec<PathBuf>), InspectError> {
 }
 
 /// The images of a document, each with a name: its path, or `image<index>`.
-fn images(document: &Document) -> Result<Vec<(String, ImageLocation)>, DocumentError> {
-    let list: Vec<Value> = document.json().read("/images")?.unwrap_or_default();
+fn images(root: &Value) -> Vec<(String, ImageLocation)> {
+    let list = root.get("images").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
     let image = |(index, image): (usize, &Value)| {
         let uri = image.get("uri").and_then(Value::as_str);
         let view = image.get("bufferView").and_then(Value::as_u64).and_then(|v| usize::try_from(v).ok());
@@ -134,7 +139,7 @@ fn images(document: &Document) -> Result<Vec<(String, ImageLocation)>, DocumentE
         let location = uri.map(|uri| ImageLocation::Uri(uri.to_owned())).or(view.map(ImageLocation::BufferView))?;
         Some((name, location))
     };
-    Ok(list.iter().enumerate().filter_map(image).collect())
+    list.iter().enumerate().filter_map(image).collect()
 }
 
 fn write_levels(stem: &str, bytes: &[u8], folder: &Path, guard: &mut Guard) -> Result<Vec<PathBuf>, InspectError> {

@@ -6,7 +6,7 @@ mod check;
 mod compare;
 mod completions;
 mod depfile;
-mod head;
+mod files;
 mod init;
 mod inputs;
 mod inspect;

@@ -1,12 +1,13 @@
 //! The facts of a glTF document that have to do with bumps and roughness.
 
-use ktx2::MAGIC;
+use std::collections::BTreeMap;
+
 use serde::Serialize;
 use serde_json::Value;
 
 use super::texture::{TextureFacts, inspect_texture};
-use crate::bake::{EXTENSION, Source};
-use crate::check::RoughnessPyramid;
+use crate::bake::EXTENSION;
+use crate::check::{Referred, RoughnessPyramid};
 use crate::gltf::document::{DocumentError, check_version};
 use crate::gltf::rewrite::references;
 use crate::gltf::texture::ImageLocation;
@@ -101,27 +102,21 @@ const SLOTS: [&str; 7] = [
     "roughnessTexture",
 ];
 
-/// Reads the facts of the document of `source`. What is wrong inside is told among them.
+/// Reads the facts of the document whose JSON is `root`. What is wrong inside is told among them.
 ///
 /// # Errors
-/// [`DocumentError`] when the JSON cannot be read as a tree, or is of another version than glTF 2.0.
-pub fn inspect_document(source: &Source<'_>) -> Result<DocumentFacts, DocumentError> {
-    let root: Value = source.document.json().value("")?.unwrap_or_default();
-    check_version(&root)?;
+/// [`DocumentError`] when the document is of another version than glTF 2.0.
+pub fn inspect_document(root: &Value, referred: &Referred<'_>) -> Result<DocumentFacts, DocumentError> {
+    check_version(root)?;
     let texts = |key: &str| {
         let list = root.get(key).and_then(Value::as_array).into_iter().flatten();
         list.filter_map(Value::as_str).map(str::to_owned).collect()
     };
-    let references = references(&root);
+    let mut slots = slots(root);
+    let mut images = Images { root, referred, known: BTreeMap::new() };
     let materials = root.get("materials").and_then(Value::as_array).into_iter().flatten().enumerate();
-    let materials = materials.map(|(index, material)| {
-        let prefix = format!("/materials/{index}/");
-        let slots = references.iter().filter_map(|(pointer, texture)| {
-            let slot = pointer.strip_prefix(&prefix)?;
-            SLOTS.contains(&slot.rsplit('/').next()?).then(|| (slot.to_owned(), *texture))
-        });
-        material_facts(index, material, slots.collect(), &root, source)
-    });
+    let materials =
+        materials.map(|(index, material)| material_facts(index, material, slots.remove(&index), root, &mut images));
     Ok(DocumentFacts {
         generator: root.pointer("/asset/generator").and_then(Value::as_str).map(str::to_owned),
         extensions_used: texts("extensionsUsed"),
@@ -130,12 +125,30 @@ pub fn inspect_document(source: &Source<'_>) -> Result<DocumentFacts, DocumentEr
     })
 }
 
+/// A reference of a material: its JSON pointer inside the material, and the texture.
+type Slot = (String, usize);
+
+/// Returns the references of [`SLOTS`], by material.
+fn slots(root: &Value) -> BTreeMap<usize, Vec<Slot>> {
+    let mut slots: BTreeMap<usize, Vec<Slot>> = BTreeMap::new();
+    for (pointer, texture) in references(root) {
+        let Some((material, slot)) = pointer.strip_prefix("/materials/").and_then(|rest| rest.split_once('/')) else {
+            continue;
+        };
+        let Ok(material) = material.parse() else { continue };
+        if slot.rsplit('/').next().is_some_and(|name| SLOTS.contains(&name)) {
+            slots.entry(material).or_default().push((slot.to_owned(), texture));
+        }
+    }
+    slots
+}
+
 fn material_facts(
     index: usize,
     material: &Value,
-    slots: Vec<(String, usize)>,
+    slots: Option<Vec<Slot>>,
     root: &Value,
-    source: &Source<'_>,
+    images: &mut Images<'_>,
 ) -> MaterialFacts {
     let mut errors = Vec::new();
     let pyramid = material.get("extensions").and_then(|e| e.get(EXTENSION)).cloned();
@@ -143,11 +156,11 @@ fn material_facts(
         errors.push(format!("{EXTENSION}: expected what its schema describes, found: {reason}"));
     }
     let count = root.get("textures").and_then(Value::as_array).map_or(0, Vec::len);
-    let slots = slots.into_iter().map(|(slot, texture)| {
+    let slots = slots.into_iter().flatten().map(|(slot, texture)| {
         if texture >= count {
             errors.push(format!("{slot}: expected an index below {count}, found {texture}"));
         }
-        SlotFacts { slot, texture, images: images(texture, root, source) }
+        SlotFacts { slot, texture, images: images.of_texture(texture) }
     });
     let slots = slots.collect();
     MaterialFacts {
@@ -162,19 +175,36 @@ fn material_facts(
     }
 }
 
-fn images(texture: usize, root: &Value, source: &Source<'_>) -> Vec<ImageFacts> {
-    let Some(texture) = root.pointer(&format!("/textures/{texture}")) else { return Vec::new() };
-    let extensions = texture.get("extensions").and_then(Value::as_object).into_iter().flatten();
-    let named = extensions.filter_map(|(name, e)| Some((name.clone(), e.get("source")?)));
-    let core = texture.get("source").map(|index| ("source".to_owned(), index));
-    let all = core.into_iter().chain(named);
-    all.filter_map(|(name, index)| Some((name, usize::try_from(index.as_u64()?).ok()?)))
-        .map(|(named_by, image)| image_facts(named_by, image, root, source))
-        .collect()
+/// The images of a document. Each is read once, however many materials use it.
+struct Images<'a> {
+    root: &'a Value,
+    referred: &'a Referred<'a>,
+    known: BTreeMap<usize, ImageFacts>,
 }
 
-fn image_facts(named_by: String, image: usize, root: &Value, source: &Source<'_>) -> ImageFacts {
-    let mut facts = ImageFacts { named_by, image, location: String::new(), picture: None, ktx2: None, error: None };
+impl Images<'_> {
+    /// Returns the facts of every image that a texture names.
+    fn of_texture(&mut self, texture: usize) -> Vec<ImageFacts> {
+        let root = self.root;
+        let Some(texture) = root.pointer(&format!("/textures/{texture}")) else { return Vec::new() };
+        let extensions = texture.get("extensions").and_then(Value::as_object).into_iter().flatten();
+        let named = extensions.filter_map(|(name, e)| Some((name.as_str(), e.get("source")?)));
+        let core = texture.get("source").map(|index| ("source", index));
+        let all = core.into_iter().chain(named);
+        all.filter_map(|(name, index)| Some((name, usize::try_from(index.as_u64()?).ok()?)))
+            .map(|(named_by, image)| ImageFacts { named_by: named_by.to_owned(), ..self.facts(image) })
+            .collect()
+    }
+
+    fn facts(&mut self, image: usize) -> ImageFacts {
+        let (root, referred) = (self.root, self.referred);
+        self.known.entry(image).or_insert_with(|| image_facts(image, root, referred)).clone()
+    }
+}
+
+fn image_facts(image: usize, root: &Value, referred: &Referred<'_>) -> ImageFacts {
+    let mut facts =
+        ImageFacts { named_by: String::new(), image, location: String::new(), picture: None, ktx2: None, error: None };
     let Some(location) = location(root, image) else {
         facts.error = Some(format!("expected images[{image}] with a uri or a bufferView, found none"));
         return facts;
@@ -191,22 +221,23 @@ fn image_facts(named_by: String, image: usize, root: &Value, source: &Source<'_>
             DecodeOptions::default()
         }
     };
-    let bytes = match source.image(&location) {
-        Ok(bytes) => bytes,
+    let held = match referred.image(&location) {
+        Ok(held) => held,
         Err(error) => {
             facts.error = Some(error.to_string());
             return facts;
         }
     };
-    if bytes.starts_with(&MAGIC) {
-        match inspect_texture(&bytes) {
+    if held.is_ktx2() {
+        match inspect_texture(held.as_ktx2()) {
             Ok(ktx2) => facts.ktx2 = Some(ktx2),
             Err(error) => facts.error = Some(error.to_string()),
         }
         return facts;
     }
-    let format = Format::detect(&bytes, options.extension.as_deref());
-    match decode(&bytes, &options) {
+    let bytes = held.start();
+    let format = Format::detect(bytes, options.extension.as_deref());
+    match decode(bytes, &options) {
         Ok(image) => {
             facts.picture = Some(PictureFacts {
                 format: format.map(|f| f.to_string()).unwrap_or_default(),

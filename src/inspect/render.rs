@@ -4,76 +4,88 @@ use serde_json::Value;
 
 use super::document::{DocumentFacts, ImageFacts, MaterialFacts};
 use super::texture::TextureFacts;
+use crate::text::printable;
+
+/// Lines of a text. What stands in a line comes from a file, and may not break out of it.
+struct Lines(String);
+
+impl Lines {
+    fn push(&mut self, line: &str) {
+        self.0 += &printable(line);
+        self.0.push('\n');
+    }
+}
 
 /// A KTX2 file in full.
 pub fn texture_text(name: &str, facts: &TextureFacts) -> String {
-    let mut text = format!("{name}: {}\n", summary(facts));
+    let mut lines = Lines(String::new());
+    lines.push(&format!("{name}: {}", summary(facts)));
     if let Some(d) = &facts.descriptor {
         let alpha = if d.alpha_premultiplied { "premultiplied" } else { "straight" };
-        text += &format!(
-            "  descriptor: model {}, primaries {}, transfer {}, alpha {alpha}, blocks of {} x {} texels in {} bytes\n",
+        lines.push(&format!(
+            "  descriptor: model {}, primaries {}, transfer {}, alpha {alpha}, blocks of {} x {} texels in {} bytes",
             d.model, d.primaries, d.transfer, d.block[0], d.block[1], d.block_bytes
-        );
+        ));
     }
-    text += "  level          size      offset      stored  uncompressed\n";
+    lines.push("  level          size      offset      stored  uncompressed");
     for (index, level) in facts.levels.iter().enumerate() {
         let size = format!("{} x {}", level.width, level.height);
-        text += &format!(
-            "  {index:>5} {size:>13} {:>11} {:>11} {:>13}\n",
+        lines.push(&format!(
+            "  {index:>5} {size:>13} {:>11} {:>11} {:>13}",
             level.offset, level.stored_bytes, level.uncompressed_bytes
-        );
+        ));
     }
     for entry in &facts.keys {
-        text += &format!("  {}: {}\n", entry.key, entry.value);
+        lines.push(&format!("  {}: {}", entry.key, entry.value));
     }
     if let Some(provenance) = &facts.provenance {
-        text += &format!("  provenance: {} baked by version {}\n", provenance.content, provenance.version);
+        lines.push(&format!("  provenance: {} baked by version {}", provenance.content, provenance.version));
         for (key, value) in provenance.settings.as_object().into_iter().flatten() {
-            text += &format!("    {key}: {}\n", plain(value));
+            lines.push(&format!("    {key}: {}", plain(value)));
         }
         if !provenance.lobe_errors.is_empty() {
             let errors: Vec<String> = provenance.lobe_errors.iter().map(|e| format!("{e:.2}")).collect();
-            text += &format!("    lobe error by level: {}\n", errors.join(" "));
+            lines.push(&format!("    lobe error by level: {}", errors.join(" ")));
         }
         for source in &provenance.sources {
-            text += &format!("    source {} (BLAKE3 {})\n", source.uri, source.blake3);
+            lines.push(&format!("    source {} (BLAKE3 {})", source.uri, source.blake3));
         }
     }
-    text
+    lines.0
 }
 
 /// A glTF document: what its materials make of bumps and roughness.
 pub fn document_text(name: &str, facts: &DocumentFacts) -> String {
     let list = |names: &[String]| if names.is_empty() { "none".to_owned() } else { names.join(", ") };
-    let mut text = format!("{name}: {} material(s)\n", facts.materials.len());
-    text += &format!("  extensions used: {}\n", list(&facts.extensions_used));
-    text += &format!("  extensions required: {}\n", list(&facts.extensions_required));
+    let mut lines = Lines(String::new());
+    lines.push(&format!("{name}: {} material(s)", facts.materials.len()));
+    lines.push(&format!("  extensions used: {}", list(&facts.extensions_used)));
+    lines.push(&format!("  extensions required: {}", list(&facts.extensions_required)));
     for material in &facts.materials {
-        text += &material_text(material);
+        add_material(material, &mut lines);
     }
-    text
+    lines.0
 }
 
-fn material_text(material: &MaterialFacts) -> String {
-    let mut text = format!("  {} (roughness factor {})\n", material.name, material.roughness_factor);
+fn add_material(material: &MaterialFacts, lines: &mut Lines) {
+    lines.push(&format!("  {} (roughness factor {})", material.name, material.roughness_factor));
     if material.slots.is_empty() {
-        text += "    no textures of bumps or roughness\n";
+        lines.push("    no textures of bumps or roughness");
     }
     for slot in &material.slots {
-        text += &format!("    {}: textures[{}]\n", slot.slot, slot.texture);
+        lines.push(&format!("    {}: textures[{}]", slot.slot, slot.texture));
         for image in &slot.images {
-            text += &format!("      {}: {}\n", image.named_by, image_text(image));
+            lines.push(&format!("      {}: {}", image.named_by, image_text(image)));
         }
     }
     for (key, value) in material.pyramid.as_ref().and_then(Value::as_object).into_iter().flatten() {
         if !key.ends_with("Texture") {
-            text += &format!("    {key}: {}\n", plain(value));
+            lines.push(&format!("    {key}: {}", plain(value)));
         }
     }
     for error in &material.errors {
-        text += &format!("    error: {error}\n");
+        lines.push(&format!("    error: {error}"));
     }
-    text
 }
 
 fn image_text(image: &ImageFacts) -> String {

@@ -157,9 +157,15 @@ fn name<T: std::fmt::Debug>(value: Option<&T>) -> String {
     value.map_or_else(|| "unspecified".to_owned(), |v| format!("{v:?}"))
 }
 
+/// Longest value of a key that is shown, in characters.
+const LONGEST: usize = 1000;
+
 fn text(value: &[u8]) -> String {
     match std::str::from_utf8(value.strip_suffix(b"\0").unwrap_or(value)) {
-        Ok(text) if !text.contains(char::is_control) => text.to_owned(),
+        Ok(text) if !text.contains(char::is_control) => match text.char_indices().nth(LONGEST) {
+            Some((end, _)) => format!("{}...", &text[..end]),
+            None => text.to_owned(),
+        },
         _ => format!("{} bytes", value.len()),
     }
 }

@@ -294,6 +294,33 @@ fn embedded_sources_are_compared() {
     assert!(!stale.is_empty() && stale.iter().all(|f| f.1 != "image1.normal.ktx2"), "{stale:?}");
 }
 
+/// Images in a buffer are told by their own beginnings, wherever in the file those are.
+#[test]
+fn core_sources_in_buffers_are_told_from_what_is_not_read() {
+    for (image, expected) in [(&b"\x89PNG\r\n"[..], false), (b"\xFF\xD8\xFF\xE0", false), (b"RIFF", true), (b"", true)]
+    {
+        let bake = bake(&[]);
+        let mut bytes = fs::read(bake.baked.join("mesh.bin")).unwrap();
+        bytes.resize(9000, 0);
+        bytes[6000..][..image.len()].copy_from_slice(image);
+        fs::write(bake.baked.join("mesh.bin"), bytes).unwrap();
+        bake.edit(|d| {
+            d["buffers"][0]["byteLength"] = json!(9000);
+            let views = d["bufferViews"].as_array_mut().unwrap();
+            views.push(json!({ "buffer": 0, "byteOffset": 6000, "byteLength": 3000 }));
+            let view = views.len() - 1;
+            let images = d["images"].as_array_mut().unwrap();
+            images.push(json!({ "bufferView": view, "mimeType": "image/png" }));
+            let image = images.len() - 1;
+            d["textures"].as_array_mut().unwrap().push(json!({ "source": image }));
+        });
+        for options in [&[][..], &["--deep"]] {
+            let codes: Vec<String> = findings(&bake.check(options).1).into_iter().map(|f| f.0).collect();
+            assert_eq!(codes.contains(&"RC1207".to_owned()), expected, "{image:?} {options:?}: {codes:?}");
+        }
+    }
+}
+
 /// A texel that no longer decodes is nothing to a check of headers, which does not read it.
 #[test]
 fn levels_are_read_only_with_deep() {

@@ -161,7 +161,7 @@ fn check(file: &[u8]) -> Vec<(Code, String)> {
 }
 
 fn check_to(is_deep: bool, file: &[u8]) -> Vec<(Code, String)> {
-    let mut findings = Findings::new("file.ktx2", "");
+    let mut findings = Findings::new("file.ktx2");
     let min_version = Version::new(0, 0, 5);
     let scope = Scope { is_deep, min_version: Some(&min_version), ..Scope::default() };
     check_texture(file, Usage { by_basisu: true, normals: false }, &scope, &mut findings);

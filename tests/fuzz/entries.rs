@@ -8,7 +8,7 @@ use std::io;
 use std::path::Path;
 
 use roughcast::bake::{Model, Profile, Settings, Source, bake};
-use roughcast::check::{Scope, check_document};
+use roughcast::check::{Referred, Scope, check_document};
 use roughcast::config::{Config, resolve};
 use roughcast::gltf::document::Document;
 use roughcast::inspect::{extract, inspect_document, inspect_texture};
@@ -27,7 +27,10 @@ pub fn document(bytes: &[u8]) {
     let _ = check_document("fuzzed.gltf", bytes, &read, &Scope { is_deep: true, ..Scope::default() });
     let Ok(document) = Document::parse(bytes) else { return };
     let source = Source { stem: "fuzzed", document: &document, files: &read };
-    let _ = inspect_document(&source);
+    if let Ok(root) = document.json().value("") {
+        let root = root.unwrap_or_default();
+        inspect_document(&root, &Referred::new(&document, &root, &read, true));
+    }
     for (profile, model, glb) in
         [(Profile::Both, Model::Isotropic, false), (Profile::Portable, Model::Anisotropic, true)]
     {

@@ -9,6 +9,7 @@ pub use sarif::sarif;
 use serde::Serialize;
 
 use super::findings::{Finding, Severity};
+use crate::text::printable;
 
 /// What a run of `check` found.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -38,12 +39,13 @@ pub fn text(report: &Report) -> String {
     let mut text = String::new();
     for group in report.findings.chunk_by(|a, b| a.file == b.file) {
         if let Some(first) = group.first() {
-            text += &format!("{}\n", first.file);
+            text += &format!("{}\n", printable(&first.file));
         }
         for finding in group {
             let place = if finding.place.is_empty() { String::new() } else { format!("{}: ", finding.place) };
             let (severity, code, title) = (finding.severity.name(), finding.code, finding.code.title());
-            text += &format!("  {severity} {code} {place}{title}: {}\n", finding.message);
+            let line = format!("  {severity} {code} {place}{title}: {}", finding.message);
+            text += &format!("{}\n", printable(&line));
         }
     }
     let counts = [Severity::Error, Severity::Warning, Severity::Note].map(|s| report.count(s));

@@ -14,13 +14,14 @@ use semver::Version;
 use self::targets::{Sources, Target, source_document};
 use super::Outcome;
 use super::cached::CacheOptions;
-use super::head::read_head;
+use super::files::Folder;
 use super::jobs;
 use super::report::Status;
 use super::selection::SettingOptions;
 use super::work::Work;
 use crate::bake::{Settings, read_file};
-use crate::check::{self, Code, Finding, Findings, Origin, Report, Scope, Severity, Usage};
+use crate::check::{self, Code, Files, Finding, Findings, Held, Origin, Report, Scope, Severity, Usage};
+use crate::text::printable;
 
 /// Read baked files again and report what engines would stumble over, or what is not up to date.
 ///
@@ -82,7 +83,7 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
         Some(source) => match Sources::find(source, &args.baked, &args.settings) {
             Ok(sources) => sources,
             Err(reason) => {
-                writeln!(err, "error: {reason}")?;
+                say(err, &format!("error: {reason}"))?;
                 return Ok(Outcome::Usage);
             }
         },
@@ -133,7 +134,8 @@ impl Args {
             match targets::find(argument) {
                 Ok(found) => targets.extend(found),
                 Err(error) => {
-                    writeln!(err, "error: {}: expected a baked file or folder, found: {error}", argument.display())?;
+                    let path = argument.display();
+                    say(err, &format!("error: {path}: expected a baked file or folder, found: {error}"))?;
                     outcome = outcome.and(Outcome::Failed);
                 }
             }
@@ -141,7 +143,7 @@ impl Args {
         let (textures, documents): (Vec<_>, Vec<_>) = targets.into_iter().partition(Target::is_texture);
         let mut unreadable = |target: &Target, error: &io::Error| {
             outcome = outcome.and(Outcome::Failed);
-            writeln!(err, "error: {}: expected a readable file, found: {error}", target.path.display())
+            say(err, &format!("error: {}: expected a readable file, found: {error}", target.path.display()))
         };
         let (mut files, mut findings, mut curable) = (Vec::new(), Vec::new(), BTreeSet::new());
         let mut named: BTreeSet<PathBuf> = BTreeSet::new();
@@ -175,7 +177,7 @@ impl Args {
         let present: BTreeSet<PathBuf> = documents.iter().map(Target::key).collect();
         for missing in sources.expected.iter().filter(|key| !present.contains(*key)) {
             let Some(asset) = sources.assets.get(missing) else { continue };
-            let mut found = Findings::new(asset.input.path.display().to_string(), "");
+            let mut found = Findings::new(asset.input.path.display().to_string());
             let message = format!("expected its output at {}, found none; bake it", missing.display());
             found.add(Code::NoOutput, "", message);
             let mut found = found.into_list();
@@ -202,7 +204,7 @@ impl Args {
         let bytes = read_file(&target.path)?;
         let name = target.path.display().to_string();
         let folder = target.path.parent().unwrap_or(Path::new(""));
-        let mut findings = Findings::new(&name, "");
+        let mut findings = Findings::new(&name);
         // The output may have a shorter name than its source.
         let known = sources.assets.get(&target.key());
         let source_path = self
@@ -223,7 +225,7 @@ impl Args {
         // Without a word on settings, any will do; a fix will bake with the defaults then.
         let asset = known.filter(|_| sources.is_configured || self.fix);
         let scope = Scope { settings: asset.map(|asset| &asset.resolved.settings), ..self.scope(origin.as_ref()) };
-        let checked = check::check_document(&name, &bytes, &|path| self.read(&folder.join(path)), &scope);
+        let checked = check::check_document(&name, &bytes, &Folder(folder.to_owned()), &scope);
         let mut findings = findings.into_list();
         findings.extend(checked.findings);
         let files = checked.files.iter().filter_map(|file| fs::canonicalize(folder.join(file)).ok()).collect();
@@ -232,8 +234,9 @@ impl Args {
 
     /// Checks a texture that no document names.
     fn check_texture(&self, target: &Target) -> io::Result<Vec<Finding>> {
-        let bytes = self.read(&target.path)?;
-        let mut findings = Findings::new(target.path.display().to_string(), "");
+        let files = Folder(PathBuf::new());
+        let held = Held::read(files.length(&target.path)?, self.deep, |part| files.read(&target.path, part))?;
+        let mut findings = Findings::new(target.path.display().to_string());
         if target.is_of_document() {
             let message = "expected a document that names it, found none: an earlier bake left it behind; delete it";
             findings.add(Code::LeftOver, "", message);
@@ -241,7 +244,7 @@ impl Args {
             let folder = self.source.as_ref().map(|f| f.join(target.below.parent().unwrap_or(Path::new(""))));
             let read_source = |path: &Path| read_file(&folder.as_deref().unwrap_or(Path::new("")).join(path));
             let origin = folder.as_ref().map(|_| Origin::new(None, &read_source));
-            check::check_texture(&bytes, Usage::default(), &self.scope(origin.as_ref()), &mut findings);
+            check::check_texture(held.as_ktx2(), Usage::default(), &self.scope(origin.as_ref()), &mut findings);
         }
         Ok(findings.into_list())
     }
@@ -250,14 +253,10 @@ impl Args {
         Scope { is_deep: self.deep, origin, settings: None, min_version: self.min_version.as_ref() }
     }
 
-    fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
-        if self.deep { read_file(path) } else { read_head(path) }
-    }
-
     /// Bakes the assets whose outputs are `curable`, as `bake` does.
     fn bake(&self, curable: &BTreeSet<PathBuf>, sources: &Sources, err: &mut dyn Write) -> io::Result<Outcome> {
         if let Some(error) = &sources.unsafe_output {
-            writeln!(err, "error: {error}")?;
+            say(err, &format!("error: {error}"))?;
             return Ok(Outcome::Failed);
         }
         let assets = curable.iter().filter_map(|key| sources.assets.get(key));
@@ -281,10 +280,15 @@ impl Args {
         let mut guard = jobs::guard(&planned, None, &[]);
         let worked = work.run(planned, &mut guard, err, &mut |asset, err| match &asset.output {
             Some(output) if asset.status != Status::Failed => {
-                writeln!(err, "baked again: {} -> {output}", asset.input)
+                say(err, &format!("baked again: {} -> {output}", asset.input))
             }
             _ => Ok(()),
         })?;
         Ok(worked.outcome)
     }
+}
+
+/// Writes a line that names what files hold.
+fn say(err: &mut dyn Write, line: &str) -> io::Result<()> {
+    writeln!(err, "{}", printable(line))
 }

@@ -21,6 +21,12 @@ pub enum ReadError {
         /// Which rule.
         what: &'static str,
     },
+    /// The key/value data has more entries than anybody needs.
+    #[error("the KTX2 file has more than {limit} keys: write it again without those that no reader asks for")]
+    TooManyKeys {
+        /// Most entries that are read.
+        limit: usize,
+    },
     /// A level's length is not what its size and format make it.
     #[error("level {level} of the KTX2 file has {found} bytes, its size and format make {expected}: export it again")]
     LevelLength {

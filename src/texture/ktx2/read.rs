@@ -36,7 +36,7 @@ impl<'a> Ktx2<'a> {
     /// checks that all sections lie inside the file.
     ///
     /// # Errors
-    /// [`ReadError::NotKtx2`], [`ReadError::Truncated`], [`ReadError::Malformed`].
+    /// [`ReadError::NotKtx2`], [`ReadError::Truncated`], [`ReadError::Malformed`], [`ReadError::TooManyKeys`].
     pub fn parse(bytes: &'a [u8]) -> Result<Ktx2<'a>, ReadError> {
         if !bytes.starts_with(&ktx2::MAGIC) {
             return Err(ReadError::NotKtx2);
@@ -52,6 +52,7 @@ impl<'a> Ktx2<'a> {
             return Err(malformed("neither 1 nor 6 faces"));
         }
         check_descriptor(bytes)?;
+        check_key_count(bytes)?;
         let reader = Reader::new(bytes).map_err(failed)?;
         let entries = bytes.get(Header::LENGTH..).unwrap_or_default();
         let (entries, _) = entries.as_chunks::<{ ktx2::LevelIndex::LENGTH }>();
@@ -290,6 +291,26 @@ fn from_parser(error: &ParseError, bytes: &[u8]) -> ReadError {
         ParseError::InvalidSampleBitLength => malformed("a sample of 256 bits"),
         _ => ReadError::Truncated { length: bytes.len() as u64 },
     }
+}
+
+/// Most entries of the key/value data. The specification names some ten keys, and writers add a few of their own.
+const MAX_KEYS: usize = 1000;
+
+/// Refuses more than [`MAX_KEYS`] entries (3.11), since everybody who looks for a key reads all before it.
+fn check_key_count(bytes: &[u8]) -> Result<(), ReadError> {
+    let word = |at: usize| {
+        let word = bytes.get(at..at + 4).and_then(|word| word.try_into().ok());
+        word.map_or(0, u32::from_le_bytes) as usize
+    };
+    let (start, length) = (word(56), word(60));
+    // A section outside the file is the parser's to report.
+    let mut section = bytes.get(start..start.saturating_add(length)).unwrap_or_default();
+    for _ in 0..MAX_KEYS {
+        let Some((length, rest)) = section.split_first_chunk() else { return Ok(()) };
+        let length = u32::from_le_bytes(*length).checked_next_multiple_of(4).map_or(usize::MAX, |n| n as usize);
+        section = rest.get(length..).unwrap_or_default();
+    }
+    if section.is_empty() { Ok(()) } else { Err(ReadError::TooManyKeys { limit: MAX_KEYS }) }
 }
 
 /// `ktx2` 0.5 adds 1 to the four texel block dimensions in 8 bits, and panics on 255.

@@ -1,0 +1,210 @@
+//! What storage explains, and what it does not: defects are found as soon as they are larger than what the format allows.
+
+use std::fs;
+
+use roughcast::check::{Code, Finding, Findings, Scope, Usage, check_texture};
+use roughcast::cli::Outcome;
+use roughcast::texture::ktx2::{Key, Ktx2, Ktx2Writer, StoredLevel, provenance};
+use roughcast::texture::uastc::{Effort, Metric};
+use roughcast::texture::{Format, Texels, encode};
+use serde_json::Value;
+
+use crate::fixture::{Bake, bake, roughcast};
+
+const EXTENSION: &str = "/materials/0/extensions/ROUGHCAST_materials_roughness_pyramid";
+
+/// Formats of offset textures that this build writes.
+fn formats() -> Vec<Format> {
+    let mut formats = vec![Format::UastcRgb, Format::Rg16Float];
+    formats.extend(cfg!(feature = "bc").then_some(Format::Bc5));
+    formats
+}
+
+/// A texture of 16 x 16 whose texels `texel` gives by level, column and row, in [0, 1].
+fn texture(format: Format, metric: Metric, keys: &[Key], texel: impl Fn(u32, u32, u32) -> [f64; 3] + Sync) -> Vec<u8> {
+    let level = |level: u32| {
+        let row = |y: u32, out: &mut [[f32; 4]]| {
+            for (x, out) in out.iter_mut().enumerate() {
+                let [r, g, b] = texel(level, x as u32, y).map(|c| c as f32);
+                *out = [r, g, b, 1.0];
+            }
+        };
+        let size = 16 >> level;
+        let payload = encode(&Texels { width: size, height: size, row: &row }, format, metric, Effort::Fast).unwrap();
+        StoredLevel::new(payload, format, Effort::Fast).unwrap()
+    };
+    Ktx2Writer { format, width: 16, height: 16, levels: (0..5).map(level).collect(), keys }.into_bytes().unwrap()
+}
+
+/// The keys of a texture that this tool has written.
+fn keys(bytes: &[u8]) -> Vec<Key> {
+    provenance(&Ktx2::parse(bytes).unwrap()).unwrap().keys()
+}
+
+/// Findings of kind `code`, with the levels that they are about.
+fn levels(findings: &[Finding], code: Code) -> Vec<u32> {
+    let found = findings.iter().filter(|f| f.code == code);
+    found.map(|f| f.place.rsplit(' ').next().unwrap().parse().unwrap()).collect()
+}
+
+/// The number behind `label` in a message.
+fn number(message: &str, label: &str) -> f64 {
+    let (_, rest) = message.split_once(label).unwrap_or_else(|| panic!("{label}: {message}"));
+    let end = rest.find(|c: char| !matches!(c, '0'..='9' | '.' | '+' | '-')).unwrap_or(rest.len());
+    rest[..end].trim_end_matches('.').parse().unwrap()
+}
+
+fn check_normals(format: Format, normal: impl Fn(u32, u32, u32) -> [f64; 3] + Sync) -> Vec<Finding> {
+    let keys = keys(&fs::read(bake(&[]).texture("bumps.normal.ktx2")).unwrap());
+    let texel = |level, x, y| normal(level, x, y).map(|c| 0.5 * c + 0.5);
+    let file = texture(format, Metric::Direction, &keys, texel);
+    let mut findings = Findings::new("normal.ktx2");
+    let scope = Scope { is_deep: true, ..Scope::default() };
+    check_texture(&file, Usage { by_basisu: false, normals: true }, &scope, &mut findings);
+    findings.into_list()
+}
+
+/// Rough slopes that differ from texel to texel.
+fn slope(x: u32, y: u32) -> [f64; 2] {
+    let noise =
+        |seed: u32| f64::from((x * 7919 + y * 104_729 + seed).wrapping_mul(2_654_435_761) >> 16) / 65536.0 - 0.5;
+    [2.0 * noise(1), 1.6 * noise(77)]
+}
+
+fn unit([u, v]: [f64; 2]) -> [f64; 3] {
+    let length = f64::sqrt(u * u + v * v + 1.0);
+    [-u / length, -v / length, 1.0 / length]
+}
+
+/// The mean of `value` over the texels of level 0 under a texel.
+fn mean<const N: usize>(level: u32, x: u32, y: u32, value: impl Fn(u32, u32) -> [f64; N]) -> [f64; N] {
+    let edge = 1 << level;
+    let mut sum = [0.0; N];
+    for (dx, dy) in (0..edge).flat_map(|dy| (0..edge).map(move |dx| (dx, dy))) {
+        let value = value(x * edge + dx, y * edge + dy);
+        sum.iter_mut().zip(value).for_each(|(sum, value)| *sum += value / f64::from(edge * edge));
+    }
+    sum
+}
+
+/// Unit normals are clean however they are stored. Normals that somebody averaged are found: in floats at every level but the
+/// first, in blocks where texels of a block no longer lie so far apart that a line between unit vectors explains it.
+#[test]
+fn averaged_normals_are_found_and_unit_normals_are_not() {
+    for (format, expected) in [(Format::UastcRgb, vec![2, 3, 4]), (Format::Rgba16Float, vec![1, 2, 3, 4])] {
+        let normalised = |level, x, y| unit(mean(level, x, y, slope));
+        assert_eq!(levels(&check_normals(format, normalised), Code::NormalLength), [] as [u32; 0], "{format:?}");
+        let averaged = |level, x, y| mean(level, x, y, |x, y| unit(slope(x, y)));
+        assert_eq!(levels(&check_normals(format, averaged), Code::NormalLength), expected, "{format:?}");
+    }
+}
+
+/// Normals that point all the same way are found as soon as they are shorter than rounding makes them.
+#[test]
+fn lengths_just_outside_the_bound_are_found() {
+    for (format, step) in [(Format::UastcRgb, 2.0 / 255.0), (Format::Rgba16Float, 0.002)] {
+        let check = |length: f64| check_normals(format, |_, _, _| unit([0.5, -0.3]).map(|c| c * length));
+        let lengths = (0..40).map(|n| 1.0 - 0.25 * step * f64::from(n));
+        let found = lengths.map(check).find(|findings| !levels(findings, Code::NormalLength).is_empty()).unwrap();
+        let message = &found.iter().find(|f| f.code == Code::NormalLength).unwrap().message;
+        let (deviation, limit) = (-number(message, "off by "), number(message, "storage explains "));
+        // Printed numbers are rounded.
+        assert!(deviation > limit - 1e-4 && deviation < limit + 2.0 * step, "{format:?}: {message}");
+    }
+}
+
+/// A pyramid bake whose offset texture is replaced by one of `texel`, encoded as `format`.
+fn with_offsets(format: Format, texel: impl Fn(u32, u32, u32) -> [f64; 3] + Sync) -> Bake {
+    let bake = bake(&["--profile", "pyramid", "--model", "none", "--gltf", "strict"]);
+    let path = bake.texture("bumps.offset.ktx2");
+    let keys = keys(&fs::read(&path).unwrap());
+    fs::write(&path, texture(format, Metric::Rgb, &keys, texel)).unwrap();
+    bake.edit(|document| {
+        let extension = document.pointer_mut(EXTENSION).unwrap();
+        extension["offsetMin"] = serde_json::json!([-2.0, -2.0]);
+        extension["offsetMax"] = serde_json::json!([2.0, 2.0]);
+    });
+    bake
+}
+
+fn variance_messages(bake: &Bake) -> Vec<String> {
+    let (_, report) = bake.check(&["--deep"]);
+    let findings = report["findings"].as_array().unwrap().iter().filter(|f| f["code"] == "RC1404");
+    findings.map(|f| f["message"].as_str().unwrap().to_owned()).collect()
+}
+
+/// Means that storage rounds are clean; one that is off by just more than rounding explains is found.
+#[test]
+fn means_just_outside_the_bound_are_found() {
+    for format in formats() {
+        let rough = with_offsets(format, |level, x, y| {
+            let [u, v] = mean(level, x, y, slope);
+            [0.25 * u + 0.5, 0.25 * v + 0.5, 0.0]
+        });
+        assert_eq!(variance_messages(&rough), [] as [String; 0], "{format:?}");
+        let step = if format == Format::Rg16Float { 0.0005 } else { 1.0 / 255.0 };
+        let shifted =
+            |shift: f64| with_offsets(format, move |level, _, _| [0.6 + shift * f64::from(level.min(1)), 0.4, 0.0]);
+        let found =
+            (0..16).map(|n| variance_messages(&shifted(0.5 * step * f64::from(n)))).find(|found| !found.is_empty());
+        let found = found.unwrap();
+        let message = &found[0];
+        let coordinate = |label: &str| number(message, label);
+        let deviation = coordinate("found (") - coordinate("mean (");
+        let limit = number(message, "storage explains ");
+        // A step of a texel is four of its range, and printed numbers are rounded.
+        assert!(deviation > limit - 1e-4 && deviation < limit + 4.0 * 1.5 * step, "{format:?}: {message}");
+    }
+}
+
+/// D that somebody filtered loses variance that offsets do not gain: all of it is missed as soon as it is more than storage
+/// explains.
+#[test]
+fn variance_just_outside_the_bound_is_found() {
+    let targets: &[&str] = if cfg!(feature = "bc") { &["basis", "bc", "float"] } else { &["basis", "float"] };
+    for target in targets {
+        let options = ["--profile", "pyramid", "--model", "anisotropic", "--gltf", "strict", "--target", target];
+        let scaled = |factor: f64| {
+            let bake = bake(&options);
+            bake.edit(|document| {
+                for member in ["roughnessMin", "roughnessMax"] {
+                    let range = document.pointer_mut(EXTENSION).unwrap()[member].as_array_mut().unwrap();
+                    range.iter_mut().for_each(|v: &mut Value| *v = serde_json::json!(v.as_f64().unwrap() * factor));
+                }
+            });
+            variance_messages(&bake)
+        };
+        assert_eq!(scaled(1.0), [] as [String; 0], "{target}");
+        let factors = (1..40).map(|n| 1.0 + 0.05 * f64::from(n));
+        let (factor, found) = factors.map(|f| (f, scaled(f))).find(|(_, found)| !found.is_empty()).unwrap();
+        assert!(factor < if *target == "float" { 1.1 } else { 2.0 }, "{target}: {factor}: {found:?}");
+    }
+}
+
+/// `--fix` bakes again what has lost its variance or its length, and the bake is clean.
+#[test]
+fn what_is_outside_the_bounds_is_cured_by_a_bake() {
+    let bake = bake(&["--profile", "both", "--model", "anisotropic"]);
+    for name in ["bumps.offset.ktx2", "bumps.normal.ktx2"] {
+        let path = bake.texture(name);
+        let keys = keys(&fs::read(&path).unwrap());
+        let short =
+            texture(Format::UastcRgb, Metric::Rgb, &keys, |level, _, _| [0.5, 0.3 + 0.1 * f64::from(level), 0.6]);
+        fs::write(path, short).unwrap();
+    }
+    let codes = |report: &Value| {
+        let findings = report["findings"].as_array().unwrap().iter().filter(|f| f["severity"] == "error");
+        let mut codes: Vec<String> = findings.map(|f| f["code"].as_str().unwrap().to_owned()).collect();
+        codes.dedup();
+        codes
+    };
+    let settings = ["--profile", "both", "--model", "anisotropic"];
+    let (_, report) = bake.check_source(&[&["--deep"], &settings[..]].concat());
+    assert_eq!(codes(&report), ["RC1404", "RC1402"], "{report:#}");
+    let baked = bake.baked.to_str().unwrap();
+    let fix = ["check", baked, "--source", bake.source.to_str().unwrap(), "--deep", "--fix"];
+    let (outcome, _, err) = roughcast(&[&fix[..], &settings[..]].concat());
+    assert!(outcome == Outcome::Done && err.starts_with("baked again: "), "{err}");
+    let (outcome, report) = bake.check_source(&[&["--deep"], &settings[..]].concat());
+    assert_eq!((outcome, codes(&report)), (Outcome::Done, vec![]), "{report:#}");
+}
