@@ -29,12 +29,13 @@ struct Part {
     range: Range<usize>,
 }
 
-/// Removes buffer views that held images of `source` and that nothing in `json` refers to any more, and their bytes from
-/// `bin`, which is buffer 0. Returns the bytes that stay; nothing where none do, and then the buffer is gone as well.
+/// Removes buffer views that held images of `source` and that nothing in `json` refers to any more, and their bytes
+/// from `bin`, which is buffer 0. Returns the bytes that stay; nothing where none do, and then the buffer is gone as
+/// well.
 ///
-/// Views behind a removed one are renumbered. Where an extension that is not known may number views in a way of its own,
-/// the removed view stays as a view of one byte. Where something other than a buffer view points into the buffer, all
-/// stays as it is.
+/// Views behind a removed one are renumbered. Where an extension that is not known may number views in a way of its
+/// own, the removed view stays as a view of one byte. Where something other than a buffer view points into the buffer,
+/// all stays as it is.
 ///
 /// # Errors
 /// [`ContainerError::Json`] where the document does not have the shape of a glTF.
@@ -204,8 +205,8 @@ fn remove_views(json: &mut Json, references: &[(String, usize)], dead: &BTreeSet
     json.retain("/bufferViews", |index| !dead.contains(&index))
 }
 
-/// Pointers of the numbers of buffer views in `value`, which is at `at` and the member `key` of some object: whatever has
-/// the name `bufferView`.
+/// Pointers of the numbers of buffer views in `value`, which is at `at` and the member `key` of some object: whatever
+/// has the name `bufferView`.
 fn view_references(key: &str, value: &Value, at: String, found: &mut Vec<(String, usize)>) {
     match value {
         Value::Object(members) => {

@@ -11,7 +11,7 @@ use super::compact::compact;
 use super::names::portable_stem;
 use super::reader::Reader;
 use super::source::{Source, SourceError};
-use crate::gltf::document::{Container, Document, DocumentError, holds_buffer_0};
+use crate::gltf::document::{Container, Document, DocumentError};
 use crate::gltf::json::{Json, JsonError};
 use crate::gltf::uri::{Uri, UriError, encode_path};
 
@@ -44,15 +44,14 @@ pub enum ContainerError {
     },
 }
 
-/// The document as a .gltf. The BIN chunk of a .glb becomes a file of its own, which is returned with its path, if it is
-/// buffer 0.
+/// The document as a .gltf. The BIN chunk of a .glb becomes a file of its own, which is returned with its path, if it
+/// is buffer 0.
 pub fn to_gltf(source: &Source<'_>) -> Result<(Document, Option<NewFile>), ContainerError> {
     if source.document.container() == Container::Gltf {
         return Ok((source.document.clone(), None));
     }
     let mut json = source.document.json().clone();
-    let root = json.value("")?.unwrap_or_default();
-    let Some(bin) = source.document.bin().filter(|_| holds_buffer_0(&root)) else {
+    let Some(bin) = source.document.buffer_0() else {
         return Ok((Document::gltf(json), None));
     };
     let stem = portable_stem(source.stem);
@@ -114,8 +113,7 @@ pub fn to_glb(reader: &Reader<'_>) -> Result<Document, ContainerError> {
 
 /// Takes what only replaced images of `source` needed out of the BIN chunk of a .glb: see [`compact`].
 pub fn compact_glb(document: &mut Document, source: &Document) -> Result<(), ContainerError> {
-    let root: Value = document.json().value("")?.unwrap_or_default();
-    if let Some(bin) = document.bin().filter(|_| holds_buffer_0(&root)).map(<[u8]>::to_vec) {
+    if let Some(bin) = document.buffer_0().map(<[u8]>::to_vec) {
         let length = bin.len();
         let bin = compact(document.json_mut(), source.json(), bin)?;
         if bin.as_ref().is_none_or(|bin| bin.len() < length) {

@@ -12,7 +12,7 @@ use serde_json::Value;
 use super::source::{MAX_DATA_URI, Source, SourceError};
 use crate::digest::{Digest, digest};
 use crate::foreign::Foreign;
-use crate::gltf::document::{DocumentError, holds_buffer_0, view_range};
+use crate::gltf::document::{DocumentError, view_range};
 use crate::gltf::json::JsonError;
 use crate::gltf::texture::ImageLocation;
 use crate::gltf::uri::Uri;
@@ -40,6 +40,23 @@ enum Bytes<'a> {
     Read(Arc<Vec<u8>>),
 }
 
+/// What was read of a file or a data URI: its length, and its bytes where something needs them.
+#[derive(Clone)]
+struct Held {
+    length: usize,
+    bytes: Option<Arc<Vec<u8>>>,
+}
+
+impl Held {
+    fn new(bytes: Vec<u8>, is_needed: bool) -> Self {
+        Self { length: bytes.len(), bytes: is_needed.then(|| Arc::new(bytes)) }
+    }
+
+    fn bytes<'a>(self) -> (usize, Bytes<'a>) {
+        (self.length, self.bytes.map_or(Bytes::Unneeded, Bytes::Read))
+    }
+}
+
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
 struct Buffer {
@@ -56,52 +73,54 @@ impl<'a> Reader<'a> {
     pub fn new(source: &'a Source<'a>, root: &'a Value, keeps_all: bool) -> Result<Self, SourceError> {
         let mut reader = Self { source, root, buffers: Vec::new(), digests: BTreeMap::new() };
         let has_images = buffers_of_images(root);
-        let mut files: HashMap<PathBuf, (usize, Option<Arc<Vec<u8>>>)> = HashMap::new();
+        let mut files = HashMap::new();
         let list = root.get("buffers").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
         for (index, value) in list.iter().enumerate() {
             let wrong = |source| JsonError::Read { pointer: format!("/buffers/{index}"), source };
-            let buffer = Buffer::deserialize(value).map_err(|e| DocumentError::from(wrong(e)))?;
+            let Buffer { uri, byte_length } =
+                Buffer::deserialize(value).map_err(|error| DocumentError::from(wrong(error)))?;
             let is_needed = keeps_all || has_images.get(index) == Some(&true);
-            let keep = |bytes: Vec<u8>| (bytes.len(), is_needed.then(|| Arc::new(bytes)));
-            let (found, bytes) = match buffer.uri.as_deref().map(Uri::parse).transpose()? {
-                None => match source.document.bin().filter(|_| index == 0 && holds_buffer_0(root)) {
-                    Some(bin) => {
-                        reader.buffers.push(Bytes::Chunk(bin));
-                        check_length(index, buffer.byte_length, bin.len())?;
-                        continue;
-                    }
-                    None => {
-                        reader.buffers.push(Bytes::Absent);
-                        continue;
-                    }
-                },
-                Some(Uri::Data(data)) => keep(data.decode(MAX_DATA_URI)?),
-                Some(Uri::Path(path)) => match files.get(&path) {
-                    // A file that an earlier buffer did not need to keep is read a second time.
-                    Some((length, bytes)) if bytes.is_some() || !is_needed => (*length, bytes.clone()),
-                    _ => {
-                        let length = source.files.length(&path);
-                        if let Some(length) = length.ok().filter(|_| !is_needed).and_then(|l| usize::try_from(l).ok())
-                            && length >= buffer.byte_length
-                        {
-                            files.insert(path, (length, None));
-                            reader.buffers.push(Bytes::Unneeded);
-                            continue;
-                        }
-                        let bytes = reader.read(&path)?;
-                        if let Some(found) = Foreign::detect(&bytes).filter(|_| bytes.len() < buffer.byte_length) {
-                            return Err(SourceError::Foreign { path, found });
-                        }
-                        let read = keep(bytes);
-                        files.insert(path, read.clone());
-                        read
-                    }
-                },
+            let found = match uri.as_deref().map(Uri::parse).transpose()? {
+                None => {
+                    (index == 0).then(|| source.document.buffer_0()).flatten().map(|bin| (bin.len(), Bytes::Chunk(bin)))
+                }
+                Some(Uri::Data(data)) => Some(Held::new(data.decode(MAX_DATA_URI)?, is_needed).bytes()),
+                Some(Uri::Path(path)) => Some(reader.file(path, byte_length, is_needed, &mut files)?.bytes()),
             };
-            check_length(index, buffer.byte_length, found)?;
-            reader.buffers.push(bytes.map_or(Bytes::Unneeded, Bytes::Read));
+            let (length, bytes) = found.unwrap_or((byte_length, Bytes::Absent));
+            if length < byte_length {
+                return Err(SourceError::ShortBuffer { buffer: index, expected: byte_length, found: length });
+            }
+            reader.buffers.push(bytes);
         }
         Ok(reader)
+    }
+
+    /// The file at `path`, of which a buffer needs `length` bytes, from `files` or read. A file that earlier buffers
+    /// did not need to keep is read a second time.
+    fn file(
+        &mut self,
+        path: PathBuf,
+        length: usize,
+        is_needed: bool,
+        files: &mut HashMap<PathBuf, Held>,
+    ) -> Result<Held, SourceError> {
+        if let Some(held) = files.get(&path).filter(|held| held.bytes.is_some() || !is_needed) {
+            return Ok(held.clone());
+        }
+        let planned = self.source.files.length(&path).ok().and_then(|planned| usize::try_from(planned).ok());
+        if let Some(planned) = planned.filter(|planned| !is_needed && *planned >= length) {
+            let held = Held { length: planned, bytes: None };
+            files.insert(path, held.clone());
+            return Ok(held);
+        }
+        let bytes = self.read(&path)?;
+        if let Some(found) = Foreign::detect(&bytes).filter(|_| bytes.len() < length) {
+            return Err(SourceError::Foreign { path, found });
+        }
+        let held = Held::new(bytes, is_needed);
+        files.insert(path, held.clone());
+        Ok(held)
     }
 
     /// Reads and hashes a file.
@@ -170,10 +189,6 @@ impl<'a> Reader<'a> {
     pub fn digest(&self, path: &Path) -> Option<Digest> {
         self.digests.get(path).copied().or_else(|| self.source.files.digest(path).ok())
     }
-}
-
-fn check_length(buffer: usize, expected: usize, found: usize) -> Result<(), SourceError> {
-    if found < expected { Err(SourceError::ShortBuffer { buffer, expected, found }) } else { Ok(()) }
 }
 
 /// For each buffer whether an image lies in it.

@@ -1,7 +1,7 @@
 //! How densely textures lie on the surfaces of the scenes: the size of a texel in scene units.
 
 use super::material::Mapping;
-use super::meshes::Meshes;
+use super::meshes::{Meshes, Primitive};
 use super::scene::{BadNode, Metric, Placement, Unsteady, product};
 use super::triangles::{Accessors, Vertex, cross, length, minus, tangents};
 
@@ -63,16 +63,18 @@ pub fn density<'a>(
         return Err(NoDensity::MovingCoordinates);
     }
     let (mut sums, mut failure) = (Sums::default(), None);
-    let is_complete =
-        Accessors { meshes, buffer }.visit_material(material, mapping, |mesh, triangle| match placements.get(mesh) {
+    let is_complete = Accessors { meshes, buffer }.visit_material(material, mapping, |primitive, triangle| {
+        let Primitive { mesh, times, .. } = *primitive;
+        match placements.get(mesh) {
             None | Some(Placement::Absent) => failure = failure.or(Some(NoDensity::InNoScene { mesh })),
             Some(Placement::Unsteady(reason)) => {
                 failure = failure.or(Some(NoDensity::Unsteady { mesh, reason: *reason }));
             }
             Some(Placement::At(metrics)) => {
-                metrics.iter().for_each(|metric| sums.add(triangle, *metric, size));
+                metrics.iter().for_each(|metric| sums.add(triangle, f64::from(times), *metric, size));
             }
-        });
+        }
+    });
     match failure {
         Some(failure) => Err(failure),
         None if !is_complete => Err(NoDensity::Unreadable),
@@ -88,13 +90,13 @@ struct Sums {
 }
 
 impl Sums {
-    fn add(&mut self, triangle: [Vertex; 3], metric: Metric, size: (u32, u32)) {
+    fn add(&mut self, triangle: [Vertex; 3], times: f64, metric: Metric, size: (u32, u32)) {
         let Some([a, b]) = texel_sides(triangle, size) else { return };
         let sides = Sides { aa: product(a, metric, a), ab: product(a, metric, b), bb: product(b, metric, b) };
         let stretch = sides.stretch_squared();
         // What is not a number has no bound.
         self.longest_squared = if stretch.is_nan() { f64::INFINITY } else { self.longest_squared.max(stretch) };
-        let texels = texels_under(triangle, size);
+        let texels = times * texels_under(triangle, size);
         self.area += texels * sides.area();
         self.texels += texels;
     }

@@ -56,9 +56,9 @@ impl Document {
     /// Reads a file of either form; which one, its first four bytes tell.
     ///
     /// # Errors
-    /// [`DocumentError::Json`] if the JSON is not well formed, [`DocumentError::NotGltf`] and [`DocumentError::Foreign`]
-    /// for other files, and for a GLB whatever is wrong with its version, lengths and chunks. What the JSON means is not
-    /// looked at: see [`check_version`].
+    /// [`DocumentError::Json`] if the JSON is not well formed, [`DocumentError::NotGltf`] and
+    /// [`DocumentError::Foreign`] for other files, and for a GLB whatever is wrong with its version, lengths and
+    /// chunks. What the JSON means is not looked at: see [`check_version`].
     pub fn parse(bytes: &[u8]) -> Result<Document, DocumentError> {
         if !bytes.starts_with(MAGIC) {
             kind::check_text(bytes)?;
@@ -93,10 +93,17 @@ impl Document {
         &mut self.json
     }
 
-    /// The BIN chunk of a GLB with its padding: up to 3 bytes more than buffer 0 declares. Whether buffer 0 is stored in it
-    /// is for [`holds_buffer_0`] to say.
+    /// The BIN chunk of a GLB with its padding: up to 3 bytes more than buffer 0 declares. It may be nobody's:
+    /// see [`buffer_0`](Self::buffer_0).
     pub fn bin(&self) -> Option<&[u8]> {
         self.chunks.as_ref()?.bin()
+    }
+
+    /// The BIN chunk where it is buffer 0. A first buffer with a `uri` is stored elsewhere, and without a buffer the
+    /// chunk is nobody's (glTF 2.0, section 4.4.3.3).
+    pub fn buffer_0(&self) -> Option<&[u8]> {
+        let buffer = self.json.value("/buffers/0").ok()??;
+        self.bin().filter(|_| buffer.get("uri").is_none_or(Value::is_null))
     }
 
     /// Replaces the BIN chunk of a GLB, padded to a multiple of 4, or removes it; other chunks stay.
@@ -195,10 +202,4 @@ fn range(index: usize, view: &BufferView, buffer: &Buffer) -> Result<(usize, Ran
             buffer_length: buffer.byte_length,
         }),
     }
-}
-
-/// Whether the BIN chunk of a GLB holds buffer 0 of `root`, its JSON: a first buffer with a `uri` is stored elsewhere, and
-/// the chunk is then nobody's (glTF 2.0, section 4.4.3.3).
-pub fn holds_buffer_0(root: &Value) -> bool {
-    root.pointer("/buffers/0").is_some_and(|buffer| buffer.get("uri").is_none())
 }

@@ -26,8 +26,8 @@ const KNOWN: [&str; 15] = [
     "ROUGHCAST_materials_roughness_pyramid",
 ];
 
-/// Whether all extensions of `root` are known to number images and buffer views as the core of glTF does, so that others
-/// may be renumbered.
+/// Whether all extensions of `root` are known to number images and buffer views as the core of glTF does, so that
+/// others may be renumbered.
 pub fn are_known(root: &Value) -> bool {
     let used = root.get("extensionsUsed").and_then(Value::as_array).into_iter().flatten().filter_map(Value::as_str);
     let is_known = |name: &str| name.starts_with("KHR_materials_") || KNOWN.contains(&name);

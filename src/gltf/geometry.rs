@@ -22,9 +22,9 @@ pub struct Layout {
 /// Units per repeat that a layout may have. Beyond, offsets in mesh units and their squares leave the range of floats.
 const UNITS: RangeInclusive<f32> = 1e-9..=1e9;
 
-/// Measures the triangles that use material `material`. `main_direction` is m, in mesh space; `buffer` returns the bytes
-/// of a buffer. `None` when no triangle has positions and the texture coordinates of `mapping`, when all are degenerate, or
-/// when a repeat is shorter than 1e-9 units or longer than 1e9.
+/// Measures the triangles that use material `material`. `main_direction` is m, in mesh space; `buffer` returns the
+/// bytes of a buffer. `None` when no triangle has positions and the texture coordinates of `mapping`, when all are
+/// degenerate, or when a repeat is shorter than 1e-9 units or longer than 1e9.
 pub fn layout<'a>(
     meshes: &Meshes<'_>,
     material: usize,
@@ -33,8 +33,8 @@ pub fn layout<'a>(
     buffer: &dyn Fn(usize) -> Option<&'a [u8]>,
 ) -> Option<Layout> {
     let mut sums = Sums::default();
-    Accessors { meshes, buffer }.visit_material(material, mapping, |_, triangle| {
-        sums.add(triangle, main_direction.map(f64::from));
+    Accessors { meshes, buffer }.visit_material(material, mapping, |primitive, triangle| {
+        sums.add(triangle, f64::from(primitive.times), main_direction.map(f64::from));
     });
     sums.layout()
 }
@@ -49,7 +49,7 @@ struct Sums {
 }
 
 impl Sums {
-    fn add(&mut self, triangle: [Vertex; 3], m: [f64; 3]) {
+    fn add(&mut self, triangle: [Vertex; 3], times: f64, m: [f64; 3]) {
         let Some([p_u, p_v]) = tangents(triangle) else { return };
         let [a, b, c] = triangle.map(|v| v.position);
         let normal = cross(minus(b, a), minus(c, a));
@@ -61,11 +61,12 @@ impl Sums {
         if u <= 0.0 || v <= 0.0 || !(u + v).is_finite() {
             return;
         }
+        let n = normal.map(|x| x / (2.0 * area));
+        let area = times * area;
         self.area += area;
         self.lengths[0] += area * u;
         self.lengths[1] += area * v;
 
-        let n = normal.map(|x| x / (2.0 * area));
         let across = cross(m, n);
         let across_length = length(across);
         if across_length > 0.0 {

@@ -84,7 +84,8 @@ pub const MAX_HEIGHT_SCALE: f32 = 1e6;
 pub enum BumpSource {
     /// A normal texture and its `scale`, whose magnitude is 0 or from 1e-6 to 1e4.
     Normals(TextureUse, f32),
-    /// A height texture and its scale (`extras.roughcast.heightTexture`), whose magnitude is at most [`MAX_HEIGHT_SCALE`].
+    /// A height texture and its scale (`extras.roughcast.heightTexture`), whose magnitude is at most
+    /// [`MAX_HEIGHT_SCALE`].
     Heights(TextureUse, f32),
 }
 

@@ -80,9 +80,9 @@ pub fn add_textures(json: &mut Json, textures: &[NewTexture]) -> Result<Vec<usiz
             None => push_texture(json, new, placed)?,
         });
     }
-    for ((new, index), replaced) in textures.iter().zip(&indices).zip(&freed.replaced) {
-        for slot in &new.slots {
-            point(json, &root, slot, *index, replaced)?;
+    for (new, (texture, index)) in textures.iter().zip(&indices).enumerate() {
+        for slot in &texture.slots {
+            point(json, &root, slot, *index, |old| freed.becomes.get(&old) == Some(&new))?;
         }
     }
     declare(json, BASISU, textures.iter().any(|t| t.source.is_none()))?;
@@ -131,13 +131,18 @@ fn overwrite_texture(
     Ok(())
 }
 
-/// Points `slot` at the new texture `texture`, unless it refers to another of the old ones that were overwritten with it.
-fn point(json: &mut Json, root: &Value, slot: &Slot, texture: usize, overwritten: &[usize]) -> Result<(), JsonError> {
+/// Points `slot` at the new texture `texture`, unless it refers to an old one that `became` it.
+fn point(
+    json: &mut Json,
+    root: &Value,
+    slot: &Slot,
+    texture: usize,
+    became: impl Fn(usize) -> bool,
+) -> Result<(), JsonError> {
     let index = format!("{}/index", slot.pointer);
     if let Some(old) = root.pointer(&index) {
         let old = old.as_u64().and_then(|old| usize::try_from(old).ok());
-        let is_there = old.is_some_and(|old| overwritten.contains(&old));
-        return if is_there { Ok(()) } else { json.set(&index, &texture) };
+        return if old.is_some_and(became) { Ok(()) } else { json.set(&index, &texture) };
     }
     let mut info = json!({ "index": texture });
     if slot.mapping.tex_coord != 0 {
@@ -152,13 +157,16 @@ fn point(json: &mut Json, root: &Value, slot: &Slot, texture: usize, overwritten
 /// Withdraws the extensions of the textures `replaced` that no object of the document has any more, and requires
 /// `KHR_texture_basisu` no longer where every texture has an image without it.
 fn withdraw_extensions<'v>(json: &mut Json, replaced: impl Iterator<Item = &'v Value>) -> Result<(), JsonError> {
-    let root = json.value("")?.unwrap_or_default();
     let mut gone = BTreeSet::new();
     let mut was_strict = false;
     for old in replaced {
         gone.extend(sources_of(old));
         was_strict |= is_strict(old);
     }
+    if gone.is_empty() {
+        return Ok(());
+    }
+    let root = json.value("")?.unwrap_or_default();
     let left = names(&root);
     gone.retain(|name| !left.contains(name));
     let textures = root.get("textures").and_then(Value::as_array);

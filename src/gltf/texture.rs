@@ -97,8 +97,8 @@ fn without_extension(name: &str) -> &str {
     extension.filter(is_image).map_or(name, |extension| &name[..name.len() - extension.len() - 1])
 }
 
-/// The textures of a document. Each is read once and shared by all who use it, with the URI of its image, which may hold
-/// megabytes of data.
+/// The textures of a document. Each is read once and shared by all who use it, with the URI of its image, which may
+/// hold megabytes of data.
 pub struct Textures<'r> {
     root: &'r Value,
     by_index: HashMap<usize, Arc<TextureSource>>,

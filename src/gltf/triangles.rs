@@ -7,7 +7,7 @@ use serde::de::IgnoredAny;
 use serde_json::Value;
 
 use super::material::Mapping;
-use super::meshes::Meshes;
+use super::meshes::{Meshes, Primitive};
 
 /// The accessors of a document.
 pub struct Accessors<'r, 'a> {
@@ -61,29 +61,25 @@ struct Elements<'a> {
     count: usize,
 }
 
-/// Most triangles that are visited for one material.
-const MAX_TRIANGLES: usize = 1 << 28;
-
 impl<'a> Accessors<'_, 'a> {
     /// Calls `visit` for each triangle that uses material `material` and has the texture coordinates of `mapping`, with
-    /// the index of its mesh. Returns whether all such triangles could be read.
+    /// its primitive. Returns whether all such triangles could be read.
     pub fn visit_material(
         &self,
         material: usize,
         mapping: &Mapping,
-        mut visit: impl FnMut(usize, [Vertex; 3]),
+        mut visit: impl FnMut(&Primitive<'_>, [Vertex; 3]),
     ) -> bool {
         let transform = mapping.uv();
-        let all = self.meshes.left.load(Ordering::Relaxed);
-        let most = all.min(MAX_TRIANGLES);
-        let (mut is_complete, mut left) = (true, most);
-        for &(mesh, primitive) in self.meshes.primitives(material) {
-            let read = self.visit_primitive(primitive, transform.tex_coord, &mut left, |triangle| {
-                visit(mesh, triangle.map(|v| Vertex { uv: transform.apply(v.uv), ..v }));
+        let mut left = self.meshes.left.load(Ordering::Relaxed);
+        let mut is_complete = true;
+        for primitive in self.meshes.primitives(material) {
+            let read = self.visit_primitive(primitive.value, transform.tex_coord, &mut left, |triangle| {
+                visit(primitive, triangle.map(|v| Vertex { uv: transform.apply(v.uv), ..v }));
             });
             is_complete &= read.is_some();
         }
-        self.meshes.left.store(all - (most - left), Ordering::Relaxed);
+        self.meshes.left.store(left, Ordering::Relaxed);
         is_complete
     }
 
@@ -134,8 +130,8 @@ impl<'a> Accessors<'_, 'a> {
         let component = component_bytes(accessor.component_type)?;
         let element = components * component;
         let stride = view.byte_stride.unwrap_or(element);
-        // Elements that overlap, or whose components are not aligned, hold no vectors (glTF 2.0, section 3.6.2.4); counts
-        // beyond the bytes would make small files take long.
+        // Elements that overlap, or whose components are not aligned, hold no vectors (glTF 2.0, section 3.6.2.4);
+        // counts beyond the bytes would make small files take long.
         if stride < element
             || !stride.is_multiple_of(component)
             || accessor.count > bytes.len() / stride + 1

@@ -40,8 +40,8 @@ pub fn turn_map<'a>(
         sums: vec![Sum::default(); width as usize * height as usize],
         visits: 0.0,
     };
-    Accessors { meshes, buffer }.visit_material(material, mapping, |_, triangle| {
-        raster.draw(triangle, main_direction.map(f64::from));
+    Accessors { meshes, buffer }.visit_material(material, mapping, |primitive, triangle| {
+        raster.draw(triangle, primitive.times as f32, main_direction.map(f64::from));
     });
     let has_frame = raster.sums.iter().any(|sum| sum.count > 0.0);
     (has_frame && raster.visits <= MAX_VISITS).then(|| raster.finish())
@@ -55,11 +55,11 @@ struct Sum {
 }
 
 impl Sum {
-    fn add(&mut self, frame: [f32; 4]) {
+    fn add(&mut self, frame: [f32; 4], times: f32) {
         for (sum, part) in self.frame.iter_mut().zip(frame) {
-            *sum += part;
+            *sum += times * part;
         }
-        self.count += 1.0;
+        self.count += times;
     }
 }
 
@@ -71,7 +71,7 @@ struct Raster {
 }
 
 impl Raster {
-    fn draw(&mut self, triangle: [Vertex; 3], m: [f64; 3]) {
+    fn draw(&mut self, triangle: [Vertex; 3], times: f32, m: [f64; 3]) {
         let corners = triangle.map(|v| [v.uv[0] * self.width as f64, v.uv[1] * self.height as f64]);
         let bound = |axis: usize, pick: fn(f64, f64) -> f64| {
             pick(pick(corners[0][axis], corners[1][axis]), corners[2][axis]) - 0.5
@@ -93,7 +93,7 @@ impl Raster {
                 let Some(weights) = barycentric(corners, [x as f64 + 0.5, y as f64 + 0.5]) else { continue };
                 if let Some(frame) = frame(triangle, weights, tangents, m) {
                     let texel = y.rem_euclid(self.height) * self.width + x.rem_euclid(self.width);
-                    self.sums[texel as usize].add(frame);
+                    self.sums[texel as usize].add(frame, times);
                 }
             }
         }
@@ -129,7 +129,7 @@ impl Raster {
                 let neighbour = (y + dy).rem_euclid(self.height) * self.width + (x + dx).rem_euclid(self.width);
                 let neighbour = before[neighbour as usize];
                 if neighbour.count > 0.0 {
-                    sum.add(neighbour.frame.map(|f| f / neighbour.count));
+                    sum.add(neighbour.frame.map(|f| f / neighbour.count), 1.0);
                 }
             }
         }

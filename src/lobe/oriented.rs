@@ -32,8 +32,8 @@ pub(super) const LEAST_COSINE: f32 = 0.05;
 #[inline(always)]
 pub(super) fn frame<F: Real>(n: [F; 3]) -> [[F; 3]; 3] {
     let one = n[0].like(1.0);
-    // Not 0: normals lean less than 90 degrees.
-    let scale = one / (one - n[0] * n[0]).max(n[0].like(f32::MIN_POSITIVE)).sqrt();
+    // Normals that lean by almost 90 degrees have an x that rounds to 1; a slope of 16 leaves 0.004.
+    let scale = one / (one - n[0] * n[0]).max(n[0].like(1e-7)).sqrt();
     let minus_x = n[0].like(0.0) - n[0];
     let t = [(one - n[0] * n[0]) * scale, minus_x * n[1] * scale, minus_x * n[2] * scale];
     [t, [n[1] * t[2] - n[2] * t[1], n[2] * t[0] - n[0] * t[2], n[0] * t[1] - n[1] * t[0]], n]

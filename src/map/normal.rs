@@ -28,7 +28,8 @@ pub struct NormalMap {
     green_down: bool,
 }
 
-/// Largest and smallest magnitude of the largest component of a normal: squares of both, and 256 times them, are floats.
+/// Largest and smallest magnitude of the largest component of a normal: squares of both, and 256 times them, are
+/// floats.
 const LONGEST: f64 = 1e9;
 const SHORTEST: f64 = 1e-9;
 

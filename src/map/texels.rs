@@ -24,8 +24,8 @@ impl Image {
     }
 }
 
-/// Largest magnitude of a colour: the largest half float. glTF's roughness, metalness and occlusion are from 0 to 1, so that
-/// what lies beyond has no meaning; averages of it must stay numbers, whatever they are stored as.
+/// Largest magnitude of a colour: the largest half float. glTF's roughness, metalness and occlusion are from 0 to 1, so
+/// that what lies beyond has no meaning; averages of it must stay numbers, whatever they are stored as.
 const LARGEST_COLOUR: f32 = 65504.0;
 
 impl Image {

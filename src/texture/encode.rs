@@ -39,7 +39,7 @@ pub enum EncodeError {
     OutOfMemory(#[from] OutOfMemory),
     /// Values that half floats do not hold.
     #[error(
-        "expected values that half floats hold in a level of {width} x {height}, found some beyond +-65504 or none at all; \
+        "expected values that half floats hold in a level of {width} x {height}, found some beyond +-65504, or NaN; \
          use `--target basis`"
     )]
     NotFinite {

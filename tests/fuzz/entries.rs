@@ -29,7 +29,7 @@ pub fn document(bytes: &[u8]) {
     let source = Source { stem: "fuzzed", document: &document, files: &read };
     if let Ok(root) = document.json().value("") {
         let root = root.unwrap_or_default();
-        inspect_document(&root, &Referred::new(&document, &root, &read, true));
+        let _ = inspect_document(&root, &Referred::new(&document, &root, &read, true));
     }
     for (profile, model, glb) in
         [(Profile::Both, Model::Isotropic, false), (Profile::Portable, Model::Anisotropic, true)]

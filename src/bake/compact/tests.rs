@@ -95,7 +95,8 @@ fn compressed_views_move_too() {
 fn bytes_that_others_share_stay() {
     let mut root = document();
     root["accessors"][0]["bufferView"] = json!(5);
-    root["bufferViews"][5] = json!({ "buffer": 0, "byteOffset": 90, "byteLength": 20 });
+    let shared = json!({ "buffer": 0, "byteOffset": 90, "byteLength": 20 });
+    root["bufferViews"].as_array_mut().unwrap().push(shared);
     let (root, bin) = compacted(&root, bytes());
     assert_eq!(shown(&root, &bin.unwrap(), 4), &bytes()[90..110]);
 }

@@ -218,7 +218,8 @@ impl Job<'_> {
     }
 }
 
-/// The layers that share each folded lobe, in the order of their first. A layer that nothing can be folded into is alone.
+/// The layers that share each folded lobe, in the order of their first. A layer that nothing can be folded into is
+/// alone.
 fn groups(layers: &[LayerPlan]) -> Vec<Vec<usize>> {
     let mut groups: Vec<Vec<usize>> = Vec::new();
     let mut places: HashMap<_, usize> = HashMap::new();

@@ -127,7 +127,8 @@ proptest! {
         });
         let size = 1 << 12;
         let placements = placements(&root).unwrap();
-        let density = density(&Meshes::of(&root), &placements, 0, &Mapping::default(), (size, size), &|_| Some(&bytes)).unwrap();
+        let buffer = |_| Some(bytes.as_slice());
+        let density = density(&Meshes::of(&root), &placements, 0, &Mapping::default(), (size, size), &buffer).unwrap();
         let least = (view.units_per_pixel() / density.longest).log2();
         let level = sampled(&view, screen, view.nearest + further, [u, v], f64::from(size));
         // Grazing planes and rays past the horizon have no level.

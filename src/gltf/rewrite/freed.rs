@@ -10,13 +10,15 @@ use super::{NewTexture, references};
 pub struct Freed {
     /// For each new texture the old ones that become it.
     pub replaced: Vec<Vec<usize>>,
+    /// Which new texture each of those becomes.
+    pub becomes: BTreeMap<usize, usize>,
     /// Images that only those old textures name.
     pub images: BTreeSet<usize>,
 }
 
 impl Freed {
-    /// Finds them in `root`, the document's JSON before any edit. An old texture whose references move to several new ones
-    /// becomes the first of these that has none yet, else the first.
+    /// Finds them in `root`, the document's JSON before any edit. An old texture whose references move to several new
+    /// ones becomes the first of these that has none yet, else the first.
     pub fn of(root: &Value, textures: &[NewTexture]) -> Self {
         let mut targets = HashMap::new();
         for (new, texture) in textures.iter().enumerate() {
@@ -35,20 +37,21 @@ impl Freed {
             }
         }
         let mut replaced: Vec<Vec<usize>> = vec![Vec::new(); textures.len()];
-        let mut is_kept = vec![true; list.len()];
+        let mut becomes = BTreeMap::new();
         for (old, news) in moves.into_iter().filter(|(old, _)| *old < list.len()) {
             let Some(news) = news else { continue };
             let free = news.iter().find(|new| replaced[**new].is_empty());
             if let Some(new) = free.or(news.first()) {
                 replaced[*new].push(old);
-                is_kept[old] = false;
+                becomes.insert(old, *new);
             }
         }
         let images = |kept: bool| -> BTreeSet<usize> {
-            let textures = list.iter().zip(&is_kept).filter(|(_, is_kept)| **is_kept == kept);
-            textures.flat_map(|(texture, _)| images_of(texture)).collect()
+            let textures = list.iter().enumerate().filter(|(index, _)| becomes.contains_key(index) != kept);
+            textures.flat_map(|(_, texture)| images_of(texture)).collect()
         };
-        Self { images: images(false).difference(&images(true)).copied().collect(), replaced }
+        let images = images(false).difference(&images(true)).copied().collect();
+        Self { replaced, becomes, images }
     }
 }
 

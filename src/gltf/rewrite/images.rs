@@ -31,7 +31,6 @@ pub fn place_images(
         .map(|(new, replaced)| {
             let old = replaced.iter().filter_map(|index| root.get("textures")?.get(index));
             let own: Vec<usize> = old.flat_map(images_of).collect();
-            // Two at most: the core source's for the core source, and the other.
             let count = if new.other_source().is_some() { 2 } else { 1 };
             own.into_iter().filter(|image| freed.images.remove(image)).take(count).collect()
         })
@@ -46,8 +45,8 @@ pub fn place_images(
                 None => push(json, image, &new.name),
             },
         };
-        let source = new.other_source().map(&mut place).transpose()?;
         let ktx2 = place(&new.ktx2)?;
+        let source = new.other_source().map(&mut place).transpose()?;
         placed.push(Placed { ktx2, source: source.or_else(|| new.source.as_ref().map(|_| ktx2)) });
     }
     Ok(placed)
@@ -98,8 +97,11 @@ fn overwrite(
 
 /// Removes `images`, which no texture names, unless an extension may number images in a way of its own.
 pub fn remove_images(json: &mut Json, images: &BTreeSet<usize>) -> Result<(), JsonError> {
+    if images.is_empty() {
+        return Ok(());
+    }
     let root = json.value("")?.unwrap_or_default();
-    if images.is_empty() || !are_known(&root) {
+    if !are_known(&root) {
         return Ok(());
     }
     let removed: Vec<usize> = images.iter().copied().collect();

@@ -50,18 +50,18 @@ fn every_image_keeps_its_own_name() {
     assert_eq!(
         root["images"],
         json!([
-            { "uri": "o.roughness.png", "name": "orm" },
-            { "uri": "b.normal.png", "name": "bumps" },
-            { "name": "b.normal", "uri": "b.normal.ktx2" },
-            { "name": "o.roughness", "uri": "o.roughness.ktx2" },
+            { "uri": "o.roughness.ktx2", "name": "orm" },
+            { "uri": "b.normal.ktx2", "name": "bumps" },
+            { "name": "b.normal", "uri": "b.normal.png" },
+            { "name": "o.roughness", "uri": "o.roughness.png" },
         ])
     );
     let basisu = |image: usize| json!({ "KHR_texture_basisu": { "source": image } });
     assert_eq!(
         root["textures"],
         json!([
-            { "source": 0, "name": "Surface", "extensions": basisu(3) },
-            { "source": 1, "extensions": basisu(2), "name": "b.normal" },
+            { "source": 3, "name": "Surface", "extensions": basisu(0) },
+            { "source": 2, "extensions": basisu(1), "name": "b.normal" },
         ])
     );
 }
@@ -129,7 +129,10 @@ fn images_that_nothing_names_any_more_are_removed() {
 fn textures_whose_references_all_move_leave_nothing_behind() {
     let mut root = material();
     let second = "/materials/1/pbrMetallicRoughness/metallicRoughnessTexture";
-    root["materials"][1] = json!({ "pbrMetallicRoughness": { "metallicRoughnessTexture": { "index": 0 } } });
+    root["materials"]
+        .as_array_mut()
+        .unwrap()
+        .push(json!({ "pbrMetallicRoughness": { "metallicRoughnessTexture": { "index": 0 } } }));
     let (root, indices) = rewritten(&root, &[texture("a", false, &[ROUGH]), texture("b", false, &[second])]);
     assert_eq!(indices, [0, 2]);
     assert!(!root["images"].to_string().contains("orm.png"), "{}", root["images"]);
@@ -141,8 +144,8 @@ fn textures_whose_references_all_move_leave_nothing_behind() {
 fn textures_that_become_one_are_both_overwritten() {
     let mut root = material();
     let second = "/materials/1/normalTexture";
-    root["materials"][1] = json!({ "normalTexture": { "index": 2 } });
-    root["textures"][2] = json!({ "source": 1, "name": "again" });
+    root["materials"].as_array_mut().unwrap().push(json!({ "normalTexture": { "index": 2 } }));
+    root["textures"].as_array_mut().unwrap().push(json!({ "source": 1, "name": "again" }));
     let (root, indices) = rewritten(&root, &[texture("n", false, &[NORMAL, second])]);
     assert_eq!(indices, [1]);
     assert_eq!(root.pointer(&format!("{second}/index")), Some(&json!(2)));

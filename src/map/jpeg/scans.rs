@@ -179,6 +179,8 @@ impl Reader<'_> {
             frame.components[index].send(band.first, band.last, band.lowest);
         }
         match walk.bits.end() {
+            // A run of blocks ends with the scan (G.1.2.2).
+            _ if walk.run > 0 => Err(Damage::NoCode { scan, block: found }),
             (at, 0) => Ok(at),
             (_, bytes) => Err(Damage::TooLong { scan, bytes }),
         }
@@ -213,7 +215,7 @@ impl<'a> Walk<'a> {
     /// Passes over a restart marker and what fills the space before it.
     fn restart(&mut self, bytes: &'a [u8]) -> Result<(), Fault> {
         let (at, left) = self.bits.end();
-        if left > 0 {
+        if left > 0 || self.run > 0 {
             return Err(Fault::NoCode);
         }
         let (marker, next) = next_marker(bytes, at).ok_or(Fault::Ended)?;

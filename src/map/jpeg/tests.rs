@@ -76,11 +76,12 @@ fn every_cut_is_refused_also_with_an_end_marker() {
     }
 }
 
+/// What is lost is longer than a block: within one, nothing tells that coefficients are missing.
 #[test]
 fn a_file_without_its_middle_is_refused() {
     for (name, file) in files() {
-        for start in (file.len() / 4..file.len() - 100).step_by(7) {
-            for length in [10, 33, 90] {
+        for length in [120, 250, 400] {
+            for start in (2..file.len() - length - 2).step_by(7) {
                 let damaged = [&file[..start], &file[start + length..]].concat();
                 assert!(read(&damaged).is_err(), "{name} without {length} bytes from {start} on");
             }

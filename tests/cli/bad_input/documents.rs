@@ -15,7 +15,7 @@ fn a_document_that_is_no_json() {
 fn an_empty_document() {
     let scene = Scene::new();
     fs::write(scene.bad("brushed.gltf"), "").expect("a file");
-    assert_says(&scene.complaint(&[]), &["bad/brushed.gltf: ", "JSON"]);
+    assert_says(&scene.complaint(&[]), &["bad/brushed.gltf: ", "found an empty file"]);
 }
 
 #[test]
