@@ -10,8 +10,8 @@ use image::codecs::{hdr::HdrDecoder, png::PngDecoder, tga::TgaDecoder, webp::Web
 use image::{DynamicImage, ImageDecoder, ImageError, Limits};
 
 use super::{DecodeError, Format, Image, Samples, exr, jpeg, tiff};
-use crate::memory;
 use crate::foreign::Foreign;
+use crate::memory;
 use crate::texture::ktx2::Ktx2;
 
 /// What to decode, and how much at most.

@@ -1,8 +1,8 @@
 //! Why an image could not be decoded.
 
 use super::Format;
-use crate::memory::OutOfMemory;
 use crate::foreign::Foreign;
+use crate::memory::OutOfMemory;
 use crate::texture::ktx2::ReadError;
 
 /// Why an image could not be decoded. The caller adds the file's name.

@@ -13,6 +13,7 @@ mod entries;
 mod harness;
 mod inputs;
 mod mutate;
+#[path = "../common/random.rs"]
 mod random;
 
 use harness::attack;

@@ -12,6 +12,8 @@ mod merge;
 mod notes;
 mod plan;
 mod process;
+#[path = "../common/random.rs"]
+mod random;
 mod rdo;
 mod render;
 mod survival;

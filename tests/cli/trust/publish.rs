@@ -6,9 +6,9 @@ use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use roughcast::output::Guard;
 use roughcast::cache::Cache;
 use roughcast::config::resolve;
+use roughcast::output::Guard;
 use roughcast::plan::{Job, Lookup, Room, RunError, finish, prepare};
 use serde_json::{Value, json};
 use tempfile::tempdir;

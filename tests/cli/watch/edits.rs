@@ -11,26 +11,10 @@ use tempfile::tempdir;
 
 use super::session::Session;
 use crate::process::fixtures;
+use crate::random::Random;
 
 /// Most edits in a run.
 const EDITS: usize = 14;
-
-/// SplitMix64 (Steele, Lea, Flood 2014).
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, count: usize) -> usize {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) % count as u64) as usize
-    }
-
-    fn pick<'t>(&mut self, of: &[&'t str]) -> &'t str {
-        of[self.below(of.len())]
-    }
-}
 
 /// Folders of assets, names of documents, and images: some shared or linked, one outside the watched folder.
 const FOLDERS: [&str; 4] = ["assets", "assets/a", "assets/b/c", "assets/b"];
@@ -167,7 +151,7 @@ fn edit(random: &mut Random, root: &Path) -> String {
 }
 
 fn sequence(seed: u64, options: &str) {
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     let folder = tempdir().expect("a folder");
     let root = folder.path();
     fs::create_dir_all(root.join("assets")).expect("a folder");
