@@ -120,7 +120,7 @@ fn block_bytes(header: &Header) -> Option<u64> {
     texels.checked_mul(header.channels.bytes_per_pixel as u64)
 }
 
-/// Attributes of all parts together, beyond which a file is refused. The crate holds each in 2 kB; renderers write about 50.
+/// Attributes of all parts together, beyond which a file is refused. The crate holds each in 2 kB; renderers write dozens.
 const MOST_ATTRIBUTES: usize = 10_000;
 
 /// Counts the attributes of all headers before the crate reads them (OpenEXR file layout, "Header"). What is cut off there is

@@ -198,9 +198,14 @@ impl<'j> Inputs<'j> {
         Ok(bytes)
     }
 
-    /// What is at `path`; where there is nothing, it is known whether that changed.
+    /// What is at `path`; where there is nothing, it is known whether that changed. A file that does not fit into memory has
+    /// not changed.
     fn unchecked(&self, path: &Path) -> io::Result<Vec<u8>> {
-        read_file(path).inspect_err(|_| self.check(path, None))
+        read_file(path).inspect_err(|error| {
+            if error.kind() != io::ErrorKind::OutOfMemory {
+                self.check(path, None);
+            }
+        })
     }
 
     fn check(&self, path: &Path, found: Option<Digest>) {

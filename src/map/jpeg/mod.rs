@@ -5,6 +5,7 @@ mod frame;
 mod scans;
 #[cfg(test)]
 mod tests;
+mod walk;
 
 use zune_core::bytestream::ZCursor;
 use zune_core::colorspace::ColorSpace;

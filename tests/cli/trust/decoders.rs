@@ -236,9 +236,10 @@ fn a_buffer_that_is_larger_than_memory_fails_its_asset() {
     assert!(line.contains("brushed.bin") && line.contains("memory"), "{line}");
 }
 
-/// However much memory there is: the run ends by itself, and says so where it was not enough.
+/// However much memory there is, the run ends by itself, and says so where it was not enough.
 #[test]
 #[cfg(target_os = "linux")]
+#[ignore = "bakes a map at each of many limits: for whoever changes what is kept in memory"]
 fn no_limit_on_memory_ends_the_run() {
     let side = 2048;
     let mut png = Vec::new();
