@@ -113,7 +113,7 @@ impl Folder {
         let mut files = Vec::new();
         for kind in ["jobs", "blobs"].map(|kind| self.root.join(kind)).iter().filter(|kind| kind.exists()) {
             // A link would lead to files that are none of the cache.
-            for entry in WalkDir::new(kind).follow_root_links(false).min_depth(2).max_depth(2) {
+            for entry in WalkDir::new(kind).follow_root_links(false).min_depth(1).max_depth(2) {
                 // Other processes remove files too.
                 let Ok(entry) = entry else { continue };
                 let Ok(facts) = entry.metadata() else { continue };

@@ -88,14 +88,16 @@ fn mean<const N: usize>(level: u32, x: u32, y: u32, value: impl Fn(u32, u32) -> 
 }
 
 /// Unit normals are clean however they are stored. Normals that somebody averaged are found: in floats at every level but the
-/// first, in blocks where texels of a block no longer lie so far apart that a line between unit vectors explains it.
+/// first, in blocks at the last: of coarser blocks neither the length of the line between their texels nor the few levels that
+/// their endpoints may have leave room for what is found there.
 #[test]
 fn averaged_normals_are_found_and_unit_normals_are_not() {
-    for (format, expected) in [(Format::UastcRgb, vec![2, 3, 4]), (Format::Rgba16Float, vec![1, 2, 3, 4])] {
+    for (format, expected) in [(Format::UastcRgb, vec![4]), (Format::Rgba16Float, vec![1, 2, 3, 4])] {
         let normalised = |level, x, y| unit(mean(level, x, y, slope));
         assert_eq!(levels(&check_normals(format, normalised), Code::NormalLength), [] as [u32; 0], "{format:?}");
         let averaged = |level, x, y| mean(level, x, y, |x, y| unit(slope(x, y)));
-        assert_eq!(levels(&check_normals(format, averaged), Code::NormalLength), expected, "{format:?}");
+        let found = check_normals(format, averaged);
+        assert_eq!(levels(&found, Code::NormalLength), expected, "{format:?}: {found:?}");
     }
 }
 

@@ -51,7 +51,16 @@ fn textures_are_smaller_and_say_so() {
     for (name, plain) in files(&folder.join("plain")) {
         let small = folder.join("small").join(&name);
         if !name.ends_with(".ktx2") {
-            assert!(fs::read(&plain).expect("a file") == fs::read(&small).expect("a file"), "{name} differs");
+            // The document records the digests of the textures, which differ.
+            let read = |path: &Path| match name.ends_with(".gltf") {
+                true => {
+                    let mut document = json(&fs::read_to_string(path).expect("a document"));
+                    document["asset"]["extras"]["roughcast"]["outputs"].take();
+                    document.to_string().into_bytes()
+                }
+                false => fs::read(path).expect("a file"),
+            };
+            assert!(read(&plain) == read(&small), "{name} differs");
             continue;
         }
         textures += 1;

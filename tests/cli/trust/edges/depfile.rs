@@ -69,6 +69,8 @@ fn a_name_that_is_a_command_of_make_is_refused_and_not_run() {
         set_time(&assets.join(changed), 1_000_000_000);
     }
     assert!(text(&make()).contains("is up to date"));
+    // Make would stop at the image that is gone.
+    fs::remove_file(folder.join("baked/brushed.gltf.d")).expect("the rules of the last bake");
     rename_image(&assets, "a;touch${IFS}PWNED;b.png", "a%3Btouch%24%7BIFS%7DPWNED%3Bb.png");
     fs::write(assets.join("a"), "").expect("a file");
     set_time(&assets.join("brushed.gltf"), 4_000_000_000);
@@ -148,7 +150,7 @@ fn asset(folder: &Path, names: &Names) -> (Vec<PathBuf>, PathBuf) {
 fn assert_notices(folder: &Path, inputs: &[PathBuf], asks: &dyn Fn() -> bool) -> Result<(), TestCaseError> {
     prop_assert!(!asks(), "nothing changed");
     for input in inputs {
-        set_time(&folder.join(input), 4_000_000_000);
+        set_time(&folder.join(input), 1_400_000_000);
         prop_assert!(asks(), "a change of {input:?} is missed");
         set_time(&folder.join(input), 1_000_000_000);
     }
@@ -175,7 +177,7 @@ proptest! {
         for input in &inputs {
             set_time(&folder.join(input), 1_000_000_000);
         }
-        set_time(&folder.join(&output), 2_000_000_000);
+        set_time(&folder.join(&output), 1_200_000_000);
         let target = output.to_str().expect("UTF-8");
         fs::write(folder.join("Makefile"), "%.gltf:\n\t@echo RULE\ninclude d\n").expect("a file");
         let ninja = target.replace('$', "$$").replace(' ', "$ ").replace(':', "$:");

@@ -54,7 +54,6 @@ fn reports_and_checks_are_json_whatever_a_folder_is_called() {
     let scene = scene();
     for line in [
         "bake assets -o out --json --model none --cache cache",
-        "bake assets -o out --json --model none --cache cache --depfile d",
         "check out --format json",
         "check out --format sarif",
         "check out --source assets --model none --format json",
