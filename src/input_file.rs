@@ -37,10 +37,10 @@ fn do_not_wait(options: &mut OpenOptions) {
 #[cfg(not(unix))]
 fn do_not_wait(_: &mut OpenOptions) {}
 
-/// Reads a file that [`open_file`] opens.
+/// Reads an ordinary file of at most 8 GiB, or the one that a link leads to.
 ///
 /// # Errors
-/// Those of [`open_file`], and that there is no memory for it.
+/// The system's, that it is no ordinary file, that it is larger than 8 GiB, or that there is no memory for it.
 pub fn read_file(path: &Path) -> io::Result<Vec<u8>> {
     let (file, length) = open_file(path)?;
     let mut bytes = memory::with_capacity(usize::try_from(length).map_err(io::Error::other)?)?;
@@ -53,7 +53,7 @@ pub fn read_file(path: &Path) -> io::Result<Vec<u8>> {
 /// way takes 15 ms, after reading them into new memory 40.
 ///
 /// # Errors
-/// Those of [`open_file`].
+/// The system's, that it is no ordinary file, or that it is larger than 8 GiB.
 pub fn hash_file(path: &Path) -> io::Result<(Digest, u64)> {
     let (file, _) = open_file(path)?;
     digest_of(file.take(MAX_FILE_BYTES))
@@ -62,7 +62,7 @@ pub fn hash_file(path: &Path) -> io::Result<(Digest, u64)> {
 /// Checks that [`read_file`] may read the file; returns its length.
 ///
 /// # Errors
-/// Those of [`open_file`].
+/// The system's, that it is no ordinary file, or that it is larger than 8 GiB.
 pub fn check_file(path: &Path) -> io::Result<u64> {
     length_of(&fs::metadata(path)?)
 }

@@ -150,8 +150,7 @@ impl Folder {
 fn is_of_cache(path: &Path) -> bool {
     let name = |path: &Path| path.file_name().and_then(|name| name.to_str()).map(str::to_owned);
     let (Some(file), Some(folder)) = (name(path), path.parent().and_then(name)) else { return false };
-    let is_named = file.parse::<Digest>().is_ok_and(|digest| format!("{digest:.2}") == folder);
-    is_named
+    file.parse::<Digest>().is_ok_and(|digest| format!("{digest:.2}") == folder)
 }
 
 /// How exactly the order of eviction is known.

@@ -3,7 +3,7 @@
 //! Everything is written whole or not at all, and verified when it is read, so that any number of processes may share a folder,
 //! and any number of machines a store, and none trusts it. In a folder, what was not used for longest goes first.
 //!
-//! Digests and paths of an entry are read into [`crate::digest::Digest`] and [`RelativePath`], which hold nothing else. A
+//! Digests and paths of an entry are read into `Digest` and [`RelativePath`], which hold nothing else. A
 //! cache therefore reads, writes and removes only what lies at a path that a digest names; an entry that is not of its job
 //! counts as absent.
 

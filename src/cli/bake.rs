@@ -10,13 +10,13 @@ use super::Outcome;
 use super::cached::CacheOptions;
 use super::depfile;
 use super::jobs::{self, JobOptions, Planned};
-use super::output_lock::{Kind, OutputLock};
 use super::remote::RemoteOptions;
 use super::report::{Asset, Report, Status};
 use super::selection::Selection;
 use super::work::{Work, Worked};
 use crate::bake::Settings;
 use crate::output::PublishError;
+use crate::output::lock::{Kind, OutputLock};
 use crate::text::printable;
 
 /// Bake glTF assets: KTX2 textures with the lost roughness in their mips, and a glTF that refers to them.

@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 use super::jobs::Planned;
 use crate::plan::Job;
 
-/// ASCII punctuation that GNU Make 4.3 and Ninja 1.13 both take for part of a name. Of what is left, some characters are
-/// Make's syntax (`:;=|` and the globs `*?[]`), others end a name in Ninja (`<>^` and the backtick), and neither reader
-/// has an escape for them that the other one understands. `\` is read in four ways. `$` has the escape `$$`, which runs
+/// ASCII punctuation that GNU Make 4.3 and Ninja 1.11 both take for part of a name. Of what is left, some characters are
+/// Make's syntax (`:;=|` and the globs `*?[]`), others end a name in Ninja (`<>^`, the backtick, and before version 1.13 quotes
+/// and `&`), and neither reader has an escape for them that the other one understands. `\` is read in four ways. `$` has the escape `$$`, which runs
 /// what stands behind it in a Makefile with `.SECONDEXPANSION`.
-const PLAIN: &str = "-_./+,@~!&'\"(){}";
+const PLAIN: &str = "-_./+,@~!(){}";
 
 /// A name that no depfile can hold.
 #[derive(Debug, thiserror::Error)]

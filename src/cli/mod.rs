@@ -15,7 +15,6 @@ mod man;
 mod map;
 mod merge;
 mod options;
-mod output_lock;
 mod part;
 mod plan;
 mod progress;

@@ -6,6 +6,7 @@
 mod case;
 mod error;
 mod guard;
+pub mod lock;
 mod place;
 mod real;
 mod reserve;

@@ -43,7 +43,16 @@ fn refused(folder: &Path, line: &str, code: i32, parts: &[&str]) -> Run {
 #[test]
 fn nothing_else_in_the_sources_writes_files() {
     let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-    let ways = ["fs::write(", "File::create", "create_new", ".write(true)", ".append(true)", "create_dir", ".persist(", "fs::copy("];
+    let ways = [
+        "fs::write(",
+        "File::create",
+        "create_new",
+        ".write(true)",
+        ".append(true)",
+        "create_dir",
+        ".persist(",
+        "fs::copy(",
+    ];
     let mut writers: Vec<PathBuf> = Vec::new();
     for entry in WalkDir::new(&sources).into_iter().map(|entry| entry.expect("a source")) {
         let path = entry.path();
