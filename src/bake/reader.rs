@@ -108,7 +108,7 @@ impl<'a> Reader<'a> {
         if let Some(held) = files.get(&path).filter(|held| held.bytes.is_some() || !is_needed) {
             return Ok(held.clone());
         }
-        let planned = self.source.files.length(&path).ok().and_then(|planned| usize::try_from(planned).ok());
+        let planned = self.source.files.known_length(&path).and_then(|planned| usize::try_from(planned).ok());
         if let Some(planned) = planned.filter(|planned| !is_needed && *planned >= length) {
             let held = Held { length: planned, bytes: None };
             files.insert(path, held.clone());

@@ -25,12 +25,9 @@ pub trait Files: Sync {
         self.read(path).map(|bytes| digest(&bytes))
     }
 
-    /// Returns the length of a file in bytes, for a caller who does not need more of it.
-    ///
-    /// # Errors
-    /// Those of the file system.
-    fn length(&self, path: &Path) -> io::Result<u64> {
-        self.read(path).map(|bytes| bytes.len() as u64)
+    /// Returns the length of a file in bytes, as far as it is known without reading the file.
+    fn known_length(&self, _path: &Path) -> Option<u64> {
+        None
     }
 
     /// Reads a file for a caller who hashes it beside other work, and then tells [`Self::hashed`]: nothing is hashed twice.

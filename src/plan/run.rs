@@ -245,11 +245,8 @@ impl Files for Inputs<'_> {
         }
     }
 
-    fn length(&self, file: &Path) -> io::Result<u64> {
-        match self.planned(file) {
-            Some((bytes, _)) => Ok(bytes),
-            None => self.read(file).map(|bytes| bytes.len() as u64),
-        }
+    fn known_length(&self, file: &Path) -> Option<u64> {
+        self.planned(file).map(|(bytes, _)| bytes)
     }
 
     fn read_to_hash(&self, file: &Path) -> io::Result<Vec<u8>> {

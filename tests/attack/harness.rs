@@ -11,7 +11,7 @@ use std::time::Duration;
 use super::random::Random;
 
 /// Cases of each entry in a run of ordinary length.
-const CASES: u64 = 2000;
+const CASES: u64 = 20_000;
 
 /// What takes longer than this hangs: cases take milliseconds, and a loaded machine makes them some times slower.
 const HANG: Duration = Duration::from_secs(120);
