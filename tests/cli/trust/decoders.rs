@@ -241,7 +241,6 @@ fn a_buffer_that_is_larger_than_memory_is_copied_and_never_held() {
 /// However much memory there is, the run ends by itself, and says so where it was not enough.
 #[test]
 #[cfg(target_os = "linux")]
-#[ignore = "bakes a map at each of many limits: for whoever changes what is kept in memory"]
 fn no_limit_on_memory_ends_the_run() {
     let side = 2048;
     let mut png = Vec::new();
