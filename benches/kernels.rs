@@ -6,13 +6,14 @@
 use divan::counter::{BytesCount, ItemsCount};
 use divan::{Bencher, black_box};
 use rayon::prelude::*;
-use roughcast::bump::NormalOffsets;
+use roughcast::bump::{Moments, NormalLayout, NormalMap, NormalOffsets, Shaped, ShapedMoments};
+use roughcast::codec::uastc::{Effort, Encoder, Metric};
+use roughcast::codec::{Format, uastc};
+use roughcast::decode::decode;
+use roughcast::image::{DecodeOptions, Image, Samples};
+use roughcast::ktx2::StoredLevel;
 use roughcast::lobe::{Alpha, OrientedLobe, SquaredAlpha};
-use roughcast::map::{DecodeOptions, Image, NormalLayout, NormalMap, Samples, decode};
-use roughcast::pyramid::{Level, Moments, Rows, Shaped, ShapedMoments, build, level_sizes};
-use roughcast::texture::Format;
-use roughcast::texture::ktx2::StoredLevel;
-use roughcast::texture::uastc::{self, Effort, Encoder, Metric};
+use roughcast::mip::{Level, Rows, build, level_sizes};
 
 mod common;
 

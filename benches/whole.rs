@@ -7,9 +7,11 @@ use std::path::PathBuf;
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use roughcast::bake::{Form, Model, Settings, Source, bake};
+use roughcast::bake::{Source, bake};
+use roughcast::decode::decode;
 use roughcast::gltf::document::Document;
-use roughcast::map::{DecodeOptions, decode};
+use roughcast::image::DecodeOptions;
+use roughcast::settings::{Form, Model, Settings};
 
 mod common;
 

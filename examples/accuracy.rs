@@ -7,14 +7,18 @@ use std::array::from_fn;
 use std::error::Error;
 use std::path::Path;
 
-use roughcast::bake::report::Content;
-use roughcast::bake::{BareBake, Model, OwnRoughness, Relief, Settings, bake_map};
-use roughcast::judge::{Decoded, Family, Lobe, Peer, Surface, mean_errors, oracle, sample_texels};
-use roughcast::lobe::{Alpha, Roughness, SquaredAlpha};
-use roughcast::map::{DecodeOptions, Image, NormalLayout, NormalMap, decode};
-use roughcast::texture::Target;
-use roughcast::texture::ktx2::Ktx2;
-use roughcast::texture::uastc::Effort;
+use roughcast::bake::{BareBake, OwnRoughness, bake_map};
+use roughcast::bump::{NormalLayout, NormalMap};
+use roughcast::codec::Target;
+use roughcast::codec::uastc::Effort;
+use roughcast::decode::decode;
+use roughcast::image::{DecodeOptions, Image};
+use roughcast::ktx2::Ktx2;
+use roughcast::lobe::{Alpha, Family, Roughness, SquaredAlpha};
+use roughcast::material::Relief;
+use roughcast::metric::{Decoded, Lobe, Peer, Surface, mean_errors, oracle, sample_texels};
+use roughcast::report::Content;
+use roughcast::settings::{Model, Settings};
 
 const MAPS: [&str; 5] =
     ["aluminium_normal.png", "wool_normal.png", "sand_normal.jpg", "texture_bricks_normal.jpg", "water_normals.png"];

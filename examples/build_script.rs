@@ -9,9 +9,9 @@ use std::error::Error;
 use std::fs;
 use std::path::PathBuf;
 
-use roughcast::config::resolve;
 use roughcast::output::Guard;
-use roughcast::plan::{Job, Room, finish, prepare};
+use roughcast::project::resolve;
+use roughcast::run::{Job, Room, finish, prepare};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let assets = PathBuf::from(var_os("CARGO_MANIFEST_DIR").ok_or("Cargo sets CARGO_MANIFEST_DIR")?).join("assets");

@@ -6,14 +6,18 @@
 use std::error::Error;
 use std::path::Path;
 
-use roughcast::bake::report::Content;
-use roughcast::bake::{Model, OwnRoughness, Relief, Settings, bake_map};
-use roughcast::judge::{Decoded, Family, Surface, mean_errors, sample_texels};
-use roughcast::lobe::{Alpha, Roughness, SquaredAlpha};
-use roughcast::map::{DecodeOptions, Image, NormalLayout, NormalMap, decode};
-use roughcast::texture::ktx2::{Ktx2, Ktx2Writer, StoredLevel};
-use roughcast::texture::uastc::{Effort, Metric};
-use roughcast::texture::{Format, Target, Texels, encode};
+use roughcast::bake::{OwnRoughness, bake_map};
+use roughcast::bump::{NormalLayout, NormalMap};
+use roughcast::codec::uastc::{Effort, Metric};
+use roughcast::codec::{Format, Target, Texels, encode};
+use roughcast::decode::decode;
+use roughcast::image::{DecodeOptions, Image};
+use roughcast::ktx2::{Ktx2, Ktx2Writer, StoredLevel};
+use roughcast::lobe::{Alpha, Family, Roughness, SquaredAlpha};
+use roughcast::material::Relief;
+use roughcast::metric::{Decoded, Surface, mean_errors, sample_texels};
+use roughcast::report::Content;
+use roughcast::settings::{Model, Settings};
 
 const MAPS: [&str; 5] =
     ["aluminium_normal.png", "wool_normal.png", "sand_normal.jpg", "texture_bricks_normal.jpg", "water_normals.png"];

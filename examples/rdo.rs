@@ -6,10 +6,11 @@
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
-use roughcast::map::{DecodeOptions, decode};
-use roughcast::texture::ktx2::{Ktx2, Ktx2Writer, StoredLevel};
-use roughcast::texture::uastc::{Effort, Metric};
-use roughcast::texture::{Format, ORM, Texels, encode, lower_rate};
+use roughcast::codec::uastc::{Effort, Metric};
+use roughcast::codec::{Format, ORM, Texels, encode, lower_rate};
+use roughcast::decode::decode;
+use roughcast::image::DecodeOptions;
+use roughcast::ktx2::{Ktx2, Ktx2Writer, StoredLevel};
 
 /// Parts of names of normal maps and of maps with roughness.
 const NORMALS: [&str; 3] = ["normal", "_nor_", "Normal"];

@@ -7,11 +7,12 @@
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
-use roughcast::bump::NormalOffsets;
-use roughcast::judge::{Family, Peer, Precision, Surface, mean_errors, sample_texels, survey};
-use roughcast::lobe::{Alpha, OrientedLobe, SquaredAlpha};
-use roughcast::map::{DecodeOptions, NormalLayout, NormalMap, decode};
-use roughcast::pyramid::{Moments, Rows, level_sizes};
+use roughcast::bump::{Moments, NormalLayout, NormalMap, NormalOffsets};
+use roughcast::decode::decode;
+use roughcast::image::DecodeOptions;
+use roughcast::lobe::{Alpha, Family, OrientedLobe, SquaredAlpha};
+use roughcast::metric::{Peer, Precision, Surface, mean_errors, sample_texels, survey};
+use roughcast::mip::{Rows, level_sizes};
 
 const PEERS: [Peer; 3] = [Peer::PlainMips, Peer::CorrectedVmf, Peer::D];
 const ALPHAS: [f32; 2] = [0.05, 0.2];

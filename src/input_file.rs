@@ -59,6 +59,11 @@ pub fn hash_file(path: &Path) -> io::Result<(Digest, u64)> {
     digest_of(file.take(MAX_FILE_BYTES))
 }
 
+/// Returns whether the file at `path` has the bytes whose digest is `blake3`.
+pub fn holds(path: &Path, blake3: Digest) -> bool {
+    hash_file(path).is_ok_and(|(found, _)| found == blake3)
+}
+
 /// Checks that [`read_file`] may read the file; returns its length.
 ///
 /// # Errors

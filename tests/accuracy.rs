@@ -3,14 +3,17 @@
 use std::array::from_fn;
 use std::ops::RangeInclusive;
 
-use roughcast::bake::report::Content;
-use roughcast::bake::{BareBake, Model, OwnRoughness, Relief, Settings, bake_map};
-use roughcast::judge::{Decoded, Family, Lobe, Peer, Surface, mean_errors, oracle, sample_texels};
-use roughcast::lobe::{Alpha, Roughness, SquaredAlpha};
-use roughcast::map::{Image, NormalLayout, NormalMap, Samples};
-use roughcast::texture::Target;
-use roughcast::texture::ktx2::Ktx2;
-use roughcast::texture::uastc::Effort;
+use roughcast::bake::{BareBake, OwnRoughness, bake_map};
+use roughcast::bump::{NormalLayout, NormalMap};
+use roughcast::codec::Target;
+use roughcast::codec::uastc::Effort;
+use roughcast::image::{Image, Samples};
+use roughcast::ktx2::Ktx2;
+use roughcast::lobe::{Alpha, Family, Roughness, SquaredAlpha};
+use roughcast::material::Relief;
+use roughcast::metric::{Decoded, Lobe, Peer, Surface, mean_errors, oracle, sample_texels};
+use roughcast::report::Content;
+use roughcast::settings::{Model, Settings};
 
 const SIDE: u32 = 128;
 const ALPHAS: [f32; 2] = [0.05, 0.2];

@@ -31,7 +31,7 @@ fn textures() {
 
 #[test]
 fn configurations() {
-    replay("configuration", entries::configuration, include_bytes!("../src/config/template.toml"));
+    replay("configuration", entries::configuration, include_bytes!("../src/project/template.toml"));
 }
 
 #[test]

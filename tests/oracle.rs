@@ -2,16 +2,18 @@
 
 use std::path::Path;
 
-use roughcast::bake::report::Content;
-use roughcast::bake::{Model, OwnRoughness, Relief, Settings, bake_map};
-use roughcast::bump::{Offset, Outliers};
-use roughcast::lobe::{Family, SquaredAlpha};
-use roughcast::map::{DecodeOptions, Image, NormalLayout, NormalMap, Samples, decode};
-use roughcast::pyramid::{Moments, ShapedMoments};
-use roughcast::roughness::Distribution;
-use roughcast::symmetric::Symmetric2;
-use roughcast::texture::ktx2::Ktx2;
-use roughcast::texture::{Target, ktx2};
+use roughcast::bake::{OwnRoughness, bake_map};
+use roughcast::bump::{Moments, NormalLayout, NormalMap, Offset, Outliers, ShapedMoments};
+use roughcast::codec::Target;
+use roughcast::decode::decode;
+use roughcast::image::{DecodeOptions, Image, Samples};
+use roughcast::ktx2;
+use roughcast::ktx2::Ktx2;
+use roughcast::lobe::{Distribution, Family, SquaredAlpha};
+use roughcast::material::Relief;
+use roughcast::math::symmetric::Symmetric2;
+use roughcast::report::Content;
+use roughcast::settings::{Model, Settings};
 
 /// Brushed metal with a few dents: 128 x 128, all in integers so that no library decides on it.
 fn synthetic() -> Image {

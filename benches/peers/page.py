@@ -252,7 +252,7 @@ def growth(part):
         "",
         table(["", *with_last("busy %"), "runs"], counts),
         "",
-        "Ten materials of 4096 x 4096 in one bake, which works on as many at a time as fit into 1 GiB (`src/plan/room.rs`), else one: "
+        "Ten materials of 4096 x 4096 in one bake, which works on as many at a time as fit into 1 GiB (`src/run/room.rs`), else one: "
         + "; ".join(f"{form} {run['peak']:.0f} MiB, {seconds(run['wall'])} s" for form, run in part["ten"].items() if "wall" in run) + ".",
     ])
 

@@ -7,10 +7,10 @@ mod synthetic;
 
 use rayon::prelude::*;
 
-use roughcast::bump::Offset;
-use roughcast::judge::{Family, Footprint, Lobe, Part, Reference};
-use roughcast::pyramid::{Merge, Moments, ShapedMoments};
-use roughcast::roughness::{KURTOSES, Lattice, Place, RATIOS, Shape};
+use roughcast::bump::{Moments, Offset, ShapedMoments};
+use roughcast::lobe::{Family, KURTOSES, Lattice, Place, RATIOS, Shape};
+use roughcast::metric::{Footprint, Lobe, Part, Reference};
+use roughcast::mip::Merge;
 
 const FAMILIES: [(&str, &str, Family); 2] =
     [("GGX", "Trowbridge-Reitz.", Family::Ggx), ("BECKMANN", "Normally distributed slopes.", Family::Beckmann)];

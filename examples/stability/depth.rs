@@ -4,9 +4,10 @@ use std::error::Error;
 
 use half::f16;
 use jpeg_encoder::{ColorType, Encoder, SamplingFactor};
-use roughcast::bump::{HeightOffsets, NormalOffsets, Wrap};
-use roughcast::map::{DecodeOptions, HeightMap, Image, NormalMap, Samples, decode};
-use roughcast::pyramid::{Level, Moments, Pyramid, Rows};
+use roughcast::bump::{HeightMap, HeightOffsets, Moments, NormalMap, NormalOffsets};
+use roughcast::decode::decode;
+use roughcast::image::{DecodeOptions, Image, Samples};
+use roughcast::mip::{Level, Pyramid, Rows, Wrap};
 
 use super::synthetic::{level, map, normals};
 use super::{head, row};

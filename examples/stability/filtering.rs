@@ -3,11 +3,13 @@
 use std::error::Error;
 use std::path::Path;
 
-use roughcast::bake::Relief;
-use roughcast::map::{DecodeOptions, NormalLayout, NormalMap, decode};
-use roughcast::pyramid::{Moments, Pyramid};
-use roughcast::roughness::Factor;
-use roughcast::symmetric::Symmetric2;
+use roughcast::bump::{Moments, NormalLayout, NormalMap};
+use roughcast::decode::decode;
+use roughcast::image::DecodeOptions;
+use roughcast::lobe::Factor;
+use roughcast::material::Relief;
+use roughcast::math::symmetric::Symmetric2;
+use roughcast::mip::Pyramid;
 
 use super::{head, row};
 

@@ -3,7 +3,8 @@
 use std::error::Error;
 use std::path::Path;
 
-use roughcast::judge::{Family, Footprint, Lobe, Part, Peer, Reference, SAMPLES, oracle};
+use roughcast::lobe::Family;
+use roughcast::metric::{Footprint, Lobe, Part, Peer, Reference, SAMPLES, oracle};
 
 use super::picture::{Canvas, write};
 use super::{head, row};

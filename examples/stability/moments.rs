@@ -1,8 +1,8 @@
 //! E[x^2] - E[x]^2 in half and single floats against central moments.
 
 use half::f16;
-use roughcast::pyramid::{Level, Pyramid};
-use roughcast::roughness::Factor;
+use roughcast::lobe::Factor;
+use roughcast::mip::{Level, Pyramid};
 
 use super::synthetic::{Random, level};
 use super::{head, row};

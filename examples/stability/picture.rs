@@ -3,9 +3,9 @@
 use std::error::Error;
 use std::path::Path;
 
-use roughcast::bake::encode_png;
+use roughcast::codec::encode_png;
+use roughcast::codec::uastc::Effort;
 use roughcast::output::Guard;
-use roughcast::texture::uastc::Effort;
 
 const GAP: u32 = 8;
 

@@ -1,8 +1,8 @@
 //! Covariances of rank 0 and 1: brushed metal and flat texels.
 
 use roughcast::lobe::{Alpha, Anisotropy, SquaredAlpha};
-use roughcast::roughness::{Factor, lambda_1};
-use roughcast::symmetric::Symmetric2;
+use roughcast::lobe::{Factor, lambda_1};
+use roughcast::math::symmetric::Symmetric2;
 
 use super::synthetic::Random;
 use super::{head, row};

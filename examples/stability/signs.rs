@@ -3,13 +3,15 @@
 use std::error::Error;
 use std::path::Path;
 
-use roughcast::bake::report::Content;
-use roughcast::bake::{Model, OwnRoughness, Relief, Settings, bake_map};
+use roughcast::bake::{OwnRoughness, bake_map};
+use roughcast::image::{Image, Samples};
+use roughcast::ktx2::Ktx2;
 use roughcast::lobe::{Anisotropy, SquaredAlpha};
-use roughcast::map::{Image, Samples};
-use roughcast::pyramid::Level;
-use roughcast::symmetric::Symmetric2;
-use roughcast::texture::ktx2::Ktx2;
+use roughcast::material::Relief;
+use roughcast::math::symmetric::Symmetric2;
+use roughcast::mip::Level;
+use roughcast::report::Content;
+use roughcast::settings::{Model, Settings};
 
 use super::picture::{Canvas, write};
 use super::synthetic::{Random, level, map, normals};
@@ -49,7 +51,7 @@ pub fn print(folder: &Path) -> Result<(), Box<dyn Error>> {
 }
 
 /// The anisotropy texture's level, and the notes of the bake.
-fn baked(level: &Level<roughcast::pyramid::Moments>) -> Result<(Image, Vec<String>), Box<dyn Error>> {
+fn baked(level: &Level<roughcast::bump::Moments>) -> Result<(Image, Vec<String>), Box<dyn Error>> {
     let relief = Relief::Normals(map(SIZE, Samples::F32(normals(level).into_iter().map(|c| c as f32).collect()))?);
     let settings = Settings { model: Model::Anisotropic, ..Settings::default() };
     let baked = bake_map(&relief, Some(&OwnRoughness { image: None, factor: 0.3 }), &settings)?;

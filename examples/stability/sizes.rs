@@ -1,8 +1,8 @@
 //! Odd sizes, one row or column, one texel: is variance conserved?
 
-use roughcast::bump::Offset;
-use roughcast::pyramid::{Level, Moments, Pyramid, level_size};
-use roughcast::symmetric::Symmetric2;
+use roughcast::bump::{Moments, Offset};
+use roughcast::math::symmetric::Symmetric2;
+use roughcast::mip::{Level, Pyramid, level_size};
 
 use super::synthetic::{Random, level, texels};
 use super::{head, row};

@@ -1,8 +1,9 @@
 //! Slopes beyond the clamp, normals below the surface, and alphas above 1.
 
 use roughcast::bump::{MAX_SLOPE, offset_from_normal};
-use roughcast::judge::{Family, Footprint, Lobe, Part, Reference, SAMPLES, oracle};
-use roughcast::pyramid::Pyramid;
+use roughcast::lobe::Family;
+use roughcast::metric::{Footprint, Lobe, Part, Reference, SAMPLES, oracle};
+use roughcast::mip::Pyramid;
 
 use super::synthetic::level;
 use super::{head, row};

@@ -1,8 +1,8 @@
 //! Reliefs made from formulas.
 
-use roughcast::bump::Offset;
-use roughcast::map::{Image, MapError, NormalLayout, NormalMap, Samples};
-use roughcast::pyramid::{Level, Merge, Moments, Pyramid};
+use roughcast::bump::{Moments, NormalLayout, NormalMap, Offset};
+use roughcast::image::{Image, MapError, Samples};
+use roughcast::mip::{Level, Merge, Pyramid};
 
 /// Numbers in [0, 1) that are the same on every machine.
 pub struct Random(pub u64);

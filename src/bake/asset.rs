@@ -8,72 +8,29 @@ use rayon::prelude::*;
 use serde_json::Value;
 
 use super::compact::compact;
-use super::container::{self, ContainerError};
+use super::container;
+use super::error::BakeError;
 use super::extension::{EXTENSION, Extension, RangedTexture};
+use super::file::NewFile;
 use super::geometry::Geometry;
 use super::job::{self, JobError, JobOutput, JobTexture, PyramidUse, describe};
 use super::names::Names;
-use super::plan::{PlanError, plan};
+use super::plan::plan;
 use super::provenance::DocumentProvenance;
-use super::pyramids::Range;
 use super::reader::Reader;
-use super::report::{AssetReport, LayerReport, TextureReport};
-use super::settings::{Form, Settings};
 use super::source::{Source, SourceError};
+use crate::codec::EncodeError;
 use crate::digest::Digest;
-use crate::gltf::document::{Container, Document, DocumentError, check_version};
+use crate::gltf::document::{Container, Document, check_version};
 use crate::gltf::extensions::declare;
-use crate::gltf::json::JsonError;
-use crate::gltf::material::{MaterialError, materials};
+use crate::gltf::material::materials;
 use crate::gltf::rewrite::{NewImage, NewTexture, add_textures};
 use crate::gltf::texture::ImageLocation;
 use crate::gltf::uri::{encode_path, relative_path};
-use crate::texture::EncodeError;
-use crate::texture::ktx2::{Provenance, SourceDigest};
-
-/// Why an asset cannot be baked. Messages name material and texture; the caller adds the file.
-#[derive(Debug, thiserror::Error)]
-pub enum BakeError {
-    /// The document, or its GLB container.
-    #[error(transparent)]
-    Document(#[from] DocumentError),
-    /// The document's JSON.
-    #[error(transparent)]
-    Json(#[from] JsonError),
-    /// A material.
-    #[error(transparent)]
-    Material(#[from] MaterialError),
-    /// A reference between objects of the document.
-    #[error(transparent)]
-    Plan(#[from] PlanError),
-    /// An image.
-    #[error(transparent)]
-    Job(#[from] JobError),
-    /// A file beside the document.
-    #[error(transparent)]
-    Source(#[from] SourceError),
-    /// The container asked for.
-    #[error(transparent)]
-    Container(#[from] ContainerError),
-    /// A number of the vendor extension that JSON does not have.
-    #[error(
-        "{pointer}: expected finite numbers, found infinity or NaN in what the bumps and meshes make of them; \
-         bake with `--frame unit`"
-    )]
-    NotFinite {
-        /// JSON pointer of the extension.
-        pointer: String,
-    },
-}
-
-/// A file to be written beside the document.
-#[derive(Clone, Debug, PartialEq)]
-pub struct NewFile {
-    /// Relative to the document.
-    pub path: PathBuf,
-    /// Its content.
-    pub bytes: Vec<u8>,
-}
+use crate::ktx2::{Provenance, SourceDigest};
+use crate::material::Range;
+use crate::report::{AssetReport, LayerReport, TextureReport};
+use crate::settings::{Form, Settings};
 
 /// A baked asset, ready to be written.
 pub struct Baked {

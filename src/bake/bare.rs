@@ -1,19 +1,15 @@
 //! A bare map baked: no document, no material.
 
-use super::base::{Base, BaseRows};
-use super::bumps::Bumps;
-use super::chain::{Chain, Encoding, GridError, grid};
-use super::fold::Fold;
-use super::normals::Normals;
-use super::notes;
-use super::pyramids::{Quantity, Range, Ranged, bake_quantity, filter_loss};
-use super::relief::Relief;
-use super::report::{Choice, Content};
-use super::settings::{Form, Model, Settings};
-use super::trial::Trial;
-use crate::map::{Image, Rgba};
-use crate::pyramid::Rows;
-use crate::texture::EncodeError;
+use crate::codec::EncodeError;
+use crate::image::{Image, Rgba};
+use crate::material::{
+    Base, BaseRows, Bumps, Chain, Encoding, Fold, GridError, Normals, Quantity, Range, Ranged, Relief, bake_quantity,
+    filter_loss, grid, notes,
+};
+use crate::mip::Rows;
+use crate::report::{Choice, Content};
+use crate::select::Trial;
+use crate::settings::{Form, Model, Settings};
 
 /// The roughness that a bare map's surface has by itself.
 pub struct OwnRoughness {
@@ -136,7 +132,8 @@ pub fn bake_map(relief: &Relief, own: Option<&OwnRoughness>, settings: &Settings
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::map::{NormalLayout, NormalMap, Samples};
+    use crate::bump::{NormalLayout, NormalMap};
+    use crate::image::Samples;
 
     #[test]
     fn pngs_are_not_made_where_no_document_refers_to_them() {

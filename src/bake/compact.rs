@@ -6,7 +6,7 @@ use std::ops::Range;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-use super::container::ContainerError;
+use super::error::ContainerError;
 use crate::gltf::extensions::are_known;
 use crate::gltf::json::{Json, JsonError};
 

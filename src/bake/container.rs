@@ -6,43 +6,15 @@ use std::path::PathBuf;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-use super::asset::NewFile;
 use super::compact::compact;
+use super::error::ContainerError;
+use super::file::NewFile;
 use super::names::portable_stem;
 use super::reader::Reader;
-use super::source::{Source, SourceError};
+use super::source::Source;
 use crate::gltf::document::{Container, Document, DocumentError};
 use crate::gltf::json::{Json, JsonError};
-use crate::gltf::uri::{Uri, UriError, encode_path};
-
-/// Why the document cannot be put into its container.
-#[derive(Debug, thiserror::Error)]
-#[allow(missing_docs)]
-pub enum ContainerError {
-    #[error(transparent)]
-    Document(#[from] DocumentError),
-    #[error(transparent)]
-    Json(#[from] JsonError),
-    #[error(transparent)]
-    Source(#[from] SourceError),
-    /// A reference of an image or a buffer.
-    #[error("{pointer}: {error}")]
-    Uri {
-        /// JSON pointer of the reference.
-        pointer: String,
-        /// What is wrong with it.
-        error: UriError,
-    },
-    /// Buffers that cannot be joined.
-    #[error(
-        "expected buffer views without extensions to join {count} buffers in one .glb, found some that refer to buffers \
-         in ways of their own; bake to .gltf, without --glb"
-    )]
-    Buffers {
-        /// How many buffers there are.
-        count: usize,
-    },
-}
+use crate::gltf::uri::{Uri, encode_path};
 
 /// The document as a .gltf. The BIN chunk of a .glb becomes a file of its own, which is returned with its path, if it
 /// is buffer 0.

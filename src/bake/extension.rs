@@ -3,9 +3,9 @@
 use serde::Serialize;
 use serde_json::Value;
 
-use super::pyramids::Range;
 use crate::bump::Frame;
 use crate::gltf::material::{Layer, Mapping, TextureUse};
+use crate::material::Range;
 
 /// Name of the extension.
 pub const EXTENSION: &str = "ROUGHCAST_materials_roughness_pyramid";

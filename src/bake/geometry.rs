@@ -1,8 +1,6 @@
 //! The meshes of a document, for frames and views that ask how textures lie on them.
 
 use super::reader::Reader;
-use super::settings::Settings;
-use super::view::{Finest, View};
 use crate::bump::Frame;
 use crate::gltf::density::{NoDensity, density};
 use crate::gltf::geometry::{Layout, layout};
@@ -10,7 +8,8 @@ use crate::gltf::material::Mapping;
 use crate::gltf::meshes::Meshes;
 use crate::gltf::scene::{BadNode, Placement, placements};
 use crate::gltf::turn::{TurnMap, turn_map};
-use crate::pyramid::level_sizes;
+use crate::mip::level_sizes;
+use crate::settings::{Finest, Settings, View};
 
 /// A document's meshes and what is asked of them.
 pub struct Geometry<'a> {

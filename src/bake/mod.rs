@@ -2,46 +2,31 @@
 
 mod asset;
 mod bare;
-mod base;
-mod bumps;
-mod chain;
 mod compact;
 mod container;
+mod error;
 mod extension;
-mod fold;
+mod file;
 mod geometry;
 mod job;
-mod lobes;
 mod names;
-mod normals;
-pub(crate) mod notes;
 mod plan;
-mod png;
 mod provenance;
-mod pyramids;
 mod reader;
-mod relief;
-pub mod report;
-mod sampled;
-mod settings;
 mod source;
 mod survey;
-mod trial;
-mod view;
 
 pub use crate::input_file::{check_file, hash_file, read_file};
-pub use asset::{BakeError, Baked, NewFile, bake};
+pub use asset::{Baked, bake};
 pub use bare::{BareBake, BareError, BareTexture, OwnRoughness, bake_map};
-pub use chain::{Chain, GridError, kept_bytes};
-pub use container::ContainerError;
+pub use error::{BakeError, ContainerError};
+pub use file::NewFile;
+
 pub use extension::EXTENSION;
 pub use job::JobError;
 pub use names::{fit_name, output_stem, portable_stem};
-pub use png::encode_png;
+
 pub use provenance::DocumentProvenance;
-pub use pyramids::Range;
-pub use relief::Relief;
-pub use settings::{Form, Model, Profile, Settings};
+
 pub use source::{Files, Source, SourceError};
 pub use survey::{Survey, survey};
-pub use view::{Finest, View};

@@ -7,12 +7,13 @@ use std::sync::Arc;
 use serde_json::Value;
 
 use super::geometry::Geometry;
-use super::settings::Settings;
-use crate::bump::{Frame, Wrap};
+use crate::bump::Frame;
 use crate::gltf::geometry::Layout;
 use crate::gltf::material::{BumpSource, Layer, LayerKind, Material, TextureUse};
 use crate::gltf::rewrite::Slot;
 use crate::gltf::texture::{ImageLocation, TextureError, TextureSource, Textures};
+use crate::mip::Wrap;
+use crate::settings::Settings;
 
 /// A bump map and all layers that use it.
 #[derive(Debug)]

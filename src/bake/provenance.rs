@@ -7,14 +7,15 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::asset::{BakeError, NewFile};
 use super::container;
+use super::error::BakeError;
+use super::file::NewFile;
 use super::reader::Reader;
 use crate::digest::{Digest, digest};
 use crate::gltf::document::{Container, Document};
 use crate::gltf::json::Json;
 use crate::gltf::uri::encode_path;
-use crate::texture::ktx2::SourceDigest;
+use crate::ktx2::SourceDigest;
 
 /// What an output document was made from, besides the images of its baked textures.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

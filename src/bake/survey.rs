@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use serde_json::Value;
 
-use super::asset::BakeError;
 use super::container;
+use super::error::BakeError;
 use crate::gltf::document::{Container, Document, check_version};
 use crate::gltf::json::Json;
 use crate::gltf::material::materials;

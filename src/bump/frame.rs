@@ -1,8 +1,8 @@
 //! The paper's three local frames ("The Local Coordinate System", 1 to 3).
 
 use super::Offset;
-use crate::pyramid::Moments;
-use crate::symmetric::Symmetric2;
+use crate::bump::Moments;
+use crate::math::symmetric::Symmetric2;
 
 /// The frame in which stored offsets are to be read.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

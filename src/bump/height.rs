@@ -3,39 +3,10 @@
 use rayon::prelude::*;
 
 use super::{MAX_SLOPE, Offset, Outliers};
-use crate::map::HeightMap;
-use crate::pyramid::{Moments, Rows};
-use crate::symmetric::Symmetric2;
-
-/// What a sampler returns beyond the border, along one axis; named as in glTF.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Wrap {
-    /// The map again: the neighbour of the last texel is the first.
-    #[default]
-    Repeat,
-    /// The map mirrored: the neighbour of the last texel is itself, so heights have a crest or trough at the seam.
-    Mirror,
-    /// Nothing new: only texels inside count, so the slope at the border is a one-sided difference.
-    Clamp,
-}
-
-impl Wrap {
-    /// The texels before and after `i` on an axis of `size` texels, and their distance in texels.
-    fn neighbours(self, i: u32, size: u32) -> (u32, u32, f32) {
-        let last = size - 1;
-        let before = i.checked_sub(1);
-        let after = (i < last).then_some(i + 1);
-        match self {
-            Self::Repeat => (before.unwrap_or(last), after.unwrap_or(0), 2.0),
-            Self::Mirror => (before.unwrap_or(0), after.unwrap_or(last), 2.0),
-            Self::Clamp => {
-                let (before, after) = (before.unwrap_or(i), after.unwrap_or(i));
-                (before, after, ((after - before) as f32).max(1.0))
-            }
-        }
-    }
-}
+use crate::bump::Moments;
+use crate::bump::height_map::HeightMap;
+use crate::math::symmetric::Symmetric2;
+use crate::mip::{Rows, Wrap};
 
 /// The offsets of a height map, row by row.
 pub struct HeightOffsets<'a> {
@@ -133,7 +104,7 @@ impl Rows for HeightOffsets<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::map::{Image, Samples};
+    use crate::image::{Image, Samples};
 
     fn slopes(heights: &[f32], width: u32, wrap: Wrap) -> Vec<Offset> {
         let height = heights.len() as u32 / width;

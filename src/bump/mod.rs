@@ -1,14 +1,23 @@
 //! Offsets (f_u, f_v): the slopes of the bumps, from normals or heights, in one of the paper's three local frames.
 //!
 //! In an orthonormal tangent frame n' = N - f_u T - f_v B (paper, "The Local Coordinate System"). B points up the image,
-//! towards row 0, as in glTF. This room knows nothing of mip levels beyond level 0.
+//! towards row 0, as in glTF. This module knows nothing of mip levels beyond level 0.
 
 mod frame;
 mod height;
+mod height_map;
+mod moments;
 mod normal;
+mod normal_map;
+mod shaped;
+
+pub use height_map::HeightMap;
+pub use normal_map::{NormalLayout, NormalMap};
+pub use shaped::{Shaped, ShapedMoments};
 
 pub use frame::{Frame, FrameTransform};
-pub use height::{HeightOffsets, Wrap};
+pub use height::HeightOffsets;
+pub use moments::Moments;
 pub(crate) use normal::slopes;
 pub use normal::{NormalOffsets, normal_from_offset, offset_from_normal};
 

@@ -5,10 +5,11 @@ use std::iter::repeat;
 use rayon::prelude::*;
 
 use super::{MAX_SLOPE, Offset, Outliers};
-use crate::map::NormalMap;
-use crate::pyramid::{Moments, Rows};
+use crate::bump::Moments;
+use crate::bump::normal_map::NormalMap;
+use crate::math::symmetric::Symmetric2;
+use crate::mip::Rows;
 use crate::simd::map_row_marking;
-use crate::symmetric::Symmetric2;
 
 /// f_u = -x/z, f_v = -y/z: the length of the normal cancels, so maps need not be normalised. Slopes beyond
 /// [`MAX_SLOPE`], and normals that point below the surface (z <= 0), keep their direction and get that slope; a vector
@@ -133,7 +134,8 @@ impl Rows for NormalOffsets<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::map::{Image, NormalLayout, Samples};
+    use crate::bump::normal_map::NormalLayout;
+    use crate::image::{Image, Samples};
 
     #[test]
     fn slopes_of_hand_computed_normals() {

@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use super::relative::{NotRelative, RelativePath};
 use crate::bake::Baked;
-use crate::bake::report::AssetReport;
 use crate::digest::{Digest, digest};
+use crate::report::AssetReport;
 
 /// Hexadecimal digits of the digest that an entry begins with.
 const DIGEST_LENGTH: usize = 64;

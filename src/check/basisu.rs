@@ -4,7 +4,7 @@ use ktx2::dfd::DataFormatFlags;
 use ktx2::{ColorModel, SupercompressionScheme};
 
 use super::findings::{Code, Findings};
-use crate::texture::ktx2::Ktx2;
+use crate::ktx2::Ktx2;
 
 /// Checks the payload; `required` tells whether the extension names the file, so that it must be Basis Universal.
 pub fn check_basisu(file: &Ktx2<'_>, required: bool, findings: &mut Findings) {

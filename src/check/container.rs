@@ -1,7 +1,7 @@
 //! Levels and key/value data of a KTX2 file. Sections are those of the KTX File Format Specification 2.0.
 
 use super::findings::{Code, Findings};
-use crate::texture::ktx2::{Ktx2, ReadError};
+use crate::ktx2::{Ktx2, ReadError};
 
 /// "Level Index": a full chain, stored smallest level first, each level aligned.
 pub fn check_levels(file: &Ktx2<'_>, findings: &mut Findings) {

@@ -4,7 +4,7 @@ use ktx2::dfd::Basic;
 use ktx2::{ColorModel, TransferFunction};
 
 use super::findings::{Code, Findings};
-use crate::texture::ktx2::Ktx2;
+use crate::ktx2::Ktx2;
 
 const PLACE: &str = "data format descriptor";
 

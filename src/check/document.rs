@@ -20,7 +20,7 @@ use crate::bake::SourceError;
 use crate::gltf::document::{Container, Document, DocumentError};
 use crate::gltf::texture::ImageLocation;
 use crate::gltf::uri::{Uri, relative_path};
-use crate::texture::ktx2::Ktx2;
+use crate::ktx2::Ktx2;
 
 const KTX2_MIME: &str = "image/ktx2";
 

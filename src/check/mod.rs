@@ -1,7 +1,7 @@
 //! Reading baked files again: findings as data, from readers that are not our writers.
 //!
 //! Containers and descriptors are read with crate `ktx2`, payloads with `basisu` and `bcdec_rs`, documents with crate
-//! `gltf`. This room does no I/O and knows no kernels.
+//! `gltf`. This module does no I/O and knows no kernels.
 
 mod basisu;
 mod container;

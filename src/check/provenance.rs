@@ -11,7 +11,7 @@ use super::settings::check_settings;
 use crate::bake::DocumentProvenance;
 use crate::digest::digest;
 use crate::gltf::document::Document;
-use crate::texture::ktx2::{Ktx2, PROVENANCE_KEY, Provenance, SourceDigest, provenance};
+use crate::ktx2::{Ktx2, PROVENANCE_KEY, Provenance, SourceDigest, provenance};
 
 /// Reads the provenance, and compares it with what `scope` has.
 pub fn check_provenance(file: &Ktx2<'_>, scope: &Scope<'_>, findings: &mut Findings) -> Option<Provenance> {

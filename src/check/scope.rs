@@ -3,7 +3,7 @@
 use semver::Version;
 
 use super::origin::Origin;
-use crate::bake::Settings;
+use crate::settings::Settings;
 
 /// How far a check goes, and what it compares with.
 #[derive(Clone, Copy, Default)]

@@ -3,7 +3,7 @@
 use serde_json::{Map, Value};
 
 use super::findings::{Code, Findings};
-use crate::bake::Settings;
+use crate::settings::Settings;
 
 /// Compares the `recorded` settings of a texture with `expected`, by the names that they have in `roughcast.toml`.
 pub fn check_settings(recorded: &Value, expected: &Settings, place: &str, findings: &mut Findings) {

@@ -19,9 +19,9 @@
 
 use ktx2::{ColorModel, Format};
 
-use crate::map::{Image, Rgba, Samples};
-use crate::pyramid::Rows;
-use crate::texture::ktx2::{Ktx2, ReadError, provenance};
+use crate::image::{Image, Rgba, Samples};
+use crate::ktx2::{Ktx2, ReadError, provenance};
+use crate::mip::Rows;
 
 /// Rounding to 8 bits.
 const BYTE: f64 = 0.5 / 255.0;

@@ -2,8 +2,8 @@
 
 use super::findings::{Code, Findings};
 use super::storage::Storage;
-use crate::map::Samples;
-use crate::texture::ktx2::{Ktx2, ReadError};
+use crate::image::Samples;
+use crate::ktx2::{Ktx2, ReadError};
 
 /// Decodes every level and looks at its texels.
 pub fn check_texels(file: &Ktx2<'_>, are_normals: bool, findings: &mut Findings) {

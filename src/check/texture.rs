@@ -7,7 +7,7 @@ use super::findings::{Code, Findings};
 use super::provenance::check_provenance;
 use super::scope::Scope;
 use super::texels::check_texels;
-use crate::texture::ktx2::{Ktx2, PROVENANCE_KEY};
+use crate::ktx2::{Ktx2, PROVENANCE_KEY};
 
 /// How a document uses a texture.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -6,7 +6,7 @@ use std::f64::consts::SQRT_2;
 use super::extension::RoughnessModel;
 use super::storage::Storage;
 use super::texels::{extents, norm};
-use crate::texture::ktx2::Ktx2;
+use crate::ktx2::Ktx2;
 
 /// A texture of the extension and what its texels stand for.
 pub struct Ranged<'a> {

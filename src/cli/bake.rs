@@ -6,17 +6,17 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 use std::time::SystemTime;
 
-use super::Outcome;
 use super::cached::CacheOptions;
 use super::depfile;
 use super::jobs::{self, JobOptions, Planned};
+use super::outcome::Outcome;
 use super::remote::RemoteOptions;
 use super::report::{Asset, Report, Status};
 use super::selection::Selection;
 use super::work::{Work, Worked};
-use crate::bake::Settings;
 use crate::output::PublishError;
 use crate::output::lock::{Kind, OutputLock};
+use crate::settings::Settings;
 use crate::text::printable;
 
 /// Bake glTF assets: KTX2 textures with the lost roughness in their mips, and a glTF that refers to them.

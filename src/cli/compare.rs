@@ -7,20 +7,21 @@ use std::time::Instant;
 
 use serde_json::{Value, json};
 
-use super::Outcome;
 use super::options::{QualityName, finite, unit_interval};
+use super::outcome::Outcome;
 use super::progress::Progress;
 use super::render::RenderError;
 use super::render::columns::{file_name, read_back};
 use super::render::input::Input;
-use crate::bake::{BakeError, Baked, Form, Model, Settings, Source, bake};
+use crate::bake::{BakeError, Baked, Source, bake};
+use crate::codec::Target;
+use crate::codec::uastc::Effort;
 use crate::compare::{Comparison, OURS, Ours, chart, compare, csv, page};
 use crate::gltf::document::Document;
 use crate::gltf::material::{LayerKind, materials};
 use crate::render::{Material, Subject};
+use crate::settings::{Form, Model, Settings};
 use crate::text::printable;
-use crate::texture::Target;
-use crate::texture::uastc::Effort;
 
 /// Chart lobe error against cost: every model, every peer and the best single lobe, on your own material.
 ///

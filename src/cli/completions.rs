@@ -2,10 +2,10 @@
 
 use std::io::{self, Write};
 
-use clap::CommandFactory;
+use clap::Command;
 use clap_complete::Shell;
 
-use super::{Cli, Outcome};
+use super::outcome::Outcome;
 
 /// Print the completions of a shell.
 #[derive(Debug, clap::Args)]
@@ -16,13 +16,13 @@ pub struct Args {
     shell: Shell,
 }
 
-/// Prints them.
+/// Prints the completions of `command`.
 ///
 /// # Errors
 /// When `out` cannot be written to.
-pub fn run(args: &Args, out: &mut dyn Write) -> io::Result<Outcome> {
+pub fn run(args: &Args, mut command: Command, out: &mut dyn Write) -> io::Result<Outcome> {
     let mut text = Vec::new();
-    clap_complete::generate(args.shell, &mut Cli::command(), "roughcast", &mut text);
+    clap_complete::generate(args.shell, &mut command, "roughcast", &mut text);
     out.write_all(&text)?;
     Ok(Outcome::Done)
 }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::jobs::Planned;
-use crate::plan::Job;
+use crate::run::Job;
 
 /// ASCII punctuation that GNU Make 4.3 and Ninja 1.11 both take for part of a name. Of what is left, some characters are
 /// Make's syntax (`:;=|` and the globs `*?[]`), others end a name in Ninja (`<>^`, the backtick, and before version 1.13 quotes

@@ -3,9 +3,9 @@
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use super::Outcome;
-use crate::config::{FILE_NAME, TEMPLATE};
+use super::outcome::Outcome;
 use crate::output::Guard;
+use crate::project::{FILE_NAME, TEMPLATE};
 use crate::text::printable;
 
 /// Write a commented roughcast.toml: every setting with its default.

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use serde_json::Value;
 
-use super::Outcome;
 use super::files::Folder;
+use super::outcome::Outcome;
 use super::sources::protect;
 use crate::bake::{SourceError, output_stem, read_file};
 use crate::check::Referred;
@@ -17,9 +17,9 @@ use crate::gltf::texture::ImageLocation;
 use crate::inspect::{
     DocumentFacts, ExtractError, TextureFacts, document_text, extract, inspect_document, inspect_texture, texture_text,
 };
+use crate::ktx2::ReadError;
 use crate::output::{Guard, PublishError};
 use crate::text::printable;
-use crate::texture::ktx2::ReadError;
 
 /// Tell what is in a KTX2 or glTF file: levels, formats, ranges, where it comes from.
 #[derive(Debug, clap::Args)]

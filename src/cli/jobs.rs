@@ -6,12 +6,11 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use super::inputs::Input;
 use super::part::{Part, PartError};
 use crate::bake::read_file;
-use crate::config::Resolved;
 use crate::output::Guard;
-use crate::plan::{Job, Misplaced, Plan, RunError, confine};
+use crate::project::{Input, Resolved};
+use crate::run::{Job, Misplaced, Plan, RunError, confine};
 
 /// A job by its asset's name for a person, or why it cannot be planned.
 pub struct Planned {

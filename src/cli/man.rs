@@ -3,10 +3,10 @@
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use clap::{Command, CommandFactory};
+use clap::Command;
 use clap_mangen::Man;
 
-use super::{Cli, Outcome};
+use super::outcome::Outcome;
 use crate::output::Guard;
 use crate::text::printable;
 
@@ -19,14 +19,14 @@ pub struct Args {
     folder: PathBuf,
 }
 
-/// Writes them.
+/// Writes the pages of `command`.
 ///
 /// # Errors
 /// When `out` or `err` cannot be written to.
-pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<Outcome> {
+pub fn run(args: &Args, command: Command, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<Outcome> {
     let mut pages = Vec::new();
     // Subcommands have pages of their own; `help` tells what they say.
-    let mut command = Cli::command().disable_help_subcommand(true);
+    let mut command = command.disable_help_subcommand(true);
     command.build();
     add_pages(command, &mut pages)?;
     let mut guard = Guard::default();

@@ -6,20 +6,20 @@ use std::path::{Path, PathBuf};
 use clap::ValueEnum;
 use serde_json::json;
 
-use super::Outcome;
 use super::options::{LobeName, TextureOptions, finite, unit_interval};
-use crate::bake::report::{Choice, Content};
-use crate::bake::{
-    BareBake, BareError, BareTexture, OwnRoughness, Relief, Settings, bake_map, notes, output_stem, read_file,
-};
-use crate::bump::Wrap;
+use super::outcome::Outcome;
+use crate::bake::{BareBake, BareError, BareTexture, OwnRoughness, bake_map, output_stem, read_file};
+use crate::bump::{HeightMap, NormalLayout, NormalMap};
+use crate::decode::{DecodeError, decode, decode_colours};
 use crate::digest::digest;
-use crate::map::{
-    DecodeError, DecodeOptions, HeightMap, Image, MapError, NormalLayout, NormalMap, decode, decode_colours,
-};
+use crate::image::{DecodeOptions, Image, MapError};
+use crate::ktx2::{Key, Provenance, SourceDigest};
+use crate::material::{Relief, notes};
+use crate::mip::Wrap;
 use crate::output::{Guard, PublishError};
+use crate::report::{Choice, Content};
+use crate::settings::Settings;
 use crate::text::printable;
-use crate::texture::ktx2::{Key, Provenance, SourceDigest};
 
 /// Bake one bare normal or height map into KTX2 files.
 ///

@@ -3,11 +3,11 @@
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use super::Outcome;
 use super::jobs::{JobsError, read_plan};
+use super::outcome::Outcome;
 use crate::bake::read_file;
 use crate::output::Guard;
-use crate::plan::{Merged, Told};
+use crate::run::{Merged, Told};
 use crate::text::printable;
 
 /// Tell what is missing and what failed of a plan that was run in parts.

@@ -8,13 +8,13 @@ mod completions;
 mod depfile;
 mod files;
 mod init;
-mod inputs;
 mod inspect;
 mod jobs;
 mod man;
 mod map;
 mod merge;
 mod options;
+mod outcome;
 mod part;
 mod plan;
 mod progress;
@@ -30,9 +30,11 @@ mod view;
 mod watch;
 mod work;
 
+pub use outcome::Outcome;
+
 use std::io::{self, Write};
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 use streams::{Messages, Results};
 
@@ -63,46 +65,6 @@ enum Command {
     Render(render::Args),
     Completions(completions::Args),
     Man(man::Args),
-}
-
-/// How a command ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Outcome {
-    /// Everything asked for is done.
-    Done,
-    /// Some inputs failed, and will fail again.
-    Failed,
-    /// Arguments that make no sense together.
-    Usage,
-    /// `check` found something.
-    Findings,
-    /// Some inputs failed, and may not fail again.
-    Retry,
-}
-
-impl Outcome {
-    /// The exit code.
-    pub fn code(self) -> u8 {
-        match self {
-            Self::Done => 0,
-            Self::Failed => 1,
-            Self::Usage => 2,
-            Self::Findings => 3,
-            Self::Retry => 4,
-        }
-    }
-
-    /// The outcome of two parts: what fails for good outweighs what may be tried again.
-    pub fn and(self, other: Self) -> Self {
-        let weight = |o: Self| match o {
-            Self::Done => 0,
-            Self::Findings => 1,
-            Self::Retry => 2,
-            Self::Failed => 3,
-            Self::Usage => 4,
-        };
-        if weight(other) > weight(self) { other } else { self }
-    }
 }
 
 /// Runs a command line. Results go to `out`, complaints and progress to `err`.
@@ -138,7 +100,7 @@ fn run_command(cli: Cli, out: &mut dyn Write, err: &mut dyn Write) -> io::Result
         Command::Inspect(args) => inspect::run(&args, out, err),
         Command::Compare(args) => compare::run(&args, out, err),
         Command::Render(args) => render::run(&args, out, err),
-        Command::Completions(args) => completions::run(&args, out),
-        Command::Man(args) => man::run(&args, out, err),
+        Command::Completions(args) => completions::run(&args, Cli::command(), out),
+        Command::Man(args) => man::run(&args, Cli::command(), out, err),
     }
 }

@@ -2,12 +2,11 @@
 
 use clap::{Args, ValueEnum};
 
-use crate::bake::{Form, Model, Profile, Settings};
-use crate::config::{Engine, FrameName, Values};
-use crate::lobe::Family;
-use crate::roughness::Distribution;
-use crate::texture::Target;
-use crate::texture::uastc::Effort;
+use crate::codec::Target;
+use crate::codec::uastc::Effort;
+use crate::lobe::{Distribution, Family};
+use crate::project::{Engine, FrameName, Values};
+use crate::settings::{Form, Model, Profile, Settings};
 
 /// What decides on the bytes of textures.
 #[derive(Debug, Args)]

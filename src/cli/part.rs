@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use crate::plan::Shard;
+use crate::run::Shard;
 
 /// Where schedulers tell the index of a task, from 0, and Slurm the largest of its array.
 const INDICES: [&str; 3] = ["SLURM_ARRAY_TASK_ID", "AWS_BATCH_JOB_ARRAY_INDEX", "JOB_COMPLETION_INDEX"];

@@ -3,11 +3,11 @@
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use super::Outcome;
 use super::jobs::plan;
 use super::merge;
+use super::outcome::Outcome;
 use super::selection::Selection;
-use crate::plan::Plan;
+use crate::run::Plan;
 use crate::text::printable;
 
 /// Print the jobs that a bake would run, and run none.

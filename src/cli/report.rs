@@ -5,11 +5,11 @@ use std::ops::Not;
 use serde::Serialize;
 use serde_json::Value;
 
-use crate::bake::Settings;
-use crate::bake::report::{AssetReport, Choice};
 use crate::digest::Digest;
-use crate::plan::Done;
 use crate::remote::{Counts, Origin};
+use crate::report::{AssetReport, Choice};
+use crate::run::Done;
+use crate::settings::Settings;
 use crate::text::printable;
 
 /// What a run did.

@@ -4,16 +4,18 @@ use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use super::Outcome;
-use super::inputs::{self, Input, InputError};
 use super::options::{DocumentOptions, LobeName, TextureOptions};
+use super::outcome::Outcome;
 use super::trusted::{self, NamedServer};
 use super::view::ViewOptions;
-use crate::bake::{Settings, read_file};
-use crate::config::{Config, ConfigError, FILE_NAME, Layer, Resolved, ValueError, Values, resolve};
+use crate::bake::read_file;
+use crate::codec::EncodeError;
 use crate::output;
-use crate::plan::recorded;
-use crate::texture::EncodeError;
+use crate::project::{
+    Config, ConfigError, FILE_NAME, Input, InputError, Layer, Resolved, ValueError, Values, inputs, resolve,
+};
+use crate::run::recorded;
+use crate::settings::Settings;
 
 /// Where outputs go and how they are made.
 #[derive(Debug, clap::Args)]

@@ -6,8 +6,8 @@
 
 use std::path::{Component, Path, PathBuf};
 
-use crate::config::RemoteValues;
 use crate::output::real;
+use crate::project::RemoteValues;
 
 /// The server that a configuration names.
 pub struct NamedServer {

@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use crate::config::Values;
+use crate::project::Values;
 
 /// The camera. Without --nearest all levels count as seen.
 #[derive(Debug, Args)]

@@ -5,15 +5,16 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
-use super::Outcome;
 use super::jobs::Planned;
+use super::outcome::Outcome;
 use super::progress::Progress;
 use super::report::Asset;
-use crate::bake::Settings;
 use crate::cache::{Cache, CacheError};
 use crate::output::Guard;
-use crate::plan::{self, Job, Lookup, Room, RunError};
 use crate::remote::{Counts, Errand, JobFailure, Options, Remote, Wait};
+use crate::run as plan;
+use crate::run::{Job, Lookup, Room, RunError};
+use crate::settings::Settings;
 
 /// What became of jobs.
 pub struct Worked {

@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 use serde::{Deserialize, Serialize};
 
 use super::Ours;
-use crate::judge::Peer;
+use crate::metric::Peer;
 use crate::render::{Bumps, Material, Texture};
 
 /// A fragment of a metal with normal and metallic-roughness maps under one directional light and an environment.

@@ -1,7 +1,7 @@
-//! Error against cost: every model of ours and every peer on one material, scored by [`crate::judge`].
+//! Error against cost: every model of ours and every peer on one material, scored by [`crate::metric`].
 //!
 //! The truth is level 0 of the material with unencoded normals; ours are the baked textures, decoded; peers read the
-//! encoded normals of plain mips and have exact moments for the rest. This room takes materials as the renderer reads
+//! encoded normals of plain mips and have exact moments for the rest. This module takes materials as the renderer reads
 //! them, never files.
 
 mod chart;
@@ -14,10 +14,10 @@ mod tests;
 
 use serde::Serialize;
 
-use crate::judge::{Family, Lobe, Peer, Surface, mean_errors, oracle, sample_texels};
-use crate::lobe::SquaredAlpha;
+use crate::lobe::{Family, SquaredAlpha};
+use crate::math::symmetric::Symmetric2;
+use crate::metric::{Lobe, Peer, Surface, mean_errors, oracle, sample_texels};
 use crate::render::{Bumps, Material, Texture};
-use crate::symmetric::Symmetric2;
 
 pub use chart::file as chart;
 pub use cost::{Axis, Cost};

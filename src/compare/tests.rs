@@ -1,8 +1,8 @@
 //! Charts and tables of made-up numbers.
 
 use super::{Comparison, Cost, Entry, Kind, Ours, chart, csv};
-use crate::judge::Peer;
-use crate::pyramid::Level;
+use crate::metric::Peer;
+use crate::mip::Level;
 use crate::render::{Bumps, LostBumps, Material, OwnAnisotropy, Texture};
 
 fn comparison(material: &str) -> Comparison {

@@ -28,8 +28,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
-pub use error::JsonError;
-pub use scan::MAX_DEPTH;
+pub use error::{JsonError, MAX_DEPTH};
 
 use node::{Node, array_index, decode};
 use style::Style;

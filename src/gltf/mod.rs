@@ -1,4 +1,4 @@
-//! glTF documents: lossless editing, and reading what materials say. This room knows nothing of pixels.
+//! glTF documents: lossless editing, and reading what materials say. This module knows nothing of pixels.
 
 pub mod density;
 pub mod document;

@@ -4,6 +4,7 @@ mod freed;
 mod images;
 #[cfg(test)]
 mod tests;
+mod texture;
 
 use std::collections::BTreeSet;
 
@@ -11,49 +12,14 @@ use serde_json::{Map, Value, json};
 
 use super::extensions::{declare, names, withdraw};
 use super::json::{Json, JsonError};
-use super::material::Mapping;
 use freed::Freed;
 use images::{Placed, place_images, remove_images};
 
+use texture::escaped;
+pub(crate) use texture::references;
+pub use texture::{NewImage, NewTexture, Slot};
+
 const BASISU: &str = "KHR_texture_basisu";
-
-/// An image to add to the document.
-#[derive(Clone, Debug, PartialEq)]
-pub enum NewImage {
-    /// A file beside the document, by its URI.
-    File(String),
-    /// A buffer view of the document.
-    BufferView {
-        /// Index into `bufferViews`.
-        view: usize,
-        /// Media type of its bytes.
-        mime: &'static str,
-    },
-}
-
-/// A texture to add to the document.
-#[derive(Clone, Debug, PartialEq)]
-pub struct NewTexture {
-    /// What it and its images are called, where they have no name.
-    pub name: String,
-    /// The KTX2 file.
-    pub ktx2: NewImage,
-    /// What the core `source` names; nothing in the strict form.
-    pub source: Option<NewImage>,
-    /// Index into `samplers`.
-    pub sampler: Option<usize>,
-    /// The materials' references to it.
-    pub slots: Vec<Slot>,
-}
-
-/// A place in a material that refers to a texture.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Slot {
-    /// JSON pointer of the `textureInfo` object.
-    pub pointer: String,
-    /// Texture coordinates, for slots that are new.
-    pub mapping: Mapping,
-}
 
 /// Adds `textures` to the document and points their slots at them; returns their indices.
 ///
@@ -175,11 +141,6 @@ fn withdraw_extensions<'v>(json: &mut Json, replaced: impl Iterator<Item = &'v V
     withdraw(json, "/extensionsRequired", |name| gone.contains(name) || (is_optional && name == BASISU))
 }
 
-/// A member's name as a step of a JSON Pointer.
-fn escaped(name: &str) -> String {
-    name.replace('~', "~0").replace('/', "~1")
-}
-
 /// Whether `KHR_texture_basisu` alone gives `texture` an image.
 fn is_strict(texture: &Value) -> bool {
     texture.get("source").is_none() && sources_of(texture).any(|name| name == BASISU)
@@ -189,30 +150,4 @@ fn is_strict(texture: &Value) -> bool {
 fn sources_of(texture: &Value) -> impl Iterator<Item = &str> {
     let extensions = texture.get("extensions").and_then(Value::as_object).into_iter().flatten();
     extensions.filter(|(_, extension)| extension.get("source").is_some()).map(|(name, _)| name.as_str())
-}
-
-/// Pointers of all objects that may be a `textureInfo`, with the texture that each names: whatever has an `index`, so
-/// that textures of unknown extensions count as needed.
-pub(crate) fn references(root: &Value) -> Vec<(String, usize)> {
-    fn walk(value: &Value, pointer: &str, found: &mut Vec<(String, usize)>) {
-        match value {
-            Value::Object(members) => {
-                if let Some(index) = members.get("index").and_then(Value::as_u64) {
-                    found.push((pointer.to_owned(), usize::try_from(index).unwrap_or(usize::MAX)));
-                }
-                for (key, member) in members {
-                    walk(member, &format!("{pointer}/{}", escaped(key)), found);
-                }
-            }
-            Value::Array(elements) => {
-                for (index, element) in elements.iter().enumerate() {
-                    walk(element, &format!("{pointer}/{index}"), found);
-                }
-            }
-            _ => {}
-        }
-    }
-    let mut found = Vec::new();
-    walk(root, "", &mut found);
-    found
 }

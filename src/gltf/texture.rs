@@ -8,7 +8,7 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use super::uri::relative_path;
-use crate::bump::Wrap;
+use crate::mip::Wrap;
 
 /// Extensions through which a texture names an image other than its core `source`, most faithful first.
 const SOURCE_EXTENSIONS: [&str; 2] = ["EXT_texture_webp", "KHR_texture_basisu"];

@@ -8,10 +8,11 @@ use serde_json::Value;
 use super::texture::{TextureFacts, inspect_texture};
 use crate::bake::EXTENSION;
 use crate::check::{Referred, RoughnessPyramid};
+use crate::decode::decode;
 use crate::gltf::document::{DocumentError, check_version};
 use crate::gltf::rewrite::references;
 use crate::gltf::texture::ImageLocation;
-use crate::map::{DecodeOptions, Format, decode};
+use crate::image::{DecodeOptions, Format};
 
 /// A glTF document.
 #[derive(Clone, Debug, PartialEq, Serialize)]

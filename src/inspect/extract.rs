@@ -7,8 +7,8 @@ use ::exr::prelude::WritableImage;
 use image::codecs::png::PngEncoder;
 use image::{ImageBuffer, Luma, Pixel, PixelWithColorType, Rgb, Rgba};
 
-use crate::map::{Image, Samples};
-use crate::texture::ktx2::{Ktx2, ReadError};
+use crate::image::{Image, Samples};
+use crate::ktx2::{Ktx2, ReadError};
 
 /// A level as an image file.
 pub struct Picture {

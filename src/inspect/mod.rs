@@ -1,4 +1,4 @@
-//! What is in a KTX2 or glTF file, as facts, as text for a person, and as pictures. This room does no I/O.
+//! What is in a KTX2 or glTF file, as facts, as text for a person, and as pictures. This module does no I/O.
 
 mod document;
 mod extract;

@@ -4,7 +4,7 @@ use ktx2::SupercompressionScheme;
 use ktx2::dfd::{Basic, ChannelTypeQualifiers, DataFormatFlags};
 use serde::Serialize;
 
-use crate::texture::ktx2::{Ktx2, PROVENANCE_KEY, Provenance, ReadError, provenance};
+use crate::ktx2::{Ktx2, PROVENANCE_KEY, Provenance, ReadError, provenance};
 
 /// A KTX2 file.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -1,7 +1,7 @@
 //! The parameters of `KHR_materials_anisotropy`.
 
 use super::{Alpha, Roughness, SquaredAlpha};
-use crate::symmetric::Symmetric2;
+use crate::math::symmetric::Symmetric2;
 
 /// A lobe as glTF describes it: alpha_b = roughness^2 across the direction, alpha_t = mix(alpha_b, 1, strength^2)
 /// along it.

@@ -4,7 +4,7 @@
 //! `cos2` is the squared cosine of the angle between the unit normal and the half-vector h, `d` the components of n - h
 //! along e1 and e2; |d|^2 = 1 - cos2.
 
-use crate::roughness::Factor;
+use crate::lobe::factor::Factor;
 
 /// The angle of an elliptical lobe: cos2 / (|D^-1 d|^2 + cos2), which measures d by the ellipse's own radius. With
 /// f = exp(-tan^2/2), highlights are normal densities of slopes of covariance K = D D^T, exactly.
@@ -36,7 +36,7 @@ pub fn isotropic_cos2(cos2: f32, lambda_1: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::symmetric::Symmetric2;
+    use crate::math::symmetric::Symmetric2;
 
     /// Half the integral of |p - q| over slopes, where both are normalised exp(-tan^2 / 2) of their angles and q is the
     /// true normal density.
@@ -72,7 +72,7 @@ mod tests {
             let factor = Factor::of(k);
             let own = distance(k, |cos2, d| elliptical_cos2(cos2, d, factor));
             let printed = distance(k, |cos2, d| printed_cos2(cos2, d, factor));
-            let circle = distance(k, |cos2, _| isotropic_cos2(cos2, crate::roughness::lambda_1(k)));
+            let circle = distance(k, |cos2, _| isotropic_cos2(cos2, crate::lobe::factor::lambda_1(k)));
             assert!(own < 1e-3, "{ratio}: {own}");
             assert!(printed_range.contains(&printed), "{ratio} {direction:?}: {printed}");
             if ratio == 10.0 {

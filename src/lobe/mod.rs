@@ -1,4 +1,4 @@
-//! What a roughness means to a shader: alphas, folding covariances into them, and the engines' parameters.
+//! Lobes: alphas, the covariances that roughen them, D and lambda_1, correction factors, and the engines' parameters.
 //!
 //! A lobe is a density of slopes with a 2 x 2 matrix A of squared alphas, e.g. GGX:
 //! P22(s) = 1/(pi sqrt|A|) (1 + s^T A^-1 s)^-2 (E. Heitz, "Understanding the masking-shadowing function in
@@ -6,17 +6,28 @@
 
 mod anisotropy;
 pub mod blinn_phong;
+mod correction;
 mod distance;
+mod factor;
 mod family;
+mod lattice;
 mod merge;
 mod oriented;
+mod region;
+mod shape;
+mod table;
 
 pub use anisotropy::Anisotropy;
+pub use correction::{Corrected, Distribution};
 pub use distance::{isotropic_distance, shape_distance};
+pub use factor::{Factor, lambda_1};
 pub use family::Family;
+pub use lattice::{KURTOSES, Lattice, Place, RATIOS, Table};
 pub use oriented::OrientedLobe;
+pub use region::Region;
+pub use shape::{CROSS_SKEWNESS, Shape};
 
-use crate::symmetric::Symmetric2;
+use crate::math::symmetric::Symmetric2;
 
 /// Perceptual roughness as glTF stores it, in [0, 1]: the square root of alpha.
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]

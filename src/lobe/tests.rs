@@ -1,7 +1,6 @@
 use super::*;
-use crate::bump::Offset;
-use crate::pyramid::{Moments, ShapedMoments};
-use crate::roughness::Distribution;
+use crate::bump::{Moments, Offset, ShapedMoments};
+use crate::lobe::correction::Distribution;
 
 /// GGX over slopes in f64.
 fn ggx(a: [f64; 3], s: [f64; 2]) -> f64 {

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::cache::Folder;
-use crate::plan::{Job, RunError};
+use crate::run::{Job, RunError};
 
 /// Jobs for a server.
 pub struct Errand<'a> {

@@ -1,6 +1,6 @@
 //! A pinhole camera.
 
-use crate::judge::vector::{Vector, cross, normalised};
+use crate::math::vector::{Vector, cross, normalised};
 
 /// An eye and its picture plane. The world is right-handed, z is up.
 #[derive(Clone, Debug, PartialEq)]

@@ -10,7 +10,7 @@ use super::sampler::{Filter, Texture};
 use super::scene::Scene;
 use super::shade::Shader;
 use super::shape::Hit;
-use crate::judge::vector::Vector;
+use crate::math::vector::Vector;
 
 /// A picture of linear radiance.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use rayon::prelude::*;
 
-use crate::judge::vector::{Vector, combine, frame, normalised};
+use crate::math::vector::{Vector, combine, frame, normalised};
 
 /// Radiance in red, green and blue.
 pub type Radiance = [f64; 3];
@@ -200,8 +200,8 @@ mod tests {
                 let (n, mut exact) = (64, 0.0);
                 for i in 0..n * n {
                     let point = [i % n, i / n].map(|i| (i as f32 + 0.5) / n as f32);
-                    let circle = crate::roughness::Factor { d1: 1.0, d2: 0.0, d3: 1.0 };
-                    let o = crate::roughness::Region::Normal.offset(circle, point);
+                    let circle = crate::lobe::Factor { d1: 1.0, d2: 0.0, d3: 1.0 };
+                    let o = crate::lobe::Region::Normal.offset(circle, point);
                     let offset = [f64::from(o.u) * deviation, f64::from(o.v) * deviation, 1.0];
                     exact += Surroundings::Studio.radiance(normalised(combine(offset, frame(d))))[0] / (n * n) as f64;
                 }

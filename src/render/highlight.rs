@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::camera::Camera;
 use super::draw::Picture;
 use super::shape::Shape;
-use crate::judge::vector::{Vector, dot, normalised};
+use crate::math::vector::{Vector, dot, normalised};
 
 /// Exponent of Blinn-Phong. Phong's angle is twice as large about the mirror direction, so it takes a quarter.
 const EXPONENT: f64 = 300.0;

@@ -2,10 +2,10 @@
 
 use super::sampler::Texture;
 use crate::bump::{Offset, normal_from_offset};
-use crate::judge::vector::{Vector, normalised};
+use crate::lobe::Factor;
 use crate::lobe::{Anisotropy, Roughness};
-use crate::roughness::Factor;
-use crate::symmetric::Symmetric2;
+use crate::math::symmetric::Symmetric2;
+use crate::math::vector::{Vector, normalised};
 
 /// A texture whose texels stand for values: value = min + texel (max - min).
 #[derive(Clone, Debug, PartialEq)]
@@ -145,7 +145,7 @@ fn decoded(texel: [f64; 4]) -> Vector {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pyramid::Level;
+    use crate::mip::Level;
 
     fn constant(texel: [f32; 4]) -> Texture {
         Texture::with_mips(Level { width: 1, height: 1, texels: vec![texel] })

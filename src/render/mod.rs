@@ -3,7 +3,7 @@
 //! A [`Scene`] is drawn with a [`Material`] in two ways: [`filtered`], one shaded sample per pixel through mips as hardware
 //! filters them, and [`supersampled`], many samples of the unfiltered level 0. [`Difference`] tells how far the first is
 //! from the second. The paper's example images are [`Subject::Lake`] (its figures 8 and 9), [`Subject::Pattern`] (10 and
-//! 11) and [`highlight`] (14). This room takes texels, never files.
+//! 11) and [`highlight`] (14). This module takes texels, never files.
 
 mod camera;
 mod difference;

@@ -3,7 +3,7 @@
 //! Vulkan 1.3 specification, section 16.5.9 "Texel Anisotropic Filtering" and the scale factor and level-of-detail
 //! operations that it builds on.
 
-use crate::pyramid::{Level, build};
+use crate::mip::{Level, build};
 
 /// A texel: four channels.
 pub type Texel = [f32; 4];

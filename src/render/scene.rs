@@ -3,7 +3,7 @@
 use super::camera::Camera;
 use super::environment::{Environment, Radiance, Surroundings};
 use super::shape::Shape;
-use crate::judge::vector::{Vector, dot, normalised};
+use crate::math::vector::{Vector, dot, normalised};
 
 /// A light that is small against its distance.
 #[derive(Clone, Copy, Debug, PartialEq)]

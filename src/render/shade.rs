@@ -6,11 +6,12 @@
 
 use super::environment::{Environment, Radiance};
 use super::material::Point;
-use crate::judge::vector::{Vector, combine, cross, dot, frame, normalised};
-use crate::judge::{Family, Lobe};
+use crate::lobe::Factor;
+use crate::lobe::Family;
 use crate::lobe::blinn_phong::{elliptical_cos2, printed_cos2};
-use crate::roughness::Factor;
-use crate::symmetric::Symmetric2;
+use crate::math::symmetric::Symmetric2;
+use crate::math::vector::{Vector, combine, cross, dot, frame, normalised};
+use crate::metric::Lobe;
 
 /// Which lobe reflects.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

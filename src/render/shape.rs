@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use super::camera::Camera;
 use super::sampler::Footprint;
-use crate::judge::vector::{Vector, combine, dot};
+use crate::math::vector::{Vector, combine, dot};
 
 /// A surface and how the map lies on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -108,7 +108,7 @@ impl Hit {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::judge::vector::{cross, normalised};
+    use crate::math::vector::{cross, normalised};
 
     #[test]
     fn frames_are_orthonormal_and_right_handed() {

@@ -1,8 +1,8 @@
 //! Known answers of the whole room, and the order of its columns.
 
 use super::*;
-use crate::judge::vector::{Vector, dot, normalised};
-use crate::pyramid::Level;
+use crate::math::vector::{Vector, dot, normalised};
+use crate::mip::Level;
 
 const METAL: Shader = Shader { reflection: Reflection::Ggx, filter: EnvironmentFilter::Ellipse, f0: 0.9 };
 

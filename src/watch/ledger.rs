@@ -5,7 +5,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::digest::Digest;
-use crate::plan::{Written, folded, holds};
+use crate::input_file::holds;
+use crate::run::{Written, folded};
 
 /// Who has which outputs.
 #[derive(Debug, Default)]

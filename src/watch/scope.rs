@@ -3,8 +3,8 @@
 use std::collections::{BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 
-use crate::config::FILE_NAME;
 use crate::output;
+use crate::project::FILE_NAME;
 
 /// The paths that matter, without links and dots in their folders.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -35,6 +35,6 @@ fn damaged_textures() {
 
 #[test]
 fn damaged_settings() {
-    let seeds = [include_bytes!("../../src/config/template.toml").to_vec(), inputs::CONFIGURATION.into()];
+    let seeds = [include_bytes!("../../src/project/template.toml").to_vec(), inputs::CONFIGURATION.into()];
     attack("configuration", entries::configuration, &seeds, mutate::bytes);
 }

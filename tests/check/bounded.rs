@@ -6,13 +6,14 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
-use roughcast::check::{Code, Files, Findings, LISTED, Referred, Report, Scope, Severity, Usage, check_document};
-use roughcast::check::{check_texture, sarif, text};
+use roughcast::check::{
+    Code, Files, Findings, LISTED, Referred, Report, Scope, Severity, Usage, check_document, check_texture, sarif, text,
+};
+use roughcast::codec::Format;
+use roughcast::codec::uastc::Effort;
 use roughcast::gltf::document::Document;
 use roughcast::inspect::{document_text, inspect_document, inspect_texture, texture_text};
-use roughcast::texture::Format;
-use roughcast::texture::ktx2::{Key, Ktx2Writer, StoredLevel};
-use roughcast::texture::uastc::Effort;
+use roughcast::ktx2::{Key, Ktx2Writer, StoredLevel};
 use serde_json::{Value, json};
 
 /// A PNG of one texel at every path, and how often each was read.

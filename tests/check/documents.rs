@@ -8,7 +8,7 @@ use roughcast::check::Code;
 use roughcast::cli::Outcome;
 use roughcast::gltf::document::Document;
 use roughcast::gltf::json::Json;
-use roughcast::texture::ktx2::Ktx2;
+use roughcast::ktx2::Ktx2;
 use serde_json::{Value, json};
 
 use crate::fixture::{Bake, bake, findings, roughcast, write_asset};

@@ -7,11 +7,11 @@ use std::path::Path;
 
 use base64::Engine;
 use image::{DynamicImage, ImageFormat, RgbImage};
+use roughcast::codec::uastc::{Effort, Metric};
+use roughcast::codec::{Format, Texels, encode};
 use roughcast::gltf::document::Document;
 use roughcast::gltf::json::Json;
-use roughcast::texture::ktx2::{Key, Ktx2Writer, StoredLevel};
-use roughcast::texture::uastc::{Effort, Metric};
-use roughcast::texture::{Format, Texels, encode};
+use roughcast::ktx2::{Key, Ktx2Writer, StoredLevel};
 use serde_json::{Value, json};
 
 /// Number of assets that [`write_inputs`] writes.

@@ -90,7 +90,7 @@ fn floats_are_extracted_as_exr_and_all_textures_of_a_document_are() {
         assert!(folder.join(format!("{name}.level4.exr")).is_file(), "{name}");
     }
     let bytes = fs::read(folder.join("bumps.offset.level0.exr")).unwrap();
-    let image = roughcast::map::decode(&bytes, &Default::default()).unwrap();
+    let image = roughcast::decode::decode(&bytes, &Default::default()).unwrap();
     let document: Value = serde_json::from_slice(&fs::read(bake.document()).unwrap()).unwrap();
     let extension = &document["materials"][0]["extensions"]["ROUGHCAST_materials_roughness_pyramid"];
     let [min, max] = ["offsetMin", "offsetMax"].map(|bound| extension[bound][0].as_f64().unwrap() as f32);

@@ -4,9 +4,9 @@ use std::fs;
 
 use roughcast::check::{Code, Finding, Findings, Scope, Usage, check_texture};
 use roughcast::cli::Outcome;
-use roughcast::texture::ktx2::{Key, Ktx2, Ktx2Writer, StoredLevel, provenance};
-use roughcast::texture::uastc::{Effort, Metric};
-use roughcast::texture::{Format, Texels, encode};
+use roughcast::codec::uastc::{Effort, Metric};
+use roughcast::codec::{Format, Texels, encode};
+use roughcast::ktx2::{Key, Ktx2, Ktx2Writer, StoredLevel, provenance};
 use serde_json::Value;
 
 use crate::fixture::{Bake, bake, roughcast};

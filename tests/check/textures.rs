@@ -4,9 +4,9 @@ use std::fs;
 use std::sync::LazyLock;
 
 use roughcast::check::{Code, Findings, Scope, Usage, check_texture};
-use roughcast::texture::ktx2::{Key, Ktx2, Ktx2Writer, PROVENANCE_KEY, Provenance, StoredLevel};
-use roughcast::texture::uastc::{Effort, Metric};
-use roughcast::texture::{Format, Texels, encode};
+use roughcast::codec::uastc::{Effort, Metric};
+use roughcast::codec::{Format, Texels, encode};
+use roughcast::ktx2::{Key, Ktx2, Ktx2Writer, PROVENANCE_KEY, Provenance, StoredLevel};
 use semver::Version;
 use serde_json::json;
 

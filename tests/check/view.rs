@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use roughcast::cli::Outcome;
-use roughcast::texture::ktx2::Ktx2;
+use roughcast::ktx2::Ktx2;
 use serde_json::{Value, json};
 use tempfile::TempDir;
 

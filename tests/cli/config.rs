@@ -122,8 +122,8 @@ fn the_schema_knows_every_setting_and_its_default() {
     let schema: Value = serde_json::from_str(include_str!("../../schemas/roughcast.schema.json")).expect("JSON");
     let validator = jsonschema::validator_for(&schema).expect("a schema");
     let settings = schema["$defs"]["settings"]["properties"].as_object().expect("properties");
-    let defaults = roughcast::config::Values::defaults().said();
-    let names = roughcast::config::Values::names();
+    let defaults = roughcast::project::Values::defaults().said();
+    let names = roughcast::project::Values::names();
     assert!(settings.keys().eq(names.iter()), "{:?}", settings.keys());
     for (name, property) in settings {
         // Whole numbers are numbers too.

@@ -90,7 +90,7 @@ fn every_material_scene_and_distance_is_written() {
     assert!(!names.iter().any(|name| name.contains("pyramid")));
     let exr = names.iter().find(|name| name.ends_with("plain.exr")).expect("an EXR");
     let bytes = fs::read(folder.path().join(exr)).expect("a file");
-    let decoded = roughcast::map::decode(&bytes, &roughcast::map::DecodeOptions::default()).expect("an image");
+    let decoded = roughcast::decode::decode(&bytes, &roughcast::image::DecodeOptions::default()).expect("an image");
     assert_eq!((decoded.width, decoded.height, decoded.channels), (40, 40, 3));
 }
 

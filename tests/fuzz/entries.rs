@@ -7,12 +7,14 @@
 use std::io;
 use std::path::Path;
 
-use roughcast::bake::{Model, Profile, Settings, Source, bake};
+use roughcast::bake::{Source, bake};
 use roughcast::check::{Referred, Scope, check_document};
-use roughcast::config::{Config, resolve};
+use roughcast::decode::decode;
 use roughcast::gltf::document::Document;
+use roughcast::image::DecodeOptions;
 use roughcast::inspect::{extract, inspect_document, inspect_texture};
-use roughcast::map::{DecodeOptions, decode};
+use roughcast::project::{Config, resolve};
+use roughcast::settings::{Model, Profile, Settings};
 
 /// Few enough that a lying header cannot make a run slow.
 const MAX_TEXELS: u64 = 1 << 12;

@@ -4,7 +4,8 @@ use std::hint::black_box;
 use std::io::Cursor;
 use std::path::Path;
 
-use roughcast::map::{DecodeOptions, decode};
+use roughcast::decode::decode;
+use roughcast::image::DecodeOptions;
 use serde_json::Value;
 use zune_core::options::DecoderOptions;
 

@@ -3,10 +3,11 @@
 use std::hint::black_box;
 use std::path::Path;
 
-use roughcast::map::{DecodeOptions, Image, Samples, decode};
-use roughcast::texture::ktx2::{Ktx2, decode_payload};
-use roughcast::texture::uastc::{self, Effort, Metric};
-use roughcast::texture::{Format, ORM};
+use roughcast::codec::uastc::{Effort, Metric};
+use roughcast::codec::{Format, ORM, uastc};
+use roughcast::decode::decode;
+use roughcast::image::{DecodeOptions, Image, Samples};
+use roughcast::ktx2::{Ktx2, decode_payload};
 use serde_json::Value;
 
 use crate::Failure;

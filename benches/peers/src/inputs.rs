@@ -4,7 +4,8 @@ use std::fs::{self, File};
 use std::io::BufWriter;
 use std::path::Path;
 
-use roughcast::map::{DecodeOptions, decode};
+use roughcast::decode::decode;
+use roughcast::image::DecodeOptions;
 use serde_json::{Value, json};
 
 use crate::Failure;

@@ -4,9 +4,10 @@
 use std::hint::black_box;
 use std::path::Path;
 
-use roughcast::bump::NormalOffsets;
-use roughcast::map::{DecodeOptions, NormalLayout, NormalMap, decode};
-use roughcast::pyramid::{Moments, Shaped, ShapedMoments, build, level_sizes};
+use roughcast::bump::{Moments, NormalLayout, NormalMap, NormalOffsets, Shaped, ShapedMoments};
+use roughcast::decode::decode;
+use roughcast::image::DecodeOptions;
+use roughcast::mip::{build, level_sizes};
 use serde_json::Value;
 
 use crate::Failure;

@@ -2,14 +2,18 @@
 
 use std::path::Path;
 
-use roughcast::bake::report::Content;
-use roughcast::bake::{Model, OwnRoughness, Relief, Settings, bake_map};
-use roughcast::judge::{Decoded, Family, Surface, mean_errors, sample_texels};
-use roughcast::lobe::{Alpha, Roughness, SquaredAlpha};
-use roughcast::map::{DecodeOptions, Image, NormalLayout, NormalMap, decode};
-use roughcast::texture::Target;
-use roughcast::texture::ktx2::Ktx2;
-use roughcast::texture::uastc::{Effort, Metric};
+use roughcast::bake::{OwnRoughness, bake_map};
+use roughcast::bump::{NormalLayout, NormalMap};
+use roughcast::codec::Target;
+use roughcast::codec::uastc::{Effort, Metric};
+use roughcast::decode::decode;
+use roughcast::image::{DecodeOptions, Image};
+use roughcast::ktx2::Ktx2;
+use roughcast::lobe::{Alpha, Family, Roughness, SquaredAlpha};
+use roughcast::material::Relief;
+use roughcast::metric::{Decoded, Surface, mean_errors, sample_texels};
+use roughcast::report::Content;
+use roughcast::settings::{Model, Settings};
 use serde_json::{Map, Value, json};
 
 use crate::Failure;

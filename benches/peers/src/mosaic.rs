@@ -4,7 +4,8 @@
 
 use std::path::Path;
 
-use roughcast::map::{DecodeOptions, Image, decode};
+use roughcast::decode::decode;
+use roughcast::image::{DecodeOptions, Image};
 
 use crate::{Failure, common};
 

@@ -4,10 +4,10 @@
 use std::path::Path;
 
 use rayon::prelude::*;
-use roughcast::pyramid::level_sizes;
-use roughcast::texture::Format;
-use roughcast::texture::ktx2::{Ktx2Writer, StoredLevel};
-use roughcast::texture::uastc::Effort;
+use roughcast::codec::Format;
+use roughcast::codec::uastc::Effort;
+use roughcast::ktx2::{Ktx2Writer, StoredLevel};
+use roughcast::mip::level_sizes;
 use serde_json::{Value, json};
 
 use crate::Failure;

@@ -3,9 +3,9 @@
 use std::ops::Range;
 use std::path::Path;
 
-use roughcast::map::Image;
-use roughcast::texture::ORM;
-use roughcast::texture::uastc::{Effort, Metric};
+use roughcast::codec::ORM;
+use roughcast::codec::uastc::{Effort, Metric};
+use roughcast::image::Image;
 use serde_json::{Map, Value, json};
 
 use crate::Failure;

@@ -1,9 +1,10 @@
 //! Why a job fails.
 
-use crate::bake::chain::GridError;
 use crate::bake::source::SourceError;
-use crate::map::{DecodeError, MapError};
-use crate::texture::EncodeError;
+use crate::codec::EncodeError;
+use crate::decode::DecodeError;
+use crate::image::MapError;
+use crate::material::GridError;
 
 /// Why a job fails.
 #[derive(Debug, thiserror::Error)]

@@ -4,22 +4,17 @@ use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
 use super::{Job, JobError, JobOutput, JobTexture, LayerOutcome};
-use crate::bake::base::{Base, BaseAnisotropy, BaseLevels, BaseRows};
-use crate::bake::bumps::Bumps;
-use crate::bake::chain::{Encoding, grid};
-use crate::bake::fold::Fold;
-use crate::bake::lobes::own_lobe;
-use crate::bake::normals::Normals;
-use crate::bake::notes;
 use crate::bake::plan::LayerPlan;
-use crate::bake::relief::Relief;
-use crate::bake::report::{Choice, Content};
-use crate::bake::settings::Model;
-use crate::bake::trial::Trial;
 use crate::gltf::material::LayerKind;
 use crate::gltf::texture::TextureSource;
-use crate::map::{Image, Rgba};
-use crate::pyramid::Rows;
+use crate::image::{Image, Rgba};
+use crate::material::{
+    Base, BaseAnisotropy, BaseLevels, BaseRows, Bumps, Encoding, Fold, Normals, Relief, grid, notes, own_lobe,
+};
+use crate::mip::Rows;
+use crate::report::{Choice, Content};
+use crate::select::Trial;
+use crate::settings::Model;
 
 impl Job<'_> {
     /// Folds the bumps into each distinct lobe, choosing its model on the way. Normals point where the lobes do that are

@@ -10,27 +10,23 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::bumps::Bumps;
-use super::chain::{Chain, grid};
 use super::extension::Unfolded;
 use super::geometry::Geometry;
-use super::notes;
 use super::plan::{LayerPlan, ReliefKind, ReliefPlan};
-use super::pyramids::Range;
 use super::reader::Reader;
-use super::relief::Relief;
-use super::report::{Content, LayerReport};
-use super::settings::{Model, Settings};
-use super::view::Finest;
-use crate::bump::Frame;
+use crate::bump::{Frame, HeightMap, NormalLayout, NormalMap};
+use crate::decode::{DecodeError, decode, decode_colours};
 use crate::digest::{Digest, digest};
 use crate::gltf::density::NoDensity;
 use crate::gltf::material::Mapping;
 use crate::gltf::rewrite::Slot;
 use crate::gltf::texture::{ImageLocation, TextureSource};
-use crate::map::{DecodeError, DecodeOptions, HeightMap, Image, NormalLayout, NormalMap, decode, decode_colours};
-use crate::pyramid::Rows;
-use crate::texture::ktx2::{Ktx2, PROVENANCE_KEY};
+use crate::image::{DecodeOptions, Image};
+use crate::ktx2::{Ktx2, PROVENANCE_KEY};
+use crate::material::{Bumps, Chain, Range, Relief, grid, notes};
+use crate::mip::Rows;
+use crate::report::{Content, LayerReport};
+use crate::settings::{Finest, Model, Settings};
 
 /// A baked texture and where it belongs.
 pub struct JobTexture {
@@ -164,7 +160,7 @@ pub fn run(
     Ok(output)
 }
 
-/// [`decode`] for bumps, [`crate::map::decode_colours`] for all else.
+/// [`decode`] for bumps, [`crate::decode::decode_colours`] for all else.
 type Decode = fn(&[u8], &DecodeOptions) -> Result<Image, DecodeError>;
 
 struct Job<'a> {

@@ -1,19 +1,14 @@
 //! The job's textures of the pyramid profile.
 
 use super::{Job, JobError, JobOutput, JobTexture, PyramidUse};
-use crate::bake::bumps::Bumps;
-use crate::bake::chain::Encoding;
 use crate::bake::extension::Unfolded;
-use crate::bake::notes;
 use crate::bake::plan::LayerPlan;
-use crate::bake::pyramids::{Quantity, Ranged, bake_quantity, filter_loss};
-use crate::bake::relief::{Framed, Reading, Relief};
-use crate::bake::report::{Choice, Content};
-use crate::bake::settings::Model;
-use crate::bump::Frame;
-use crate::bump::FrameTransform;
+use crate::bump::{Frame, FrameTransform};
 use crate::gltf::material::LayerKind;
-use crate::pyramid::{Area, Pyramid, Rows};
+use crate::material::{Bumps, Encoding, Framed, Quantity, Ranged, Reading, Relief, bake_quantity, filter_loss, notes};
+use crate::mip::{Area, Pyramid, Rows};
+use crate::report::{Choice, Content};
+use crate::settings::Model;
 
 /// Root mean square deviation of triangles up to which they count as turned alike: 6 degrees.
 const MAX_TURN_DEVIATION: f32 = 0.1;

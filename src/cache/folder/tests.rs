@@ -1,7 +1,7 @@
 use super::*;
-use crate::bake::report::AssetReport;
 use crate::bake::{Baked, NewFile};
 use crate::gltf::document::Container;
+use crate::report::AssetReport;
 
 fn baked(content: &[u8]) -> Baked {
     Baked {

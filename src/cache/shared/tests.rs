@@ -2,10 +2,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::*;
-use crate::bake::report::AssetReport;
 use crate::bake::{Baked, NewFile};
 use crate::cache::Cache;
 use crate::gltf::document::Container;
+use crate::report::AssetReport;
 
 fn baked(content: &[u8]) -> Baked {
     Baked {

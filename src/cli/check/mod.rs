@@ -12,15 +12,16 @@ use rayon::prelude::*;
 use semver::Version;
 
 use self::targets::{Sources, Target, source_document};
-use super::Outcome;
 use super::cached::CacheOptions;
 use super::files::Folder;
 use super::jobs;
 use super::report::Status;
 use super::selection::SettingOptions;
 use super::work::Work;
-use crate::bake::{Settings, read_file};
+use crate::bake::read_file;
 use crate::check::{self, Code, Files, Finding, Findings, Held, Origin, Report, Scope, Severity, Usage};
+use crate::cli::outcome::Outcome;
+use crate::settings::Settings;
 use crate::text::printable;
 
 /// Read baked files again and report what engines would stumble over, or what is not up to date.

@@ -8,10 +8,9 @@ use std::path::{Path, PathBuf};
 use walkdir::WalkDir;
 
 use crate::bake::read_file;
-use crate::cli::inputs::{Input, InputError};
 use crate::cli::selection::{SelectionError, SettingOptions};
-use crate::config::Resolved;
 use crate::gltf::document::Document;
+use crate::project::{Input, InputError, Resolved};
 
 /// A file to check.
 pub struct Target {

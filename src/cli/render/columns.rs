@@ -6,16 +6,18 @@ use std::path::Path;
 use serde_json::Value;
 
 use super::RenderError;
-use crate::bake::{Baked, EXTENSION, Form, Model, Profile, Settings, Source, bake, fit_name};
+use crate::bake::{Baked, EXTENSION, Source, bake, fit_name};
 use crate::check::{RoughnessModel, RoughnessPyramid};
+use crate::codec::Target;
+use crate::decode::decode;
 use crate::gltf::document::Document;
 use crate::gltf::material::{BumpSource, Layer, LayerKind, materials};
 use crate::gltf::texture::{ImageLocation, texture_source};
-use crate::map::{DecodeOptions, Image, Rgba, decode};
-use crate::pyramid::{Level, Rows};
+use crate::image::{DecodeOptions, Image, Rgba};
+use crate::ktx2::Ktx2;
+use crate::mip::{Level, Rows};
 use crate::render::{Bumps, LostBumps, Material, OwnAnisotropy, Ranged, Texture};
-use crate::texture::Target;
-use crate::texture::ktx2::Ktx2;
+use crate::settings::{Form, Model, Profile, Settings};
 
 /// A material in all its forms.
 pub struct Columns {
@@ -208,7 +210,7 @@ impl Reader<'_> {
     }
 
     /// All levels of a KTX2 file; those of a file that has only one are made.
-    fn ktx2(&self, bytes: &[u8]) -> Result<Loaded, crate::texture::ktx2::ReadError> {
+    fn ktx2(&self, bytes: &[u8]) -> Result<Loaded, crate::ktx2::ReadError> {
         let file = Ktx2::parse(bytes)?.with_max_texels(self.max_texels);
         let first = file.decode_level(0)?;
         let channels = first.channels;
@@ -217,7 +219,7 @@ impl Reader<'_> {
             return Ok(Loaded { channels, texture: Texture::with_mips(first) });
         }
         let coarser = (1..file.level_count()).map(|l| Ok(level(&file.decode_level(l)?)));
-        let coarser = coarser.collect::<Result<Vec<_>, crate::texture::ktx2::ReadError>>()?;
+        let coarser = coarser.collect::<Result<Vec<_>, crate::ktx2::ReadError>>()?;
         Ok(Loaded { channels, texture: Texture::new(first, coarser) })
     }
 }

@@ -4,13 +4,13 @@ use std::io;
 use std::path::PathBuf;
 
 use crate::bake::{BakeError, SourceError};
+use crate::decode::DecodeError;
 use crate::gltf::document::DocumentError;
 use crate::gltf::json::JsonError;
 use crate::gltf::material::MaterialError;
 use crate::gltf::texture::TextureError;
-use crate::map::DecodeError;
+use crate::ktx2::ReadError;
 use crate::output::PublishError;
-use crate::texture::ktx2::ReadError;
 
 /// Why nothing is drawn.
 #[derive(Debug, thiserror::Error)]

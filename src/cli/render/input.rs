@@ -7,14 +7,15 @@ use serde_json::json;
 
 use super::RenderError;
 use super::columns::{Columns, columns};
-use crate::bake::{Settings, Source, read_file};
+use crate::bake::{Source, read_file};
 use crate::cli::sources::protect;
 use crate::gltf::document::Document;
 use crate::gltf::uri::encode_path;
+use crate::image::{Image, Samples};
 use crate::inspect::encode_exr;
-use crate::map::{Image, Samples};
 use crate::output::Guard;
 use crate::render::{Subject, waves};
+use crate::settings::Settings;
 
 /// Texels of the waves along each side.
 const WAVES: u32 = 512;

@@ -11,15 +11,15 @@ use std::path::PathBuf;
 use clap::ValueEnum;
 use serde::Serialize;
 
-use super::Outcome;
 use super::options::{TextureOptions, finite, unit_interval};
 use super::progress::Progress;
-use crate::bake::Settings;
+use crate::cli::outcome::Outcome;
 use crate::lobe::Family;
 use crate::render::{
     Difference, EnvironmentFilter, Filter, Reflection, Shader, Subject, Tone, filtered, highlight, relative_l1,
     supersampled,
 };
+use crate::settings::Settings;
 use crate::text::printable;
 use columns::{Column, Columns};
 pub(super) use error::RenderError;
@@ -239,7 +239,7 @@ fn summary(sheet: &SheetReport) -> String {
 
 fn draw_all(args: &Args) -> Result<Vec<SheetReport>, RenderError> {
     let input = Input::read(args.input.as_deref(), args.height.then_some(args.height_scale))?;
-    let mut folder = Folder::new(args, &input);
+    let mut folder = Folder::new(&args.output, args.exr, input.guard(args.input.as_deref()));
     let scenes = args.scenes();
     let progress = Progress::new(scenes.len(), args.quiet);
     let mut sheets = Vec::new();

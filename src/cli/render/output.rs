@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
-use super::{Args, Input, RenderError};
-use crate::bake::encode_png;
+use super::error::RenderError;
+use crate::codec::encode_png;
+use crate::codec::uastc::Effort;
+use crate::image::{Image, Samples};
 use crate::inspect::encode_exr;
-use crate::map::{Image, Samples};
 use crate::output::Guard;
 use crate::render::{Panel, Picture, Sheet, Tone};
-use crate::texture::uastc::Effort;
 
 /// A picture and how it is shown.
 pub struct Shown {
@@ -34,14 +34,15 @@ impl Shown {
 
 /// The output folder.
 pub struct Folder<'a> {
-    args: &'a Args,
+    output: &'a Path,
+    has_exr: bool,
     guard: Guard,
 }
 
 impl<'a> Folder<'a> {
-    /// The one that `args` name, for pictures of `input`.
-    pub fn new(args: &'a Args, input: &Input) -> Self {
-        Self { args, guard: input.guard(args.input.as_deref()) }
+    /// Returns the folder `output`, in which `guard` decides what may be written. Pictures are EXR files too if `has_exr`.
+    pub fn new(output: &'a Path, has_exr: bool, guard: Guard) -> Self {
+        Self { output, has_exr, guard }
     }
 
     /// Writes a sheet of rows, each with its distance where there are several, and every picture. Returns the sheet's
@@ -52,8 +53,8 @@ impl<'a> Folder<'a> {
             for Shown { name, picture, tone, .. } in row {
                 let stem = format!("{stem}{distance}.{name}");
                 self.write_sheet(&stem, Sheet::of(picture, tone))?;
-                if self.args.exr {
-                    let path = self.args.output.join(format!("{stem}.exr"));
+                if self.has_exr {
+                    let path = self.output.join(format!("{stem}.exr"));
                     let [width, height] = picture.size;
                     let samples = Samples::F32(picture.pixels.iter().flatten().copied().collect());
                     let encoded = encode_exr(Image { width, height, channels: 3, samples });
@@ -67,7 +68,7 @@ impl<'a> Folder<'a> {
     }
 
     fn write_sheet(&mut self, stem: &str, sheet: Option<Sheet>) -> Result<String, RenderError> {
-        let path = self.args.output.join(format!("{stem}.png"));
+        let path = self.output.join(format!("{stem}.png"));
         let encoded = match sheet {
             Some(sheet) => encode_png(&sheet.rgba, sheet.width, sheet.height, Effort::Best),
             None => Err("more pixels than a file can hold".to_owned()),

@@ -5,10 +5,9 @@ use std::time::SystemTime;
 
 use serde_json::{Map, Value};
 
-use crate::cli::inputs::Input;
-use crate::config::Resolved;
 use crate::digest::Digest;
-use crate::plan::{Job, RunError, Written};
+use crate::project::{Input, Resolved};
+use crate::run::{Job, RunError, Written};
 use crate::watch::{Look, Seen};
 
 /// Files, as they look.

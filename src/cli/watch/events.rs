@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use serde::{Serialize, Serializer};
 
 use crate::cli::report::{Asset, Status};
-use crate::plan::{Done, Written};
+use crate::run::{Done, Written};
 use crate::text::printable;
 use crate::watch::Removed;
 

@@ -10,15 +10,14 @@ use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 
-use super::Args;
+use super::args::Args;
 use super::asset::{Asset, Looks, Planned, State};
 use super::documents::Documents;
 use super::events::Teller;
 use crate::cache::Cache;
-use crate::cli::inputs::{Input, InputError};
 use crate::cli::selection::Selected;
-use crate::config::Resolved;
 use crate::output::Guard;
+use crate::project::{Input, InputError, Resolved};
 use crate::watch::{Ledger, Look, Scope, Settling, real};
 
 /// All that is remembered from one look to the next.

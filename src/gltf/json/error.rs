@@ -1,6 +1,8 @@
 //! What can be wrong with a JSON text or with an edit of one.
 
-use super::MAX_DEPTH;
+/// Deepest nesting of objects and arrays that is read: what `serde_json` reads, so that every
+/// document that scans can also be deserialised.
+pub const MAX_DEPTH: usize = 127;
 
 /// Why a text is not JSON, or why an edit cannot be made. Lines and columns count from 1; columns
 /// count characters.

@@ -2,11 +2,7 @@
 
 use std::ops::Range;
 
-use super::JsonError;
-
-/// Deepest nesting of objects and arrays that is read: what `serde_json` reads, so that every
-/// document that scans can also be deserialised.
-pub const MAX_DEPTH: usize = 127;
+use super::error::{JsonError, MAX_DEPTH};
 
 /// One member of an object or element of an array: `start..value.start` is white space, and in an
 /// object the key and colon too; `value.end..end` is the white space before the comma or bracket.

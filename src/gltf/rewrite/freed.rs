@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use serde_json::Value;
 
-use super::{NewTexture, references};
+use super::texture::{NewTexture, references};
 
 /// Objects that may be overwritten.
 pub struct Freed {

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use serde_json::{Value, json};
 
 use super::freed::{Freed, images_of};
-use super::{NewImage, NewTexture, escaped};
+use super::texture::{NewImage, NewTexture, escaped};
 use crate::gltf::extensions::are_known;
 use crate::gltf::json::{Json, JsonError};
 

@@ -1,6 +1,7 @@
 //! What becomes of old textures and images, of their names and of the extensions that they had.
 
 use super::*;
+use crate::gltf::material::Mapping;
 
 fn file(name: &str) -> NewImage {
     NewImage::File(name.to_owned())

@@ -6,19 +6,21 @@
 //! converges faster (J. Kent, D. Tyler, Y. Vardi, "A curious likelihood identity for the multivariate t-distribution",
 //! 1994). Unlike moments it has no tails to lose: one steep texel of many hardly moves the lobe.
 
+mod part;
 mod points;
 mod slopes;
 mod start;
 
+use part::{Part, add};
 use points::{POINTS, half_vectors, sums};
 use slopes::{Matrix, Slopes};
 use start::Start;
 
 use super::SquaredAlpha;
 use super::oriented::{LEAST_COSINE, OrientedLobe, dot, frame};
-use crate::pyramid::{MAX_PARTS, Merge};
+use crate::math::symmetric::Symmetric2;
+use crate::mip::{MAX_PARTS, Merge};
 use crate::simd::Real;
-use crate::symmetric::Symmetric2;
 
 /// EM steps by the parts as wholes: before the first of the two by their points, and between these. Each has a twelfth of the
 /// arithmetic of one by the points, though more than that of its time: all of it waits for the step before.
@@ -60,35 +62,6 @@ impl Merge for OrientedLobe {
             })
             .unzip();
         Self::merge(&weights, &parts)
-    }
-}
-
-/// A lobe to be merged.
-#[derive(Clone, Copy, Default)]
-struct Part<F> {
-    normal: [F; 3],
-    a: Matrix<F>,
-}
-
-impl<F: Real> Part<F> {
-    #[inline(always)]
-    fn of([x, y, z, uu, uv, vv]: [F; 6]) -> Self {
-        Self { normal: [x, y, z], a: Matrix { uu, uv, vv } }
-    }
-
-    #[inline(always)]
-    fn numbers(self) -> [F; 6] {
-        let ([x, y, z], Matrix { uu, uv, vv }) = (self.normal, self.a);
-        [x, y, z, uu, uv, vv]
-    }
-
-    #[inline(always)]
-    fn or(self, other: Self, mask: F::Mask) -> Self {
-        let (mut numbers, other) = (self.numbers(), other.numbers());
-        for i in 0..6 {
-            numbers[i] = numbers[i].or(other[i], mask);
-        }
-        Self::of(numbers)
     }
 }
 
@@ -140,14 +113,6 @@ fn likeliest<F: Real, const MOST: usize>(
     }
     let next = slopes.next(sums(weights, points, slopes));
     slopes.step(next, next)
-}
-
-/// `sum` + `weight` * `vector`.
-#[inline(always)]
-fn add<F: Real>(sum: &mut [F; 3], weight: F, vector: [F; 3]) {
-    for i in 0..3 {
-        sum[i] = sum[i] + weight * vector[i];
-    }
 }
 
 /// The lobe whose slopes about the frame's normal are `a` about `mean`, in the frame of its own normal. To first order in

@@ -2,10 +2,10 @@
 
 use std::sync::LazyLock;
 
-use super::Part;
+use super::part::Part;
 use super::slopes::{MIN_SQUARED_ALPHA, Matrix, Slopes};
 use crate::lobe::oriented::{LEAST_COSINE, dot, frame};
-use crate::pyramid::MAX_PARTS;
+use crate::mip::MAX_PARTS;
 use crate::simd::Real;
 
 /// Half-vectors that stand for a lobe: [`RADII`] by [`SPOKES`], ring by ring; within a ring each is a quarter turn from the one

@@ -1,7 +1,7 @@
 //! Where EM starts: what moments tell, and what steps by the parts as wholes do.
 
+use super::part::{Part, add};
 use super::slopes::{Matrix, Slopes};
-use super::{Part, add};
 use crate::lobe::oriented::{LEAST_COSINE, dot};
 use crate::simd::Real;
 

@@ -1,6 +1,8 @@
 use super::*;
 use crate::bump::Offset;
-use crate::judge::{self, Family, Footprint, Lobe, Reference, oracle};
+use crate::lobe::family::Family;
+use crate::metric as judge;
+use crate::metric::{Footprint, Lobe, Reference, oracle};
 
 fn lobe([u, v]: [f32; 2], a: [f32; 3]) -> OrientedLobe {
     OrientedLobe::new(Offset { u, v }, SquaredAlpha(Symmetric2::new(a[0], a[1], a[2])))

@@ -10,8 +10,8 @@ use super::error::RemoteError;
 use super::tree::Tree;
 use crate::bake::read_file;
 use crate::digest::{self, digest};
-use crate::plan::{Moved, Plan};
 use crate::remote::Options;
+use crate::run::{Moved, Plan};
 
 /// The folder that an action puts its results in: that of a cache.
 pub const RESULTS: &str = "cache";

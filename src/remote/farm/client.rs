@@ -112,7 +112,7 @@ impl Client {
 
     /// Attempts at something, as many as the caller allows.
     pub fn attempts(&self) -> Attempts<'_> {
-        Attempts::new(self.retries, self)
+        Attempts::new(self.retries, &self.counts)
     }
 
     /// Gives `change` the numbers of what was done, to be added to or read.

@@ -1,6 +1,6 @@
 //! Which jobs share an action: alone what takes long, together what would take less time than an action costs.
 
-use crate::plan::Job;
+use crate::run::Job;
 
 /// Jobs below this many bytes of input are grouped: about half a second of a core. Measured: three real assets bake at 1.6, 1.6
 /// and 4.4 MB of input per second of a core, the fixtures at 0.2 to 0.5 (docs/remote.md has the command).

@@ -14,8 +14,8 @@ use super::download::{fetch, fetch_one};
 use super::error::RemoteError;
 use crate::cache::{Entry, Folder, Stored};
 use crate::digest::{self, digest};
-use crate::plan::{Job, Moved};
 use crate::remote::JobFailure;
+use crate::run::{Job, Moved};
 
 /// A job of an action.
 pub struct Sent<'a> {

@@ -1,10 +1,11 @@
 //! Trying again, ever more slowly.
 
 use std::future::Future;
+use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
-use super::client::Client;
 use super::error::RemoteError;
+use crate::remote::outcome::Counts;
 
 /// How long to wait before the second attempt.
 const FIRST: Duration = Duration::from_millis(250);
@@ -16,13 +17,13 @@ const LONGEST: Duration = Duration::from_secs(15);
 pub struct Attempts<'c> {
     left: u32,
     wait: Duration,
-    client: &'c Client,
+    counts: &'c Mutex<Counts>,
 }
 
 impl<'c> Attempts<'c> {
-    /// The first, and at most `retries` more, which `client` counts.
-    pub fn new(retries: u32, client: &'c Client) -> Self {
-        Self { left: retries, wait: FIRST, client }
+    /// Returns the first attempt and at most `retries` more, which are counted in `counts`.
+    pub fn new(retries: u32, counts: &'c Mutex<Counts>) -> Self {
+        Self { left: retries, wait: FIRST, counts }
     }
 
     /// Waits for the next attempt after `error`.
@@ -34,7 +35,7 @@ impl<'c> Attempts<'c> {
             return Err(error);
         }
         self.left -= 1;
-        self.client.count(|counts| counts.retries += 1);
+        self.counts.lock().unwrap_or_else(PoisonError::into_inner).retries += 1;
         // Callers that were refused together do not come back together.
         let wait = self.wait.mul_f64(0.5 + 0.5 * fraction());
         self.wait = (2 * self.wait).min(LONGEST);

@@ -7,9 +7,9 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 use roughcast::cache::Cache;
-use roughcast::config::resolve;
 use roughcast::output::Guard;
-use roughcast::plan::{Job, Lookup, Room, RunError, finish, prepare};
+use roughcast::project::resolve;
+use roughcast::run::{Job, Lookup, Room, RunError, finish, prepare};
 use serde_json::{Value, json};
 use tempfile::tempdir;
 

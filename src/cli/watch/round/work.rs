@@ -11,11 +11,11 @@ use super::super::asset::{Asset, Planned, State};
 use super::super::events::Teller;
 use super::Round;
 use crate::cache::CacheError;
-use crate::cli::inputs::Input;
-use crate::config::Resolved;
 use crate::output::lock::{Kind, OutputLock};
 use crate::output::{Guard, PublishError};
-use crate::plan::{self, Lookup, Room, RunError, Written};
+use crate::project::{Input, Resolved};
+use crate::run as plan;
+use crate::run::{Lookup, Room, RunError, Written};
 use crate::watch::Removed;
 
 /// After how long a lock or a vanished disk is tried again, at least.

@@ -1,0 +1,16 @@
+//! Payloads of textures: quantising rows of values and encoding them as blocks or floats. This module knows nothing of glTF.
+
+#[cfg(feature = "bc")]
+mod bc;
+mod encode;
+mod format;
+mod png;
+mod texels;
+
+pub use png::{encode_png, fallback};
+
+pub use encode::{ORM, encode, lower_rate};
+pub use format::{Format, Target};
+pub use texels::{EncodeError, Texels};
+/// The encoder and decoder of UASTC blocks, a crate of its own.
+pub use uastc_encoder as uastc;

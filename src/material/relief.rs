@@ -1,0 +1,146 @@
+//! The bumps of a material: a normal map or a height map, read as rows of moments.
+
+use crate::bump::{FrameTransform, HeightMap, HeightOffsets, Moments, NormalMap, NormalOffsets, Offset, Outliers};
+use crate::gltf::turn::TurnMap;
+use crate::math::symmetric::Symmetric2;
+use crate::mip::{Rows, Wrap};
+use crate::simd::map_row;
+
+/// A decoded normal or height map.
+pub enum Relief {
+    /// Tangent-space normals.
+    Normals(NormalMap),
+    /// Heights.
+    Heights {
+        /// The map.
+        map: HeightMap,
+        /// Slope where the height changes by 1 between neighbouring texels, across and down.
+        slope_per_step: [f32; 2],
+        /// The sampler's mode, across and down.
+        wrap: [Wrap; 2],
+    },
+}
+
+impl Relief {
+    /// The sampler's mode, across and down, as far as the relief knows it.
+    pub fn wrap(&self) -> [Wrap; 2] {
+        match self {
+            Self::Normals(_) => [Wrap::Repeat; 2],
+            Self::Heights { wrap, .. } => *wrap,
+        }
+    }
+
+    /// Writes the offsets (f_u, f_v) of row `y` to `out`.
+    pub fn offsets(&self, y: u32, out: &mut [[f32; 2]]) {
+        match self {
+            Self::Normals(map) => NormalOffsets::new(map).offsets(y, out),
+            Self::Heights { map, slope_per_step, wrap } => {
+                HeightOffsets::new(map, *slope_per_step, *wrap).offsets(y, out);
+            }
+        }
+    }
+
+    /// Stores in each of `out` what `of` makes of the texel's offset in row `y` and of the number `beside` it, as
+    /// `simd::map_row` does.
+    pub fn map_offsets<T, const M: usize>(
+        &self,
+        y: u32,
+        beside: impl Iterator<Item = f32> + Clone,
+        out: &mut [T],
+        of: impl Fn(Offset, f32) -> [f32; M],
+        store: impl Fn(&mut T, [f32; M]),
+    ) {
+        if let Self::Normals(map) = self {
+            return NormalOffsets::new(map).map_offsets(y, beside, out, of, store);
+        }
+        let mut offsets = vec![[0.0; 2]; out.len()];
+        self.offsets(y, &mut offsets);
+        map_row(
+            offsets.iter().zip(beside).map(|(&[u, v], beside)| [u, v, beside]),
+            out,
+            |[u, v, beside]| of(Offset { u, v }, beside),
+            store,
+        );
+    }
+
+    /// Texels whose slope is not what the map says.
+    pub fn outliers(&self) -> Outliers {
+        match self {
+            Self::Normals(map) => NormalOffsets::new(map).outliers(),
+            Self::Heights { map, slope_per_step, wrap } => HeightOffsets::new(map, *slope_per_step, *wrap).outliers(),
+        }
+    }
+
+    /// Covariance that rounding to the map's depth alone gives to slopes where the surface is flat.
+    pub fn noise(&self) -> Symmetric2 {
+        match self {
+            Self::Normals(map) => NormalOffsets::new(map).noise(),
+            Self::Heights { map, slope_per_step, wrap } => HeightOffsets::new(map, *slope_per_step, *wrap).noise(),
+        }
+    }
+}
+
+impl Rows for Relief {
+    type Texel = Moments;
+
+    fn width(&self) -> u32 {
+        match self {
+            Self::Normals(map) => map.width(),
+            Self::Heights { map, .. } => map.width(),
+        }
+    }
+
+    fn height(&self) -> u32 {
+        match self {
+            Self::Normals(map) => map.height(),
+            Self::Heights { map, .. } => map.height(),
+        }
+    }
+
+    fn row(&self, y: u32, out: &mut [Moments]) {
+        match self {
+            Self::Normals(map) => NormalOffsets::new(map).row(y, out),
+            Self::Heights { map, slope_per_step, wrap } => HeightOffsets::new(map, *slope_per_step, *wrap).row(y, out),
+        }
+    }
+}
+
+/// How offsets become those of another frame.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Reading {
+    /// The same everywhere.
+    Uniform(FrameTransform),
+    /// Texel by texel, on the grid of the map.
+    PerTexel(TurnMap),
+}
+
+/// A relief in another frame.
+pub struct Framed<'a> {
+    /// In the tangent frame.
+    pub relief: &'a Relief,
+    /// To the other.
+    pub reading: &'a Reading,
+}
+
+impl Rows for Framed<'_> {
+    type Texel = Moments;
+
+    fn width(&self) -> u32 {
+        self.relief.width()
+    }
+
+    fn height(&self) -> u32 {
+        self.relief.height()
+    }
+
+    fn row(&self, y: u32, out: &mut [Moments]) {
+        self.relief.row(y, out);
+        match self.reading {
+            Reading::Uniform(transform) => out.iter_mut().for_each(|m| *m = transform.apply(*m)),
+            Reading::PerTexel(turns) => {
+                let row = &turns.transforms[y as usize * out.len()..][..out.len()];
+                out.iter_mut().zip(row).for_each(|(m, transform)| *m = transform.apply(*m));
+            }
+        }
+    }
+}

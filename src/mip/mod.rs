@@ -1,0 +1,86 @@
+//! Mip levels: rows of texels, the rule that merges them, sizes, resampling and wrap modes.
+//!
+//! Everything here works on rows of texels ([`Rows`]), so that a level is never held in memory twice and level 0
+//! need not be held at all. This module does not know what a texel means.
+
+mod levels;
+mod merge;
+mod reduce;
+mod resample;
+mod wrap;
+
+pub use levels::Coarser;
+pub(crate) use merge::MAX_PARTS;
+pub use merge::{Merge, Numbers};
+pub use reduce::{Level, build, level_size, level_sizes};
+pub(crate) use resample::neighbours;
+pub use resample::{Area, Linear};
+pub use wrap::Wrap;
+
+/// A grid of texels that can be read row by row, from any thread.
+pub trait Rows: Sync {
+    /// What a texel holds.
+    type Texel: Merge;
+
+    /// Columns.
+    fn width(&self) -> u32;
+
+    /// Rows.
+    fn height(&self) -> u32;
+
+    /// Writes row `y` (0 is the top) to `out`, which has `width` texels.
+    fn row(&self, y: u32, out: &mut [Self::Texel]);
+}
+
+impl<R: Rows> Rows for &R {
+    type Texel = R::Texel;
+
+    fn width(&self) -> u32 {
+        (**self).width()
+    }
+
+    fn height(&self) -> u32 {
+        (**self).height()
+    }
+
+    fn row(&self, y: u32, out: &mut [R::Texel]) {
+        (**self).row(y, out);
+    }
+}
+
+/// A source with all its coarser levels. Level 0 is read from the source whenever it is needed.
+pub struct Pyramid<R: Rows> {
+    source: R,
+    coarser: Coarser<R::Texel>,
+}
+
+impl<R: Rows> Pyramid<R> {
+    /// The full chain over `source`.
+    pub fn new(source: R) -> Self {
+        let coarser = Coarser::new(&source);
+        Self { source, coarser }
+    }
+
+    /// Level 0.
+    pub fn source(&self) -> &R {
+        &self.source
+    }
+
+    /// Sizes of all levels, level 0 first.
+    pub fn sizes(&self) -> Vec<(u32, u32)> {
+        level_sizes(self.source.width(), self.source.height())
+    }
+
+    /// Writes row `y` of `level` to `out`.
+    pub fn row(&self, level: usize, y: u32, out: &mut [R::Texel]) {
+        self.coarser.row(&self.source, level, y, out);
+    }
+
+    /// The single texel of the coarsest level.
+    pub fn whole(&self) -> R::Texel {
+        self.coarser.whole(&self.source)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,255 @@
+use crate::bake::{BareBake, OwnRoughness, bake_map};
+use crate::bump::{NormalLayout, NormalMap};
+use crate::codec::Target;
+use crate::image::{Image, Samples};
+use crate::ktx2::Ktx2;
+use crate::lobe::{Alpha, Family, Roughness, SquaredAlpha};
+use crate::material::{Base, BaseRows, Bumps, Relief};
+use crate::material::{Fold, Normals};
+use crate::metric::{Decoded, Surface, mean_errors, sample_texels};
+use crate::mip::Wrap;
+use crate::report::{Content, Reason};
+use crate::select::trial::*;
+use crate::settings::Profile;
+
+/// A normal map of `side` x `side` texels with these slopes.
+fn normals(side: u32, slope: impl Fn(u32, u32) -> [f32; 2]) -> Image {
+    let texel = |i: u32| {
+        let [u, v] = slope(i % side, i / side);
+        let length = (1.0 + u * u + v * v).sqrt();
+        [-u / length, -v / length, 1.0 / length].map(|c| 0.5 * c + 0.5)
+    };
+    let samples = (0..side * side).flat_map(texel).collect();
+    Image { width: side, height: side, channels: 3, samples: Samples::F32(samples) }
+}
+
+/// Even numbers in [-1, 1], nearly a normal distribution times 1/2.
+fn noise(x: u32, y: u32, seed: u32) -> f32 {
+    let mut state = x.wrapping_mul(0x9e37_79b9) ^ y.wrapping_mul(0x85eb_ca6b) ^ seed.wrapping_mul(0xc2b2_ae35);
+    let mut sum = 0.0;
+    for _ in 0..4 {
+        state = (state ^ (state >> 15)).wrapping_mul(0x2c1b_3c6d);
+        state = (state ^ (state >> 12)).wrapping_mul(0x297a_2d39);
+        state ^= state >> 15;
+        sum += (state >> 8) as f32 / (1 << 23) as f32 - 1.0;
+    }
+    0.25 * sum
+}
+
+fn rough_noise(x: u32, y: u32) -> [f32; 2] {
+    [0.5 * noise(x, y, 1), 0.5 * noise(x, y, 2)]
+}
+
+fn brushed(x: u32, y: u32) -> [f32; 2] {
+    [0.02 * noise(x, y, 1), 0.6 * noise(0, y, 2)]
+}
+
+fn bake(image: &Image, roughness: f32, settings: &Settings) -> BareBake {
+    bake_with(image, OwnRoughness { image: None, factor: roughness }, settings)
+}
+
+fn bake_with(image: &Image, own: OwnRoughness, settings: &Settings) -> BareBake {
+    let map = NormalMap::new(image.clone(), NormalLayout::Xyz, false).unwrap();
+    bake_map(&Relief::Normals(map), Some(&own), settings).unwrap()
+}
+
+fn choice(image: &Image, roughness: f32, settings: &Settings) -> Choice {
+    bake(image, roughness, settings).choice.unwrap()
+}
+
+fn settings(max_error: f32) -> Settings {
+    Settings { max_error, ..Settings::default() }
+}
+
+fn taken(choice: &Choice) -> (Model, usize) {
+    let taken = choice.taken().unwrap();
+    (taken.model, taken.first)
+}
+
+#[test]
+fn flat_maps_and_matt_materials_need_nothing() {
+    let flat = choice(&normals(64, |_, _| [0.0; 2]), 0.7, &settings(0.01));
+    assert_eq!((taken(&flat), flat.misses.len()), ((Model::None, 0), 0));
+    assert!(flat.candidates[0].errors.iter().all(|e| *e < 0.008), "{:?}", flat.candidates[0]);
+    assert_eq!(flat.candidates[0].bytes, 0);
+    assert_eq!(taken(&choice(&normals(64, rough_noise), 1.0, &settings(0.1))).0, Model::None);
+}
+
+#[test]
+fn brushed_metal_needs_an_ellipse_and_noise_a_circle() {
+    let metal = choice(&normals(64, brushed), 0.4, &settings(0.12));
+    assert_eq!(taken(&metal).0, Model::Anisotropic, "{metal:#?}");
+    let noise = choice(&normals(64, rough_noise), 0.4, &settings(0.2));
+    assert_eq!(taken(&noise).0, Model::Isotropic, "{noise:#?}");
+    assert!(noise.misses.is_empty());
+}
+
+/// Shader work first, then bytes: none, then circles from small to large, then ellipses.
+#[test]
+fn candidates_rise_in_cost() {
+    let judged = choice(&normals(64, brushed), 0.2, &settings(0.1));
+    let order: Vec<_> = judged.candidates.iter().map(|c| (c.model, c.first)).collect();
+    let of = |model| [(model, 2), (model, 1), (model, 0)];
+    let expected = [&[(Model::None, 0)][..], &of(Model::Isotropic), &of(Model::Anisotropic)].concat();
+    assert_eq!(order, expected);
+    for pair in judged.candidates.windows(2) {
+        assert!((pair[0].model, pair[0].bytes) < (pair[1].model, pair[1].bytes), "{pair:?}");
+    }
+    // 64 x 64 down to 1 x 1: 256 + 64 + 16 + 4 + 1 + 1 + 1 blocks of 16 bytes.
+    assert_eq!(judged.candidates[3].bytes, 343 * 16);
+}
+
+#[test]
+fn roughness_that_changes_slowly_is_kept_small() {
+    // Bumps two texels wide: the levels from 1 on have lost all there is to lose, and level 0 has as much everywhere
+    // within a texel as anywhere. Rough enough that level 0 does not care.
+    let checks = normals(64, |x, y| if (x / 8 + y / 8) % 2 == 0 { [0.06, 0.0] } else { [-0.06, 0.0] });
+    let judged = choice(&checks, 0.6, &settings(0.05));
+    let at = |model, first| judged.candidates.iter().find(|c| (c.model, c.first) == (model, first)).unwrap();
+    // Where the smaller texture has the level, it holds the same blocks.
+    for model in [Model::Isotropic, Model::Anisotropic] {
+        for first in [1, 2] {
+            assert_eq!(at(model, first).errors[first..], at(model, 0).errors[first..]);
+            assert!(at(model, first).bytes < at(model, first - 1).bytes / 3);
+        }
+    }
+    let all = settings(1.0);
+    assert_eq!(taken(&choice(&checks, 0.6, &all)), (Model::None, 0));
+}
+
+/// A size is taken where it pays, and the bake begins there.
+#[test]
+fn the_taken_size_is_baked() {
+    // Noise of the finest grain: roughness is the same everywhere from level 1 on, and a little at level 0 is allowed.
+    let image = normals(64, |x, y| [0.3 * noise(x, y, 1), 0.3 * noise(x, y, 2)]);
+    let baked = bake(&image, 0.4, &settings(0.13));
+    let judged = baked.choice.as_ref().unwrap();
+    let (model, first) = taken(judged);
+    assert!(model == Model::Isotropic && first > 0, "{judged:#?}");
+    let roughness = baked.textures.iter().find(|t| t.content == Content::Roughness).unwrap();
+    assert_eq!((roughness.chain.width, roughness.chain.trimmed), (64 >> first, first));
+    // With a fixed model nothing is saved.
+    let fixed = bake(&image, 0.4, &Settings { model: Model::Isotropic, ..settings(0.13) });
+    assert_eq!(fixed.textures[1].chain.width, 64);
+}
+
+/// Metallic and occlusion in the same texture would lose a level too.
+#[test]
+fn textures_with_other_data_keep_their_size() {
+    let own = |blue: &dyn Fn(u32) -> u8| {
+        let samples = (0..64 * 64).flat_map(|i| [255, 80, blue(i)]).collect();
+        OwnRoughness {
+            image: Some(Image { width: 64, height: 64, channels: 3, samples: Samples::U8(samples) }),
+            factor: 1.0,
+        }
+    };
+    let image = normals(64, |x, y| [0.3 * noise(x, y, 1), 0.3 * noise(x, y, 2)]);
+    let plain = bake_with(&image, own(&|_| 255), &settings(0.13)).choice.unwrap();
+    let mixed = bake_with(&image, own(&|i| if i % 7 == 0 { 0 } else { 255 }), &settings(0.13)).choice.unwrap();
+    assert!(plain.candidates.iter().any(|c| c.first > 0));
+    assert!(mixed.candidates.iter().all(|c| c.first == 0));
+}
+
+/// The quick judgement of a candidate against the full one of its files.
+#[test]
+fn errors_are_those_of_the_baked_files() {
+    for (slope, target, family) in [
+        (brushed as fn(u32, u32) -> [f32; 2], Target::Basis, Family::Ggx),
+        (rough_noise, Target::Float, Family::Beckmann),
+        #[cfg(feature = "bc")]
+        (brushed, Target::Bc, Family::Ggx),
+    ] {
+        let image = normals(64, slope);
+        let settings = Settings { model: Model::Anisotropic, target, family, ..settings(0.1) };
+        let baked = bake(&image, 0.4, &settings);
+        let judged = baked.choice.as_ref().unwrap();
+        let map = NormalMap::new(image, NormalLayout::Xyz, false).unwrap();
+        let surface = Surface::of_map(&map, SquaredAlpha::isotropic(Alpha::from(Roughness(0.4))));
+        for (level, found) in judged.taken().unwrap().errors.iter().enumerate() {
+            let size = (64 >> level, 64 >> level);
+            let of = |content| {
+                let chain = &baked.textures.iter().find(|t| t.content == content).unwrap().chain;
+                Ktx2::parse(&chain.to_ktx2(&[]).unwrap()).unwrap().decode_level(level as u32).unwrap()
+            };
+            let decoded = Decoded {
+                normal: of(Content::Normal),
+                roughness: Some(of(Content::Roughness)),
+                roughness_factor: 1.0,
+                anisotropy: Some(of(Content::Anisotropy)),
+            };
+            let texels = sample_texels(size, 128);
+            let [full] = mean_errors(&surface, family, size, &texels, |(x, y), _, reference| {
+                [reference.error(&decoded.lobe(family, x, y).unwrap())]
+            });
+            assert!((f64::from(*found) - full).abs() < 0.015, "{target:?}, level {level}: {found} {full}");
+        }
+    }
+}
+
+#[test]
+fn both_profiles_count_the_worse_of_the_two() {
+    let image = normals(64, brushed);
+    let of = |profile| choice(&image, 0.4, &Settings { profile, model: Model::Anisotropic, ..settings(0.1) });
+    let [portable, pyramid, both] = [Profile::Portable, Profile::Pyramid, Profile::Both].map(of);
+    for (i, candidate) in both.candidates.iter().enumerate() {
+        for (level, error) in candidate.errors.iter().enumerate() {
+            let (a, b) = (portable.candidates[i].errors[level], pyramid.candidates[i].errors[level]);
+            // The mean of the larger is not less than the larger of the means.
+            assert!(*error >= a.max(b) - 1e-4 && *error <= a + b + 1e-4, "{i} {level}: {error} {a} {b}");
+        }
+        assert_eq!(candidate.bytes, portable.candidates[i].bytes + pyramid.candidates[i].bytes);
+    }
+}
+
+#[test]
+fn two_peaks_are_told_from_too_small_a_model() {
+    // V-grooves: half of the texels lean one way, half the other; no lobe covers both.
+    let grooves = choice(
+        &normals(64, |x, _| if x % 2 == 0 { [0.5, 0.0] } else { [-0.5, 0.0] }),
+        0.3,
+        &Settings { target: Target::Float, ..settings(0.1) },
+    );
+    assert!(!grooves.misses.is_empty());
+    assert!(grooves.misses.iter().all(|m| m.reason == Reason::TwoPeaked), "{:#?}", grooves.misses);
+    let warning = grooves.warning(&settings(0.1)).unwrap();
+    assert!(
+        warning.starts_with("lobe error above 0.1 at level 1-6") && warning.ends_with("two peaks, one lobe"),
+        "{warning}"
+    );
+    // None was asked for, and a lobe would have done: not the lobe's fault.
+    let none = choice(&normals(64, rough_noise), 0.4, &Settings { model: Model::None, ..settings(0.14) });
+    assert!(!none.misses.is_empty());
+    assert!(none.misses.iter().all(|m| m.level == 0 || m.reason == Reason::Fit), "{:#?}", none.misses);
+    assert_eq!((none.misses[0].level, none.misses[0].reason), (0, Reason::Encoding));
+}
+
+#[test]
+fn levels_that_cannot_be_sampled_do_not_count() {
+    let image = normals(64, brushed);
+    let map = NormalMap::new(image, NormalLayout::Xyz, false).unwrap();
+    let relief = Relief::Normals(map);
+    let bumps = Bumps::new(&relief, (64, 64));
+    let base = Base::new(BaseRows::new(64, 64, None, 0.4, None, [Wrap::Repeat; 2]));
+    let settings = settings(0.1);
+    let fold = Fold::new(base, &bumps, 1.0, &settings);
+    let normals = Normals::of_lobes(&bumps, fold.lobes());
+    let trial = |finest| Trial {
+        fold: &fold,
+        settings: &settings,
+        normals: Some(&normals),
+        pyramid: None,
+        wrap: [Wrap::Repeat; 2],
+        widest: Model::Anisotropic,
+        finest,
+        first: 0,
+    };
+    let [all, coarse] = [0, 3].map(|finest| trial(finest).run().unwrap());
+    assert_eq!((all.finest, coarse.finest), (0, 3));
+    for candidate in &coarse.candidates {
+        let same = all.candidates.iter().find(|c| (c.model, c.first) == (candidate.model, candidate.first)).unwrap();
+        assert_eq!(candidate.errors, same.errors[3..]);
+    }
+    // A quarter of the size lacks nothing that is sampled.
+    assert_eq!(taken(&coarse).1, 2);
+    assert_eq!(trial(99).run().unwrap().finest, 6, "there is always one level");
+}

@@ -1,0 +1,245 @@
+//! The layers of docs/architecture.md hold: a module imports from lower layers only, and no files import each other in a circle.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::Path;
+
+use syn::visit::{self, Visit};
+use walkdir::WalkDir;
+
+/// The path of a module below the crate's root, such as `["gltf", "json"]`.
+type ModulePath = Vec<String>;
+
+/// What one source file imports and re-exports.
+#[derive(Default)]
+struct Imports {
+    /// Absolute paths that the file names, each below the crate's root.
+    paths: BTreeSet<ModulePath>,
+    /// Names that the file re-exports, with the absolute paths that they stand for.
+    re_exports: BTreeMap<String, ModulePath>,
+}
+
+/// Collects the imports of one file. Tests may import from anywhere and are left out.
+struct Collector<'m> {
+    /// The module that is being read, inline modules included.
+    module: ModulePath,
+    modules: &'m BTreeSet<ModulePath>,
+    imports: Imports,
+}
+
+impl Collector<'_> {
+    /// Makes a path absolute: `crate::`, `super::` and `self::` are resolved, and so are the module's own children.
+    fn absolute(&self, segments: &[String]) -> Option<ModulePath> {
+        let (first, rest) = segments.split_first()?;
+        match first.as_str() {
+            "crate" => Some(rest.to_vec()),
+            "self" => Some([&self.module[..], rest].concat()),
+            "super" => {
+                let ups = segments.iter().take_while(|segment| *segment == "super").count();
+                let kept = self.module.len().checked_sub(ups)?;
+                Some([&self.module[..kept], &segments[ups..]].concat())
+            }
+            _ => {
+                let child = [&self.module[..], std::slice::from_ref(first)].concat();
+                self.modules.contains(&child).then(|| [&self.module[..], segments].concat())
+            }
+        }
+    }
+
+    fn leaves(tree: &syn::UseTree, prefix: &[String], out: &mut Vec<(Vec<String>, String)>) {
+        let with = |ident: &syn::Ident| [prefix, &[ident.to_string()]].concat();
+        match tree {
+            syn::UseTree::Path(path) => Self::leaves(&path.tree, &with(&path.ident), out),
+            syn::UseTree::Name(name) if name.ident == "self" => {
+                out.push((prefix.to_vec(), prefix.last().cloned().unwrap_or_default()));
+            }
+            syn::UseTree::Name(name) => out.push((with(&name.ident), name.ident.to_string())),
+            syn::UseTree::Rename(rename) => out.push((with(&rename.ident), rename.rename.to_string())),
+            syn::UseTree::Glob(_) => out.push((prefix.to_vec(), "*".to_owned())),
+            syn::UseTree::Group(group) => group.items.iter().for_each(|tree| Self::leaves(tree, prefix, out)),
+        }
+    }
+}
+
+fn is_test(attributes: &[syn::Attribute]) -> bool {
+    let is_test = |attribute: &syn::Attribute| {
+        attribute.path().is_ident("cfg") && attribute.parse_args::<syn::Path>().is_ok_and(|path| path.is_ident("test"))
+    };
+    attributes.iter().any(is_test)
+}
+
+impl<'ast> Visit<'ast> for Collector<'_> {
+    fn visit_item_use(&mut self, item: &'ast syn::ItemUse) {
+        if is_test(&item.attrs) {
+            return;
+        }
+        let mut leaves = Vec::new();
+        Self::leaves(&item.tree, &[], &mut leaves);
+        for (segments, name) in leaves {
+            let Some(path) = self.absolute(&segments) else { continue };
+            let is_own_child = path.starts_with(&self.module) && path.len() > self.module.len();
+            if !matches!(item.vis, syn::Visibility::Inherited) {
+                self.imports.re_exports.insert(name, path.clone());
+                // A module that shows what its files hold does not depend on them.
+                if is_own_child {
+                    continue;
+                }
+            }
+            self.imports.paths.insert(path);
+        }
+    }
+
+    fn visit_path(&mut self, path: &'ast syn::Path) {
+        let segments: Vec<String> = path.segments.iter().map(|segment| segment.ident.to_string()).collect();
+        if segments.len() > 1
+            && let Some(path) = self.absolute(&segments)
+        {
+            self.imports.paths.insert(path);
+        }
+        visit::visit_path(self, path);
+    }
+
+    fn visit_item_mod(&mut self, item: &'ast syn::ItemMod) {
+        if !is_test(&item.attrs) && item.content.is_some() {
+            self.module.push(item.ident.to_string());
+            visit::visit_item_mod(self, item);
+            self.module.pop();
+        }
+    }
+
+    fn visit_item_fn(&mut self, item: &'ast syn::ItemFn) {
+        if !is_test(&item.attrs) {
+            visit::visit_item_fn(self, item);
+        }
+    }
+
+    fn visit_item_impl(&mut self, item: &'ast syn::ItemImpl) {
+        if !is_test(&item.attrs) {
+            visit::visit_item_impl(self, item);
+        }
+    }
+}
+
+/// The imports of every source file that is no test, by module.
+fn imports() -> BTreeMap<ModulePath, Imports> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut files = BTreeMap::new();
+    for entry in WalkDir::new(&root) {
+        let entry = entry.expect("an entry of src");
+        let path = entry.path();
+        if path.extension().is_none_or(|extension| extension != "rs") {
+            continue;
+        }
+        let below = path.strip_prefix(&root).expect("a path below src").with_extension("");
+        let mut module: ModulePath = below.iter().map(|part| part.to_string_lossy().into_owned()).collect();
+        let is_test = |part: &String| part == "tests" || part.ends_with("_tests") || part == "test_files";
+        if module.iter().any(is_test) || module == ["main"] {
+            continue;
+        }
+        if module.last().is_some_and(|last| last == "mod" || last == "lib") {
+            module.pop();
+        }
+        files.insert(module, fs::read_to_string(path).expect("a source file"));
+    }
+    let modules: BTreeSet<ModulePath> = files.keys().cloned().collect();
+    let read = |(module, text): (ModulePath, String)| {
+        let file = syn::parse_file(&text).unwrap_or_else(|error| panic!("{module:?}: {error}"));
+        let mut collector = Collector { module: module.clone(), modules: &modules, imports: Imports::default() };
+        collector.visit_file(&file);
+        (module, collector.imports)
+    };
+    files.into_iter().map(read).collect()
+}
+
+/// Returns the module whose file defines what `path` names, through any number of re-exports.
+fn defining(files: &BTreeMap<ModulePath, Imports>, path: &[String], depth: usize) -> ModulePath {
+    let known = (0..=path.len()).rev().find(|length| files.contains_key(&path[..*length])).unwrap_or(0);
+    let (module, rest) = path.split_at(known);
+    match rest.first().and_then(|name| files.get(module)?.re_exports.get(name)) {
+        Some(target) if depth > 0 => defining(files, &[target, &rest[1..]].concat(), depth - 1),
+        _ => module.to_vec(),
+    }
+}
+
+/// Which file imports what which other files define.
+fn edges() -> BTreeMap<ModulePath, BTreeSet<ModulePath>> {
+    let files = imports();
+    let targets = |module: &ModulePath, imports: &Imports| {
+        let targets = imports.paths.iter().map(|path| defining(&files, path, 8));
+        targets.filter(|target| target != module && !target.is_empty()).collect()
+    };
+    files.iter().map(|(module, imports)| (module.clone(), targets(module, imports))).collect()
+}
+
+/// The layer of each module, from the table of docs/architecture.md.
+fn layers() -> BTreeMap<String, u32> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/architecture.md");
+    let text = fs::read_to_string(path).expect("docs/architecture.md");
+    let mut layers = BTreeMap::new();
+    for line in text.lines() {
+        let mut cells = line.trim_matches('|').split('|').map(str::trim);
+        let (Some(layer), Some(modules)) = (cells.next().and_then(|cell| cell.parse().ok()), cells.next()) else {
+            continue;
+        };
+        for module in modules.split(',').map(|module| module.trim().trim_matches('`')) {
+            assert!(layers.insert(module.to_owned(), layer).is_none(), "{module} stands twice in the table");
+        }
+    }
+    layers
+}
+
+#[test]
+fn modules_import_from_lower_layers_only() {
+    let layers = layers();
+    let mut wrong = Vec::new();
+    for (module, targets) in edges() {
+        let Some(top) = module.first() else { continue };
+        let Some(layer) = layers.get(top) else {
+            wrong.push(format!("module {top} is not in the table of docs/architecture.md"));
+            continue;
+        };
+        for target in targets.iter().filter(|target| target[0] != *top) {
+            if layers.get(&target[0]).is_none_or(|other| other >= layer) {
+                wrong.push(format!("{} (layer {layer}) imports {}", module.join("::"), target.join("::")));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{} imports break the table of docs/architecture.md:\n{}", wrong.len(), wrong.join("\n"));
+}
+
+#[test]
+fn every_module_of_the_table_exists() {
+    let tops: BTreeSet<String> = edges().into_keys().filter_map(|module| module.first().cloned()).collect();
+    let table: BTreeSet<String> = layers().into_keys().collect();
+    assert_eq!(table, tops);
+}
+
+/// Returns all that is reached from `start` by one import or more.
+fn reached<'e>(
+    edges: &'e BTreeMap<ModulePath, BTreeSet<ModulePath>>,
+    start: &'e ModulePath,
+) -> BTreeSet<&'e ModulePath> {
+    let (mut reached, mut next) = (BTreeSet::new(), vec![start]);
+    while let Some(module) = next.pop() {
+        let targets = edges.get(module).into_iter().flatten();
+        next.extend(targets.filter(|target| reached.insert(*target)));
+    }
+    reached
+}
+
+#[test]
+fn no_files_import_each_other_in_a_circle() {
+    let edges = edges();
+    let reached: BTreeMap<&ModulePath, BTreeSet<&ModulePath>> =
+        edges.keys().map(|module| (module, reached(&edges, module))).collect();
+    let mut circles: BTreeSet<String> = BTreeSet::new();
+    for (module, targets) in &reached {
+        if targets.contains(module) {
+            let is_mutual = |other: &&&ModulePath| reached.get(**other).is_some_and(|back| back.contains(*module));
+            let circle: Vec<String> = targets.iter().filter(is_mutual).map(|module| module.join("::")).collect();
+            circles.insert(circle.join(", "));
+        }
+    }
+    let circles: Vec<String> = circles.into_iter().collect();
+    assert!(circles.is_empty(), "these files import each other in circles:\n{}", circles.join("\n"));
+}
