@@ -7,7 +7,7 @@ use std::array::from_fn;
 use std::error::Error;
 use std::path::Path;
 
-use roughcast::bake::{BareBake, OwnRoughness, bake_map};
+use roughcast::bake::{BakedMap, BaseRoughness, bake_map};
 use roughcast::bump::{NormalLayout, NormalMap};
 use roughcast::codec::Target;
 use roughcast::codec::uastc::Effort;
@@ -15,7 +15,7 @@ use roughcast::decode::decode;
 use roughcast::image::{DecodeOptions, Image};
 use roughcast::ktx2::Ktx2;
 use roughcast::lobe::{Alpha, Family, Roughness, SquaredAlpha};
-use roughcast::material::Relief;
+use roughcast::material::BumpMap;
 use roughcast::metric::{Decoded, Lobe, Peer, Surface, mean_errors, oracle, sample_texels};
 use roughcast::report::Content;
 use roughcast::settings::{Model, Settings};
@@ -124,11 +124,11 @@ fn print_ratios(of_maps: &[(String, [f64; COLUMNS])]) {
 fn errors_by_level(image: &Image, alpha: f32, texels: usize) -> Result<Vec<Means>, Box<dyn Error>> {
     let map = || NormalMap::new(image.clone(), NormalLayout::Auto, false);
     let surface = Surface::of_map(&map()?, SquaredAlpha::isotropic(Alpha(alpha)));
-    let relief = Relief::Normals(map()?);
+    let bump_map = BumpMap::Normals(map()?);
     let bake = |model, effort, target| -> Result<_, Box<dyn Error>> {
-        let own = OwnRoughness { image: None, factor: Roughness::from(Alpha(alpha)).0 };
+        let own = BaseRoughness { image: None, factor: Roughness::from(Alpha(alpha)).0 };
         let settings = Settings { model, effort, target, provenance: false, ..Settings::default() };
-        Ok(files_of(&bake_map(&relief, Some(&own), &settings)?))
+        Ok(files_of(&bake_map(&bump_map, Some(&own), &settings)?))
     };
     let files = OURS.map(|(_, model, effort, target)| bake(model, effort, target));
     let files = files.into_iter().collect::<Result<Vec<_>, _>>()?;
@@ -165,8 +165,8 @@ fn errors_by_level(image: &Image, alpha: f32, texels: usize) -> Result<Vec<Means
 }
 
 /// The KTX2 files of a bake: a texture's content and its bytes.
-fn files_of(baked: &BareBake) -> Vec<(Content, Vec<u8>)> {
-    baked.textures.iter().map(|t| (t.content, t.chain.to_ktx2(&[]).unwrap())).collect()
+fn files_of(baked: &BakedMap) -> Vec<(Content, Vec<u8>)> {
+    baked.textures.iter().map(|t| (t.content, t.mip_chain.to_ktx2(&[]).unwrap())).collect()
 }
 
 fn decoded(files: &[(Content, Vec<u8>)], level: u32) -> Result<Decoded, Box<dyn Error>> {

@@ -11,7 +11,7 @@ use std::path::PathBuf;
 
 use roughcast::output::Guard;
 use roughcast::project::resolve;
-use roughcast::run::{Job, Room, finish, prepare};
+use roughcast::run::{Job, MemoryBudget, finish, prepare};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let assets = PathBuf::from(var_os("CARGO_MANIFEST_DIR").ok_or("Cargo sets CARGO_MANIFEST_DIR")?).join("assets");
@@ -23,13 +23,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     sources.retain(|path| path.extension().is_some_and(|e| e == "gltf" || e == "glb"));
     sources.sort();
     let settings = resolve(&[])?.values;
-    let (mut guard, room) = (Guard::inside(&output), Room::new(1));
+    let (mut guard, budget) = (Guard::inside(&output), MemoryBudget::new(1));
     for source in sources {
         let job = Job::new(&source, &output, &settings)?;
         for input in &job.inputs {
             println!("cargo::rerun-if-changed={}", input.path.display());
         }
-        let prepared = prepare(&job, None, &room, &|_| {});
+        let prepared = prepare(&job, None, &budget, &|_| {});
         finish(&job, prepared, &mut guard, &mut |_| {})?;
     }
     Ok(())

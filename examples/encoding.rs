@@ -6,7 +6,7 @@
 use std::error::Error;
 use std::path::Path;
 
-use roughcast::bake::{OwnRoughness, bake_map};
+use roughcast::bake::{BaseRoughness, bake_map};
 use roughcast::bump::{NormalLayout, NormalMap};
 use roughcast::codec::uastc::{Effort, Metric};
 use roughcast::codec::{Format, Target, Texels, encode};
@@ -14,7 +14,7 @@ use roughcast::decode::decode;
 use roughcast::image::{DecodeOptions, Image};
 use roughcast::ktx2::{Ktx2, Ktx2Writer, StoredLevel};
 use roughcast::lobe::{Alpha, Family, Roughness, SquaredAlpha};
-use roughcast::material::Relief;
+use roughcast::material::BumpMap;
 use roughcast::metric::{Decoded, Surface, mean_errors, sample_texels};
 use roughcast::report::Content;
 use roughcast::settings::{Model, Settings};
@@ -73,12 +73,12 @@ type Row = (u32, [f64; COLUMNS]);
 fn errors_by_level(image: &Image, alpha: f32, texels: usize) -> Result<Vec<Row>, Box<dyn Error>> {
     let map = || NormalMap::new(image.clone(), NormalLayout::Auto, false);
     let surface = Surface::of_map(&map()?, SquaredAlpha::isotropic(Alpha(alpha)));
-    let relief = Relief::Normals(map()?);
-    let own = OwnRoughness { image: None, factor: Roughness::from(Alpha(alpha)).0 };
+    let bump_map = BumpMap::Normals(map()?);
+    let own = BaseRoughness { image: None, factor: Roughness::from(Alpha(alpha)).0 };
     let settings =
         Settings { model: Model::Anisotropic, target: Target::Float, provenance: false, ..Settings::default() };
-    let baked = bake_map(&relief, Some(&own), &settings)?;
-    let files = baked.textures.iter().map(|t| Ok((t.content, t.chain.to_ktx2(&[])?)));
+    let baked = bake_map(&bump_map, Some(&own), &settings)?;
+    let files = baked.textures.iter().map(|t| Ok((t.content, t.mip_chain.to_ktx2(&[])?)));
     let files = files.collect::<Result<Vec<_>, Box<dyn Error>>>()?;
     LEVELS
         .filter(|level| image.width.max(image.height) >> level > 0)

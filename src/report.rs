@@ -191,7 +191,7 @@ fn is_zero(n: &usize) -> bool {
 pub enum Content {
     /// Unit normals.
     Normal,
-    /// Folded roughness in green.
+    /// RoughenedTextures roughness in green.
     Roughness,
     /// Direction and strength of anisotropy.
     Anisotropy,

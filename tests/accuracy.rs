@@ -3,14 +3,14 @@
 use std::array::from_fn;
 use std::ops::RangeInclusive;
 
-use roughcast::bake::{BareBake, OwnRoughness, bake_map};
+use roughcast::bake::{BakedMap, BaseRoughness, bake_map};
 use roughcast::bump::{NormalLayout, NormalMap};
 use roughcast::codec::Target;
 use roughcast::codec::uastc::Effort;
 use roughcast::image::{Image, Samples};
 use roughcast::ktx2::Ktx2;
 use roughcast::lobe::{Alpha, Family, Roughness, SquaredAlpha};
-use roughcast::material::Relief;
+use roughcast::material::BumpMap;
 use roughcast::metric::{Decoded, Lobe, Peer, Surface, mean_errors, oracle, sample_texels};
 use roughcast::report::Content;
 use roughcast::settings::{Model, Settings};
@@ -28,14 +28,14 @@ struct Means {
     peers: [f64; 2],
 }
 
-fn means(image: &Image, alpha: f32, judged_as: Family, settings: Settings, levels: RangeInclusive<u32>) -> Vec<Means> {
+fn means(image: &Image, alpha: f32, shaded_as: Family, settings: Settings, levels: RangeInclusive<u32>) -> Vec<Means> {
     let map = || NormalMap::new(image.clone(), NormalLayout::Auto, false).unwrap();
     let surface = Surface::of_map(&map(), SquaredAlpha::isotropic(Alpha(alpha)));
-    let relief = Relief::Normals(map());
+    let bump_map = BumpMap::Normals(map());
     let own = Roughness::from(Alpha(alpha));
     let bake = |settings: Settings| {
-        let own = OwnRoughness { image: None, factor: own.0 };
-        bake_map(&relief, Some(&own), &settings).unwrap()
+        let own = BaseRoughness { image: None, factor: own.0 };
+        bake_map(&bump_map, Some(&own), &settings).unwrap()
     };
     let (baked, plain) = (bake(settings), bake(Settings { model: Model::None, ..settings }));
     levels
@@ -43,12 +43,12 @@ fn means(image: &Image, alpha: f32, judged_as: Family, settings: Settings, level
             let (baked, plain) = (decoded(&baked, level, own), decoded(&plain, level, own));
             let size = (baked.normal.width, baked.normal.height);
             let texels = sample_texels(size, TEXELS);
-            let errors = mean_errors(&surface, judged_as, size, &texels, |(x, y), footprint, reference| {
+            let errors = mean_errors(&surface, shaded_as, size, &texels, |(x, y), footprint, reference| {
                 let moments = footprint.moments();
-                let exact = Peer::ALL.map(|peer| peer.lobe(judged_as, &moments));
-                let normal = plain.lobe(judged_as, x, y).unwrap().normal();
-                let encoded = exact.map(|peer| Lobe::new(judged_as, normal, peer.squared_alpha()));
-                let ours = baked.lobe(judged_as, x, y).unwrap();
+                let exact = Peer::ALL.map(|peer| peer.lobe(shaded_as, &moments));
+                let normal = plain.lobe(shaded_as, x, y).unwrap().normal();
+                let encoded = exact.map(|peer| Lobe::new(shaded_as, normal, peer.squared_alpha()));
+                let ours = baked.lobe(shaded_as, x, y).unwrap();
                 let starts: Vec<_> = exact.into_iter().chain([ours]).collect();
                 let lobes = exact.into_iter().chain(encoded).chain([ours]).map(|lobe| reference.error(&lobe));
                 let mut errors = [0.0; 2 * PEERS + 2];
@@ -65,10 +65,10 @@ fn means(image: &Image, alpha: f32, judged_as: Family, settings: Settings, level
         .collect()
 }
 
-fn decoded(baked: &BareBake, level: u32, own: Roughness) -> Decoded {
+fn decoded(baked: &BakedMap, level: u32, own: Roughness) -> Decoded {
     let of = |content| {
         let texture = baked.textures.iter().find(|t| t.content == content)?;
-        let bytes = texture.chain.to_ktx2(&[]).unwrap();
+        let bytes = texture.mip_chain.to_ktx2(&[]).unwrap();
         Some(Ktx2::parse(&bytes).unwrap().decode_level(level).unwrap())
     };
     let roughness = of(Content::Roughness);
@@ -135,11 +135,11 @@ fn scratches() -> Image {
 
 /// Of all maps, alphas and levels: the mean error over the oracle's, and the largest excess over the best exact and the
 /// best encoded peer.
-fn bars(judged_as: Family, settings: Settings) -> (f64, [f64; 2]) {
+fn bars(shaded_as: Family, settings: Settings) -> (f64, [f64; 2]) {
     let (mut sums, mut excess) = ([0.0; 2], [f64::NEG_INFINITY; 2]);
     for image in [ripples(), scratches()] {
         for alpha in ALPHAS {
-            for m in means(&image, alpha, judged_as, settings, 2..=5) {
+            for m in means(&image, alpha, shaded_as, settings, 2..=5) {
                 sums = [sums[0] + m.ours, sums[1] + m.oracle];
                 excess = from_fn(|i| excess[i].max(m.ours - m.peers[i]));
             }

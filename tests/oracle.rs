@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use roughcast::bake::{OwnRoughness, bake_map};
+use roughcast::bake::{BaseRoughness, bake_map};
 use roughcast::bump::{Moments, NormalLayout, NormalMap, Offset, Outliers, ShapedMoments};
 use roughcast::codec::Target;
 use roughcast::decode::decode;
@@ -10,7 +10,7 @@ use roughcast::image::{DecodeOptions, Image, Samples};
 use roughcast::ktx2;
 use roughcast::ktx2::Ktx2;
 use roughcast::lobe::{Distribution, Family, SquaredAlpha};
-use roughcast::material::Relief;
+use roughcast::material::BumpMap;
 use roughcast::math::symmetric::Symmetric2;
 use roughcast::report::Content;
 use roughcast::settings::{Model, Settings};
@@ -67,11 +67,11 @@ fn oracle(normals: &Image, roughness: Option<&Image>, factor: f64, level: u32, x
     let covariance = Symmetric2::new(k(0, 0) as f32, k(0, 1) as f32, k(1, 1) as f32);
     let own = SquaredAlpha(Symmetric2::diagonal(base as f32, base as f32));
     let moments = ShapedMoments::normal(Moments { mean: Offset::default(), covariance });
-    let folded = own.fold(Distribution::Normal.correct(&moments, own, Family::Ggx).covariance).0;
+    let roughened = own.roughen(Distribution::Normal.correct(&moments, own, Family::Ggx).covariance).0;
     let length = (mean[0] * mean[0] + mean[1] * mean[1] + 1.0).sqrt();
     Expected {
         normal: [-mean[0] / length, -mean[1] / length, 1.0 / length],
-        squared_alpha: [folded.uu, folded.uv, folded.vv].map(f64::from),
+        squared_alpha: [roughened.uu, roughened.uv, roughened.vv].map(f64::from),
     }
 }
 
@@ -86,15 +86,15 @@ struct Errors {
 /// Compares levels 0 to 6: mean angle between normals in degrees, mean difference of the two alphas (of A' projected on
 /// the baked axes).
 fn compare(normals: Image, roughness: Option<Image>, factor: f32, target: Target, bounds: (f64, f64)) {
-    let relief = Relief::Normals(NormalMap::new(normals.clone(), NormalLayout::Xyz, false).unwrap());
+    let bump_map = BumpMap::Normals(NormalMap::new(normals.clone(), NormalLayout::Xyz, false).unwrap());
     let settings =
         Settings { model: Model::Anisotropic, distribution: Distribution::Normal, target, ..Settings::default() };
-    let own = OwnRoughness { image: roughness.clone(), factor };
-    let baked = bake_map(&relief, Some(&own), &settings).unwrap();
-    assert_eq!(relief.outliers(), Outliers::default());
+    let own = BaseRoughness { image: roughness.clone(), factor };
+    let baked = bake_map(&bump_map, Some(&own), &settings).unwrap();
+    assert_eq!(bump_map.outliers(), Outliers::default());
     let contents: Vec<Content> = baked.textures.iter().map(|t| t.content).collect();
     assert_eq!(contents, [Content::Normal, Content::Roughness, Content::Anisotropy]);
-    let files: Vec<Vec<u8>> = baked.textures.iter().map(|t| t.chain.to_ktx2(&[]).unwrap()).collect();
+    let files: Vec<Vec<u8>> = baked.textures.iter().map(|t| t.mip_chain.to_ktx2(&[]).unwrap()).collect();
     for level in 0..=6 {
         let [normal, surface, axes] =
             [0, 1, 2].map(|t| ktx2::Ktx2::decode_level(&Ktx2::parse(&files[t]).unwrap(), level).unwrap());

@@ -8,7 +8,7 @@ mod synthetic;
 use rayon::prelude::*;
 
 use roughcast::bump::{Moments, Offset, ShapedMoments};
-use roughcast::lobe::{Family, KURTOSES, Lattice, Place, RATIOS, Shape};
+use roughcast::lobe::{Family, KURTOSES, Lattice, LatticePoint, RATIOS, Shape};
 use roughcast::metric::{Footprint, Lobe, Part, Reference};
 use roughcast::mip::Merge;
 
@@ -26,7 +26,7 @@ struct Case {
     family: Family,
     reference: Reference,
     shape: Shape,
-    places: [Place; 2],
+    points: [LatticePoint; 2],
     alpha: f64,
 }
 
@@ -45,9 +45,9 @@ impl Case {
         let flat = |[u, v]: &[f64; 2]| ShapedMoments::normal(Moments::flat(Offset { u: *u as f32, v: *v as f32 }));
         let weights = vec![weight as f32; offsets.len()];
         let shape = Shape::of(&ShapedMoments::merge(&weights, &offsets.iter().map(flat).collect::<Vec<_>>()));
-        let place = |k: usize| Place::new(shape.kurtosis[k], shape.variance[k], (alpha * alpha) as f32);
+        let point = |k: usize| LatticePoint::new(shape.kurtosis[k], shape.variance[k], (alpha * alpha) as f32);
         let reference = Reference::new(family, &footprint, SAMPLES);
-        Self { family, reference, shape, places: [place(0), place(1)], alpha }
+        Self { family, reference, shape, points: [point(0), point(1)], alpha }
     }
 
     fn error(&self, tables: &Tables) -> f64 {
@@ -55,9 +55,9 @@ impl Case {
         for k in 0..2 {
             let [x, y] = self.shape.axes[k].map(f64::from);
             let variance = f64::from(self.shape.variance[k]);
-            let widening = 2.0 * variance * f64::from(self.places[k].interpolate(&tables[0]));
+            let widening = 2.0 * variance * f64::from(self.points[k].interpolate(&tables[0]));
             a = [a[0] + widening * x * x, a[1] + widening * x * y, a[2] + widening * y * y];
-            let shift = f64::from(self.shape.skewness[k] * self.places[k].interpolate(&tables[1])).clamp(-1.0, 1.0);
+            let shift = f64::from(self.shape.skewness[k] * self.points[k].interpolate(&tables[1])).clamp(-1.0, 1.0);
             centre = [centre[0] - shift * variance.sqrt() * x, centre[1] - shift * variance.sqrt() * y];
         }
         self.reference.error(&Lobe::new(self.family, [-centre[0], -centre[1], 1.0], a))
@@ -85,8 +85,8 @@ fn fit(family: Family) -> Tables {
     let cases: Vec<Case> = (0..FOOTPRINTS).map(|_| Case::draw(family, &mut random)).collect();
     let mut users = vec![Vec::new(); RATIOS * KURTOSES];
     for (index, case) in cases.iter().enumerate() {
-        for place in case.places {
-            for ([i, j], weight) in place.nodes() {
+        for point in case.points {
+            for ([i, j], weight) in point.nodes() {
                 let list: &mut Vec<usize> = &mut users[i * KURTOSES + j];
                 if weight > 0.0 && list.last() != Some(&index) {
                     list.push(index);
@@ -109,13 +109,13 @@ fn fit(family: Family) -> Tables {
                     let mut least = cost(&tables);
                     for direction in [step, -step] {
                         loop {
-                            let mut trial = tables;
-                            trial[table][i][j] = (trial[table][i][j] + direction).clamp(0.0, 1.5);
-                            let cost = cost(&trial);
+                            let mut candidates = tables;
+                            candidates[table][i][j] = (candidates[table][i][j] + direction).clamp(0.0, 1.5);
+                            let cost = cost(&candidates);
                             if cost >= least {
                                 break;
                             }
-                            (least, tables) = (cost, trial);
+                            (least, tables) = (cost, candidates);
                         }
                     }
                 }

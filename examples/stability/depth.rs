@@ -89,9 +89,9 @@ pub fn print_heights() -> Result<(), Box<dyn Error>> {
         &["relief", "8 bits", "16 bits", "half floats", "floats", "floats 100 higher"],
     );
     let mut floors = [const { String::new() }; 5];
-    for relief in [0.1, 0.01, 0.001, 0.0001, 0.00001] {
-        let wave = |x: u32| 0.4 + 0.5 * relief * libm::sin(0.37 * f64::from(x));
-        let mut cells = vec![relief.to_string()];
+    for bump_map in [0.1, 0.01, 0.001, 0.0001, 0.00001] {
+        let wave = |x: u32| 0.4 + 0.5 * bump_map * libm::sin(0.37 * f64::from(x));
+        let mut cells = vec![bump_map.to_string()];
         let exact: f64 = deviation(&slopes(Samples::F32(heights(&|x| (wave(x) - 0.4) as f32)), slope_per_step)?.0);
         let sources = [
             Samples::U8(heights(&|x| (wave(x) * 255.0).round() as u8)),

@@ -7,7 +7,7 @@ use roughcast::bump::{Moments, NormalLayout, NormalMap};
 use roughcast::decode::decode;
 use roughcast::image::DecodeOptions;
 use roughcast::lobe::Factor;
-use roughcast::material::Relief;
+use roughcast::material::BumpMap;
 use roughcast::math::symmetric::Symmetric2;
 use roughcast::mip::Pyramid;
 
@@ -62,7 +62,7 @@ pub fn print() -> Result<(), Box<dyn Error>> {
     );
     for name in names {
         let image = decode(&std::fs::read(folder.join(name))?, &DecodeOptions::default())?;
-        let pyramid = Pyramid::new(Relief::Normals(NormalMap::new(image, NormalLayout::Auto, false)?));
+        let pyramid = Pyramid::new(BumpMap::Normals(NormalMap::new(image, NormalLayout::Auto, false)?));
         let sums = [1, 3, 5].map(|level| between_texels(&pyramid, level).lost());
         let levels = [1, 3, 5].map(|level| between_levels(&pyramid, level).lost());
         row(&[vec![(*name).to_owned()], sums.to_vec(), levels.to_vec()].concat());
@@ -70,7 +70,7 @@ pub fn print() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-fn texel_rows(pyramid: &Pyramid<Relief>, level: usize) -> Vec<Vec<Moments>> {
+fn texel_rows(pyramid: &Pyramid<BumpMap>, level: usize) -> Vec<Vec<Moments>> {
     let (width, height) = pyramid.sizes()[level];
     let row = |y| {
         let mut row = vec![Moments::default(); width as usize];
@@ -80,7 +80,7 @@ fn texel_rows(pyramid: &Pyramid<Relief>, level: usize) -> Vec<Vec<Moments>> {
     (0..height).map(row).collect()
 }
 
-fn between_texels(pyramid: &Pyramid<Relief>, level: usize) -> Sums {
+fn between_texels(pyramid: &Pyramid<BumpMap>, level: usize) -> Sums {
     let rows = texel_rows(pyramid, level);
     let mut sums = Sums::default();
     for (y, row) in rows.iter().enumerate() {
@@ -92,7 +92,7 @@ fn between_texels(pyramid: &Pyramid<Relief>, level: usize) -> Sums {
 }
 
 /// Each texel of a level and the one of the next coarser level above it.
-fn between_levels(pyramid: &Pyramid<Relief>, level: usize) -> Sums {
+fn between_levels(pyramid: &Pyramid<BumpMap>, level: usize) -> Sums {
     let (fine, coarse) = (texel_rows(pyramid, level), texel_rows(pyramid, level + 1));
     let mut sums = Sums::default();
     for (y, row) in fine.iter().enumerate() {

@@ -27,7 +27,7 @@ pub fn print() {
             let k = Symmetric2::outer(v);
             let back = Factor::of(k).covariance();
             let off = [(back.uu, k.uu), (back.uv, k.uv), (back.vv, k.vv)].map(|(a, b)| f64::from(a - b).abs());
-            let lobe = Anisotropy::of(SquaredAlpha::isotropic(Alpha(0.0)).fold(k), [1.0, 0.0]);
+            let lobe = Anisotropy::of(SquaredAlpha::isotropic(Alpha(0.0)).roughen(k), [1.0, 0.0]);
             let all = [back.uu, back.uv, back.vv, lambda_1(k), lobe.roughness.0, lobe.strength, lobe.direction[0]];
             broken += usize::from(all.iter().any(|x| !x.is_finite()));
             if k.trace() > 0.0 {

@@ -3,11 +3,11 @@
 use std::error::Error;
 use std::path::Path;
 
-use roughcast::bake::{OwnRoughness, bake_map};
+use roughcast::bake::{BaseRoughness, bake_map};
 use roughcast::image::{Image, Samples};
 use roughcast::ktx2::Ktx2;
 use roughcast::lobe::{Anisotropy, SquaredAlpha};
-use roughcast::material::Relief;
+use roughcast::material::BumpMap;
 use roughcast::math::symmetric::Symmetric2;
 use roughcast::mip::Level;
 use roughcast::report::Content;
@@ -52,11 +52,11 @@ pub fn print(folder: &Path) -> Result<(), Box<dyn Error>> {
 
 /// The anisotropy texture's level, and the notes of the bake.
 fn baked(level: &Level<roughcast::bump::Moments>) -> Result<(Image, Vec<String>), Box<dyn Error>> {
-    let relief = Relief::Normals(map(SIZE, Samples::F32(normals(level).into_iter().map(|c| c as f32).collect()))?);
+    let bump_map = BumpMap::Normals(map(SIZE, Samples::F32(normals(level).into_iter().map(|c| c as f32).collect()))?);
     let settings = Settings { model: Model::Anisotropic, ..Settings::default() };
-    let baked = bake_map(&relief, Some(&OwnRoughness { image: None, factor: 0.3 }), &settings)?;
+    let baked = bake_map(&bump_map, Some(&BaseRoughness { image: None, factor: 0.3 }), &settings)?;
     let texture = baked.textures.iter().find(|t| t.content == Content::Anisotropy).ok_or("no anisotropy")?;
-    let axes = Ktx2::parse(&texture.chain.to_ktx2(&[])?)?.decode_level(LEVEL)?;
+    let axes = Ktx2::parse(&texture.mip_chain.to_ktx2(&[])?)?.decode_level(LEVEL)?;
     Ok((axes, baked.notes))
 }
 

@@ -91,7 +91,7 @@ struct Assembly<'a> {
     document: Document,
     names: Names,
     /// Images that textures tell of.
-    told: BTreeSet<Arc<ImageLocation>>,
+    recorded: BTreeSet<Arc<ImageLocation>>,
     textures: Vec<NewTexture>,
     ranges: Vec<Option<Range>>,
     /// The BIN chunk that became a file.
@@ -99,7 +99,7 @@ struct Assembly<'a> {
     files: Vec<NewFile>,
     unit_factors: Vec<String>,
     anisotropies: Vec<String>,
-    circles: Vec<String>,
+    dropped_anisotropies: Vec<String>,
     pyramids: Vec<PyramidUse>,
     report: AssetReport,
 }
@@ -114,14 +114,14 @@ impl<'a> Assembly<'a> {
             settings,
             document,
             names: Names::new(source.stem),
-            told: BTreeSet::new(),
+            recorded: BTreeSet::new(),
             textures: Vec::new(),
             ranges: Vec::new(),
             bin,
             files: Vec::new(),
             unit_factors: Vec::new(),
             anisotropies: Vec::new(),
-            circles: Vec::new(),
+            dropped_anisotropies: Vec::new(),
             pyramids: Vec::new(),
             report: AssetReport::default(),
         })
@@ -134,7 +134,8 @@ impl<'a> Assembly<'a> {
             false => Vec::new(),
         };
         let with_file = |mut texture: JobTexture| {
-            let ktx2 = texture.chain.take_ktx2(&keys(&texture)).map_err(EncodeError::from).map_err(JobError::from)?;
+            let ktx2 =
+                texture.mip_chain.take_ktx2(&keys(&texture)).map_err(EncodeError::from).map_err(JobError::from)?;
             Ok((texture, ktx2))
         };
         let textures = output.textures.into_par_iter().map(with_file).collect::<Result<Vec<_>, JobError>>()?;
@@ -144,7 +145,7 @@ impl<'a> Assembly<'a> {
         for layer in output.layers {
             self.unit_factors.extend(layer.unit_factor);
             self.anisotropies.extend(layer.anisotropy);
-            self.circles.extend(layer.circle);
+            self.dropped_anisotropies.extend(layer.dropped_anisotropy);
             self.pyramids.extend(layer.pyramid.map(|p| PyramidUse {
                 offset: first + p.offset,
                 roughness: p.roughness.map(|r| first + r),
@@ -157,23 +158,23 @@ impl<'a> Assembly<'a> {
 
     fn add_texture(&mut self, texture: JobTexture, ktx2: Vec<u8>) -> Result<(), BakeError> {
         if self.settings.provenance {
-            self.told.extend(texture.sources.iter().map(|(location, _)| location.clone()));
+            self.recorded.extend(texture.sources.iter().map(|(location, _)| location.clone()));
         }
         let path = self.names.unique(&texture.stem, texture.content.name());
         let name = path.rsplit('/').next().unwrap_or(&path).to_owned();
-        let chain = texture.chain;
+        let mip_chain = texture.mip_chain;
         self.report.textures.push(TextureReport {
             path: format!("{path}.ktx2"),
             content: texture.content,
-            width: chain.width,
-            height: chain.height,
-            levels: chain.level_count(),
-            trimmed: chain.trimmed,
+            width: mip_chain.width,
+            height: mip_chain.height,
+            levels: mip_chain.level_count(),
+            trimmed: mip_chain.trimmed,
             bytes: ktx2.len(),
             range: texture.range.clone(),
         });
         let ktx2 = self.add_image(&path, "ktx2", ktx2)?;
-        let source = match (chain.fallback, self.settings.form) {
+        let source = match (mip_chain.fallback, self.settings.form) {
             (Some(png), _) => Some(self.add_image(&path, "png", png)?),
             (None, Form::Dual) => Some(ktx2.clone()),
             (None, _) => None,
@@ -213,8 +214,8 @@ impl<'a> Assembly<'a> {
         let json = self.document.json_mut();
         // First, so that textures of the material's own lobe count as needed.
         for pyramid in &self.pyramids {
-            if let Some(unfolded) = &pyramid.unfolded {
-                json.set(&format!("{}/unfolded", pyramid.pointer), unfolded)?;
+            if let Some(base_lobe) = &pyramid.base_lobe {
+                json.set(&format!("{}/baseLobe", pyramid.pointer), base_lobe)?;
             }
         }
         let indices = add_textures(json, &self.textures)?;
@@ -228,7 +229,7 @@ impl<'a> Assembly<'a> {
         if !self.anisotropies.is_empty() {
             declare(json, "KHR_materials_anisotropy", false)?;
         }
-        for pointer in &self.circles {
+        for pointer in &self.dropped_anisotropies {
             json.set(&format!("{pointer}/anisotropyStrength"), &0)?;
         }
         for pyramid in &self.pyramids {
@@ -243,7 +244,7 @@ impl<'a> Assembly<'a> {
                 pyramid.correction,
                 pyramid.frame,
                 &pyramid.mapping,
-                pyramid.unfolded.clone(),
+                pyramid.base_lobe.clone(),
             );
             if !extension.is_finite() {
                 return Err(BakeError::NotFinite { pointer: pyramid.pointer.clone() });
@@ -263,8 +264,8 @@ impl<'a> Assembly<'a> {
             self.files.extend(bytes.map(|bytes| NewFile { path, bytes }));
         }
         if self.settings.provenance && !self.textures.is_empty() {
-            let told: BTreeSet<PathBuf> = self.told.iter().filter_map(|location| file(location)).collect();
-            let provenance = DocumentProvenance::new(self.reader, &self.files, |path| told.contains(path))?;
+            let recorded: BTreeSet<PathBuf> = self.recorded.iter().filter_map(|location| file(location)).collect();
+            let provenance = DocumentProvenance::new(self.reader, &self.files, |path| recorded.contains(path))?;
             provenance.write(self.document.json_mut())?;
         }
         let mut copies = container::files(self.document.json())?;

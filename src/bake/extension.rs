@@ -30,14 +30,14 @@ pub struct Extension {
     #[serde(skip_serializing_if = "Option::is_none")]
     main_direction: Option<[f32; 3]>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    unfolded: Option<Unfolded>,
+    base_lobe: Option<BaseLobe>,
 }
 
 /// The lobe that a material had before the portable profile folded its bumps into the core properties. A plugin adds K to
 /// this one, or it would count the bumps twice.
 #[derive(Clone, Debug, Serialize)]
 #[serde(rename_all = "camelCase")]
-pub struct Unfolded {
+pub struct BaseLobe {
     roughness_factor: f32,
     #[serde(skip_serializing_if = "Option::is_none")]
     metallic_roughness_texture: Option<TextureInfo>,
@@ -55,7 +55,7 @@ struct Anisotropy {
     anisotropy_texture: Option<TextureInfo>,
 }
 
-impl Unfolded {
+impl BaseLobe {
     fn factors(&self) -> [f32; 3] {
         let (strength, rotation) =
             self.anisotropy.as_ref().map_or((0.0, 0.0), |a| (a.anisotropy_strength, a.anisotropy_rotation));
@@ -115,7 +115,7 @@ pub struct RangedTexture {
 }
 
 impl Extension {
-    /// Offsets, and D (three channels) or lambda_1 (one), read with the texture coordinates of `mapping`; `unfolded` where
+    /// Offsets, and D (three channels) or lambda_1 (one), read with the texture coordinates of `mapping`; `baseLobe` where
     /// the core properties hold K, too.
     pub fn new(
         offset: RangedTexture,
@@ -123,7 +123,7 @@ impl Extension {
         correction_factor: f32,
         frame: Frame,
         mapping: &Mapping,
-        unfolded: Option<Unfolded>,
+        base_lobe: Option<BaseLobe>,
     ) -> Self {
         let info = |index| TextureInfo::new(index, mapping);
         let model = |r: &RangedTexture| if r.range.max.len() == 3 { "covarianceFactor" } else { "standardDeviation" };
@@ -143,7 +143,7 @@ impl Extension {
             correction_factor,
             frame,
             main_direction,
-            unfolded,
+            base_lobe,
         }
     }
 }
@@ -153,7 +153,7 @@ impl Extension {
     pub fn is_finite(&self) -> bool {
         let ranges =
             [Some(&self.offset_min), Some(&self.offset_max), self.roughness_min.as_ref(), self.roughness_max.as_ref()];
-        let own = self.unfolded.as_ref().map_or([0.0; 3], Unfolded::factors);
+        let own = self.base_lobe.as_ref().map_or([0.0; 3], BaseLobe::factors);
         let direction = self.main_direction.unwrap_or_default();
         let mut all =
             ranges.into_iter().flatten().flatten().chain(&own).chain(&direction).chain([&self.correction_factor]);

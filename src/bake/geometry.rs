@@ -6,8 +6,8 @@ use crate::gltf::density::{NoDensity, density};
 use crate::gltf::geometry::{Layout, layout};
 use crate::gltf::material::Mapping;
 use crate::gltf::meshes::Meshes;
+use crate::gltf::rotation_map::{RotationMap, rotation_map};
 use crate::gltf::scene::{BadNode, Placement, placements};
-use crate::gltf::turn::{TurnMap, turn_map};
 use crate::mip::level_sizes;
 use crate::settings::{Finest, Settings, View};
 
@@ -46,10 +46,10 @@ impl<'a> Geometry<'a> {
         layout(meshes, material, mapping, self.main_direction, &|i| self.reader.buffer(i).ok())
     }
 
-    /// See [`turn_map`]; `None` under the unit frame.
-    pub fn turn_map(&self, material: usize, mapping: &Mapping, size: [u32; 2]) -> Option<TurnMap> {
+    /// See [`rotation_map`]; `None` under the unit frame.
+    pub fn rotation_map(&self, material: usize, mapping: &Mapping, size: [u32; 2]) -> Option<RotationMap> {
         let meshes = self.meshes.as_ref().filter(|_| self.has_frame)?;
-        turn_map(meshes, material, mapping, self.main_direction, &|i| self.reader.buffer(i).ok(), size)
+        rotation_map(meshes, material, mapping, self.main_direction, &|i| self.reader.buffer(i).ok(), size)
     }
 
     /// The finest level that the view can sample of a map of `size`; `None` without a view. See [`density`] for why it

@@ -18,7 +18,7 @@ mod survey;
 
 pub use crate::input_file::{check_file, hash_file, read_file};
 pub use asset::{Baked, bake};
-pub use bare::{BareBake, BareError, BareTexture, OwnRoughness, bake_map};
+pub use bare::{BakeMapError, BakedMap, BaseRoughness, MapTexture, bake_map};
 pub use error::{BakeError, ContainerError};
 pub use file::NewFile;
 

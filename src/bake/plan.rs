@@ -17,18 +17,18 @@ use crate::settings::Settings;
 
 /// A bump map and all layers that use it.
 #[derive(Debug)]
-pub struct ReliefPlan {
+pub struct BumpMapPlan {
     /// Where the map is.
     pub source: Arc<TextureSource>,
     /// How it is read.
-    pub kind: ReliefKind,
+    pub kind: BumpMapKind,
     /// Its uses.
     pub layers: Vec<LayerPlan>,
 }
 
 /// How a bump map is read.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ReliefKind {
+pub enum BumpMapKind {
     /// As normals.
     Normals,
     /// As heights.
@@ -56,14 +56,14 @@ pub struct LayerPlan {
     /// How the material lies on its meshes, where a frame asks for it.
     pub layout: Option<Layout>,
     /// Its own roughness and anisotropy textures, or why nothing can be folded into them.
-    pub own: Result<OwnTextures, String>,
+    pub own: Result<BaseTextures, String>,
     /// What the user should know.
     pub notes: Vec<String>,
 }
 
 /// The textures of a layer's own lobe.
 #[derive(Clone, Debug, PartialEq)]
-pub struct OwnTextures {
+pub struct BaseTextures {
     /// Green is roughness.
     pub roughness: Option<Arc<TextureSource>>,
     /// Direction and strength.
@@ -72,7 +72,7 @@ pub struct OwnTextures {
 
 /// What a layer's folded lobe depends on, besides its bumps. Layers with equal keys share their textures.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub struct FoldKey {
+pub struct RoughenedLobeKey {
     kind: LayerKind,
     textures: [Option<usize>; 2],
     factors: [u32; 2],
@@ -97,8 +97,8 @@ pub fn plan(
     materials: Vec<Material>,
     settings: &Settings,
     geometry: &Geometry<'_>,
-) -> Result<Vec<ReliefPlan>, PlanError> {
-    let mut reliefs: Vec<ReliefPlan> = Vec::new();
+) -> Result<Vec<BumpMapPlan>, PlanError> {
+    let mut bump_maps: Vec<BumpMapPlan> = Vec::new();
     let mut places: HashMap<_, usize> = HashMap::new();
     let mut textures = Textures::of(root);
     for Material { index, name, layers } in materials {
@@ -116,15 +116,15 @@ pub fn plan(
                 textures_of_lobe(&mut textures, &layer, &source).map_err(failed("roughness or anisotropy texture"))?;
             let plan = LayerPlan { material: index, name: name.clone(), layer, slope_scale, layout, own, notes };
             match places.entry((address(&source), kind.key())) {
-                Entry::Occupied(place) => reliefs[*place.get()].layers.push(plan),
+                Entry::Occupied(place) => bump_maps[*place.get()].layers.push(plan),
                 Entry::Vacant(place) => {
-                    place.insert(reliefs.len());
-                    reliefs.push(ReliefPlan { source, kind, layers: vec![plan] });
+                    place.insert(bump_maps.len());
+                    bump_maps.push(BumpMapPlan { source, kind, layers: vec![plan] });
                 }
             }
         }
     }
-    Ok(reliefs)
+    Ok(bump_maps)
 }
 
 /// What tells a texture from others, of those that [`Textures`] returned.
@@ -137,10 +137,10 @@ fn bits(number: f32) -> u32 {
     (number + 0.0).to_bits()
 }
 
-/// What tells a [`ReliefKind`] from others: nothing of normals.
+/// What tells a [`BumpMapKind`] from others: nothing of normals.
 type KindKey = Option<([u32; 2], bool, [Wrap; 2])>;
 
-impl ReliefKind {
+impl BumpMapKind {
     fn key(&self) -> KindKey {
         match *self {
             Self::Normals => None,
@@ -157,9 +157,9 @@ fn read_as(
     settings: &Settings,
     layout: Option<&Layout>,
     notes: &mut Vec<String>,
-) -> (ReliefKind, f32) {
+) -> (BumpMapKind, f32) {
     match bumps {
-        BumpSource::Normals(_, scale) => (ReliefKind::Normals, *scale),
+        BumpSource::Normals(_, scale) => (BumpMapKind::Normals, *scale),
         BumpSource::Heights(_, scale) => {
             let scale = settings.height_scale.unwrap_or(*scale);
             let (slope_per_repeat, square_texels) = match (settings.frame, layout) {
@@ -174,7 +174,7 @@ fn read_as(
                 }
                 _ => ([scale; 2], true),
             };
-            (ReliefKind::Heights { slope_per_repeat, square_texels, wrap: source.wrap }, 1.0)
+            (BumpMapKind::Heights { slope_per_repeat, square_texels, wrap: source.wrap }, 1.0)
         }
     }
 }
@@ -184,7 +184,7 @@ fn textures_of_lobe(
     textures: &mut Textures<'_>,
     layer: &Layer,
     bumps: &TextureSource,
-) -> Result<Result<OwnTextures, String>, TextureError> {
+) -> Result<Result<BaseTextures, String>, TextureError> {
     let mapping = &layer.bumps.texture().mapping;
     let mut reason = layer.has_other_workflow.then(|| {
         "KHR_materials_pbrSpecularGlossiness: engines that know it read glossiness, so roughness was left as it was"
@@ -209,7 +209,7 @@ fn textures_of_lobe(
     let anisotropy = read("anisotropy", layer.anisotropy.as_ref().and_then(|a| a.texture.as_ref()))?;
     Ok(match reason {
         Some(reason) => Err(reason),
-        None => Ok(OwnTextures { roughness, anisotropy }),
+        None => Ok(BaseTextures { roughness, anisotropy }),
     })
 }
 
@@ -257,10 +257,10 @@ impl LayerPlan {
     }
 
     /// What tells the layer's folded lobe from others'; `None` where nothing can be folded.
-    pub fn fold_key(&self) -> Option<FoldKey> {
+    pub fn roughened_lobe_key(&self) -> Option<RoughenedLobeKey> {
         let own = self.own.as_ref().ok()?;
         let anisotropy = self.layer.anisotropy.as_ref().map(|a| [bits(a.strength), bits(a.rotation)]);
-        Some(FoldKey {
+        Some(RoughenedLobeKey {
             kind: self.layer.kind,
             textures: [&own.roughness, &own.anisotropy].map(|texture| texture.as_ref().map(address)),
             factors: [bits(self.layer.roughness_factor), bits(self.slope_scale)],
@@ -269,12 +269,12 @@ impl LayerPlan {
     }
 
     /// The layer's own textures, of roughness and of anisotropy.
-    pub fn own_textures(&self) -> [Option<&TextureSource>; 2] {
+    pub fn base_textures(&self) -> [Option<&TextureSource>; 2] {
         self.own.as_ref().map_or([None; 2], |own| [own.roughness.as_deref(), own.anisotropy.as_deref()])
     }
 
     /// Where the layer's own textures are.
-    pub fn own_locations(&self) -> Vec<&Arc<ImageLocation>> {
-        self.own_textures().into_iter().flatten().map(|t| &t.location).collect()
+    pub fn base_locations(&self) -> Vec<&Arc<ImageLocation>> {
+        self.base_textures().into_iter().flatten().map(|t| &t.location).collect()
     }
 }

@@ -38,16 +38,20 @@ impl DocumentProvenance {
     /// Where it stands: glTF keeps `extras` for applications, and engines pass over them.
     pub const PLACE: &str = "/asset/extras/roughcast";
 
-    /// Records what is baked from the source of `reader` and the new files `outputs`, without the source files that `is_told`
+    /// Records what is baked from the source of `reader` and the new files `outputs`, without the source files that `is_recorded`
     /// says textures tell of.
     ///
     /// # Errors
     /// [`BakeError`] where the document cannot be written. Files that cannot be read are left out.
-    pub fn new(reader: &Reader<'_>, outputs: &[NewFile], is_told: impl Fn(&Path) -> bool) -> Result<Self, BakeError> {
+    pub fn new(
+        reader: &Reader<'_>,
+        outputs: &[NewFile],
+        is_recorded: impl Fn(&Path) -> bool,
+    ) -> Result<Self, BakeError> {
         let source = reader.source;
         let mut files = Vec::new();
         for path in container::files(source.document.json())? {
-            if !is_told(&path)
+            if !is_recorded(&path)
                 && let Some(blake3) = reader.digest(&path)
             {
                 files.push(SourceDigest { uri: uri(&path), blake3 });

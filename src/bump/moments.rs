@@ -40,7 +40,7 @@ impl Merge for Moments {
     /// `moment_subtraction_cancels_and_the_recursion_does_not`). Parts are u, v, uu, uv, vv.
     #[inline(always)]
     fn merged<F: Real, const MOST: usize>(weights: &[F], parts: &[[F; 5]]) -> [F; 5] {
-        let zero = weights[0].like(0.0);
+        let zero = weights[0].splat_like(0.0);
         let (mut u, mut v) = (zero, zero);
         for (w, part) in weights.iter().zip(parts) {
             (u, v) = (u + *w * part[0], v + *w * part[1]);

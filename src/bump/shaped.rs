@@ -48,8 +48,9 @@ impl Merge for ShapedMoments {
     /// statistical moments", SAND2008-6212, 2008, section 3; here for two variables and weights that sum to 1).
     #[inline(always)]
     fn merged<F: Real, const MOST: usize>(weights: &[F], parts: &[[F; VALUES]]) -> [F; VALUES] {
-        let zero = weights[0].like(0.0);
-        let (two, three, four, six) = (zero.like(2.0), zero.like(3.0), zero.like(4.0), zero.like(6.0));
+        let zero = weights[0].splat_like(0.0);
+        let (two, three, four, six) =
+            (zero.splat_like(2.0), zero.splat_like(3.0), zero.splat_like(4.0), zero.splat_like(6.0));
         let mut sums = [zero; VALUES];
         for (w, part) in weights.iter().zip(parts) {
             (sums[0], sums[1]) = (sums[0] + *w * part[0], sums[1] + *w * part[1]);

@@ -11,7 +11,7 @@ use super::entry::{Entry, Fits, MAX_ENTRY_BYTES, Stored, Unusable};
 use super::error::CacheError;
 use crate::digest::{Digest, digest};
 use crate::input_file::{check_file, open_file, read_file};
-use crate::output::{Place, is_abandoned};
+use crate::output::{OutputPath, is_abandoned};
 
 /// A cache in a folder.
 #[derive(Clone, Debug)]
@@ -138,7 +138,7 @@ impl Folder {
     }
 
     fn write(&self, path: &Path, bytes: &[u8]) -> Result<(), CacheError> {
-        Place::below(&self.root, path).and_then(|place| place.write_unsynced(bytes)).map_err(failed(path))
+        OutputPath::below(&self.root, path).and_then(|place| place.write_unsynced(bytes)).map_err(failed(path))
     }
 
     fn path(&self, kind: &str, digest: Digest) -> PathBuf {

@@ -44,11 +44,11 @@ impl Cache {
     /// Returns the outputs of the job `id`, if it was run. `fits` says whether an entry is of the job; what is not is dropped.
     pub fn entry(&self, id: Digest, fits: Fits<'_>, warn: Warn<'_>) -> Option<Entry> {
         if let Some(folder) = &self.folder
-            && let Some(entry) = told(folder.entry(id, fits), warn)
+            && let Some(entry) = or_warn(folder.entry(id, fits), warn)
         {
             return Some(entry);
         }
-        let entry = told(self.shared.as_ref()?.entry(id, fits), warn)?;
+        let entry = or_warn(self.shared.as_ref()?.entry(id, fits), warn)?;
         if let Some(folder) = &self.folder {
             warned(folder.put_entry(&entry), warn);
         }
@@ -60,7 +60,7 @@ impl Cache {
         let mut blobs = vec![None; wanted.len()];
         if let Some(folder) = &self.folder {
             for (blob, stored) in blobs.iter_mut().zip(wanted) {
-                *blob = told(folder.blob(stored), warn);
+                *blob = or_warn(folder.blob(stored), warn);
                 if blob.is_none() && self.shared.is_none() {
                     return None;
                 }
@@ -71,7 +71,7 @@ impl Cache {
                 wanted.iter().zip(&blobs).filter(|(_, b)| b.is_none()).map(|(s, _)| *s).collect();
             let mut found = shared.blobs(&missing).into_iter();
             for (blob, stored) in blobs.iter_mut().zip(wanted).filter(|(blob, _)| blob.is_none()) {
-                *blob = found.next().and_then(|found| told(found, warn));
+                *blob = found.next().and_then(|found| or_warn(found, warn));
                 if let (Some(folder), Some(bytes)) = (&self.folder, &blob) {
                     warned(folder.put_blob(stored, bytes), warn);
                 }
@@ -96,7 +96,7 @@ impl Cache {
     /// Puts what the folder has of the job of `entry` into the store, too.
     pub fn share(&self, entry: &Entry, warn: Warn<'_>) {
         let (Some(folder), Some(shared)) = (&self.folder, &self.shared) else { return };
-        let blobs: Option<Vec<Vec<u8>>> = entry.stored().map(|stored| told(folder.blob(stored), warn)).collect();
+        let blobs: Option<Vec<Vec<u8>>> = entry.stored().map(|stored| or_warn(folder.blob(stored), warn)).collect();
         if let Some(blobs) = blobs {
             warned(shared.put(entry, &blobs.iter().map(Vec::as_slice).collect::<Vec<_>>()), warn);
         }
@@ -118,7 +118,7 @@ impl Cache {
 }
 
 /// What was found; `warn` is told why nothing was.
-fn told<T>(found: Result<Option<T>, CacheError>, warn: Warn<'_>) -> Option<T> {
+fn or_warn<T>(found: Result<Option<T>, CacheError>, warn: Warn<'_>) -> Option<T> {
     found.unwrap_or_else(|error| {
         warn(error);
         None

@@ -31,7 +31,7 @@ pub struct RoughnessPyramid {
     /// m, in the space of the mesh.
     pub main_direction: Option<[f64; 3]>,
     /// The lobe that K is added to, where it is not that of the core properties.
-    pub unfolded: Option<Unfolded>,
+    pub base_lobe: Option<BaseLobe>,
     #[serde(rename = "extensions")]
     _extensions: Option<Map<String, Value>>,
     #[serde(rename = "extras")]
@@ -41,7 +41,7 @@ pub struct RoughnessPyramid {
 /// A material's own lobe.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
-pub struct Unfolded {
+pub struct BaseLobe {
     /// `roughnessFactor` of the core material; 1 when absent.
     pub roughness_factor: Option<f64>,
     /// `metallicRoughnessTexture` of the core material.

@@ -8,7 +8,7 @@ use crate::ktx2::{Ktx2, ReadError};
 /// Decodes every level and looks at its texels.
 pub fn check_texels(file: &Ktx2<'_>, are_normals: bool, findings: &mut Findings) {
     for level in 0..file.level_count() {
-        // Told by the level index already.
+        // PartReport by the level index already.
         if matches!(file.check_length(level), Err(ReadError::LevelLength { .. })) {
             continue;
         }

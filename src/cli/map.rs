@@ -8,13 +8,13 @@ use serde_json::json;
 
 use super::options::{LobeName, TextureOptions, finite, unit_interval};
 use super::outcome::Outcome;
-use crate::bake::{BareBake, BareError, BareTexture, OwnRoughness, bake_map, output_stem, read_file};
+use crate::bake::{BakeMapError, BakedMap, BaseRoughness, MapTexture, bake_map, output_stem, read_file};
 use crate::bump::{HeightMap, NormalLayout, NormalMap};
 use crate::decode::{DecodeError, decode, decode_colours};
 use crate::digest::digest;
 use crate::image::{DecodeOptions, Image, MapError};
 use crate::ktx2::{Key, Provenance, SourceDigest};
-use crate::material::{Relief, notes};
+use crate::material::{BumpMap, notes};
 use crate::mip::Wrap;
 use crate::output::{Guard, PublishError};
 use crate::report::{Choice, Content};
@@ -37,7 +37,7 @@ pub struct Args {
     /// The image holds heights, not normals.
     #[arg(long)]
     height: bool,
-    /// Relief between heights 0 and 1, in widths of the map.
+    /// BumpMap between heights 0 and 1, in widths of the map.
     #[arg(long, value_parser = finite, default_value_t = 0.05, value_name = "S", allow_hyphen_values = true)]
     height_scale: f32,
     /// What lies beyond the border of a height map, across and down: one mode, or two with a comma.
@@ -91,7 +91,7 @@ enum MapCommandError {
     #[error("{}: {error}", path.display())]
     Map { path: PathBuf, error: MapError },
     #[error(transparent)]
-    Bake(#[from] BareError),
+    Bake(#[from] BakeMapError),
     #[error(transparent)]
     Publish(#[from] PublishError),
     #[error("-o {}: expected the name of a .ktx2 file, found another extension; name it {}", path.display(), path.with_extension("ktx2").display())]
@@ -125,7 +125,7 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
 }
 
 struct Written {
-    baked: BareBake,
+    baked: BakedMap,
     files: Vec<(PathBuf, u64)>,
 }
 
@@ -135,9 +135,9 @@ impl Written {
             json!({
                 "path": path.display().to_string(),
                 "content": texture.content,
-                "width": texture.chain.width,
-                "height": texture.chain.height,
-                "levels": texture.chain.level_count(),
+                "width": texture.mip_chain.width,
+                "height": texture.mip_chain.height,
+                "levels": texture.mip_chain.level_count(),
                 "bytes": bytes,
                 "range": texture.range,
             })
@@ -153,14 +153,14 @@ impl Written {
     fn summary(&self) -> String {
         let mut text = String::new();
         for (texture, (path, bytes)) in self.baked.textures.iter().zip(&self.files) {
-            let chain = &texture.chain;
+            let mip_chain = &texture.mip_chain;
             text += &format!(
                 "{}: {}, {} x {}, {} levels, {:.1} kB\n",
                 printable(&path.display().to_string()),
                 texture.content.name(),
-                chain.width,
-                chain.height,
-                chain.level_count(),
+                mip_chain.width,
+                mip_chain.height,
+                mip_chain.level_count(),
                 *bytes as f64 / 1e3
             );
         }
@@ -187,16 +187,16 @@ fn bake(args: &Args, settings: &Settings) -> Result<Written, MapCommandError> {
     let is_jpeg = notes::is_jpeg(&bytes);
     drop(bytes);
     let failed = |error| MapCommandError::Map { path: args.image.clone(), error };
-    let relief = if args.height {
+    let bump_map = if args.height {
         let slope = args.height_scale * image.width as f32;
-        Relief::Heights { map: HeightMap::new(image).map_err(failed)?, slope_per_step: [slope; 2], wrap: args.wrap }
+        BumpMap::Heights { map: HeightMap::new(image).map_err(failed)?, slope_per_step: [slope; 2], wrap: args.wrap }
     } else {
         let layout = match args.channels {
             Channels::Auto => NormalLayout::Auto,
             Channels::Xyz => NormalLayout::Xyz,
             Channels::Xy => NormalLayout::Xy,
         };
-        Relief::Normals(NormalMap::new(image, layout, args.green_down).map_err(failed)?)
+        BumpMap::Normals(NormalMap::new(image, layout, args.green_down).map_err(failed)?)
     };
     let own = match (&args.roughness, args.roughness_factor) {
         (None, None) => None,
@@ -209,12 +209,12 @@ fn bake(args: &Args, settings: &Settings) -> Result<Written, MapCommandError> {
                 sources.push(source_digest(path, &bytes));
                 Ok::<_, MapCommandError>(image)
             };
-            Some(OwnRoughness { image: image.as_ref().map(&mut load).transpose()?, factor: factor.unwrap_or(1.0) })
+            Some(BaseRoughness { image: image.as_ref().map(&mut load).transpose()?, factor: factor.unwrap_or(1.0) })
         }
     };
-    let mut baked = bake_map(&relief, own.as_ref(), settings)?;
+    let mut baked = bake_map(&bump_map, own.as_ref(), settings)?;
     // What is decoded is no longer needed: as much as the baked levels, and more.
-    drop((relief, own));
+    drop((bump_map, own));
     if is_jpeg {
         baked.notes.push(notes::JPEG.to_owned());
     }
@@ -226,7 +226,7 @@ fn bake(args: &Args, settings: &Settings) -> Result<Written, MapCommandError> {
         baked.textures.iter().map(|texture| texture_keys(texture, args, &baked, &sources, settings)).collect();
     let mut written = Vec::new();
     for (texture, (place, keys)) in baked.textures.iter_mut().zip(places.into_iter().zip(keys)) {
-        let bytes = texture.chain.take_ktx2(&keys).map_err(|error| BareError::Encode(error.into()))?;
+        let bytes = texture.mip_chain.take_ktx2(&keys).map_err(|error| BakeMapError::Encode(error.into()))?;
         place.write(&bytes)?;
         written.push((place.path().to_owned(), bytes.len() as u64));
     }
@@ -269,9 +269,9 @@ fn source_digest(path: &Path, bytes: &[u8]) -> SourceDigest {
 }
 
 fn texture_keys(
-    texture: &BareTexture,
+    texture: &MapTexture,
     args: &Args,
-    baked: &BareBake,
+    baked: &BakedMap,
     sources: &[SourceDigest],
     settings: &Settings,
 ) -> Vec<Key> {

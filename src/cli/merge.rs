@@ -7,7 +7,7 @@ use super::jobs::{JobsError, read_plan};
 use super::outcome::Outcome;
 use crate::bake::read_file;
 use crate::output::Guard;
-use crate::run::{Merged, Told};
+use crate::run::{Merged, PartReport};
 use crate::text::printable;
 
 /// Tell what is missing and what failed of a plan that was run in parts.
@@ -41,7 +41,7 @@ pub struct Args {
 /// When `out` or `err` cannot be written to.
 pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<Outcome> {
     let read = || -> Result<_, JobsError> {
-        let reports: Result<Vec<Told>, JobsError> = args.reports.iter().map(|path| read_report(path)).collect();
+        let reports: Result<Vec<PartReport>, JobsError> = args.reports.iter().map(|path| read_report(path)).collect();
         Ok((read_plan(&args.plan)?, reports?))
     };
     let (plan, reports) = match read() {
@@ -94,7 +94,7 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
     Ok(outcome)
 }
 
-fn read_report(path: &Path) -> Result<Told, JobsError> {
+fn read_report(path: &Path) -> Result<PartReport, JobsError> {
     let bytes = read_file(path).map_err(|error| JobsError::Read { path: path.to_owned(), error })?;
     serde_json::from_slice(&bytes)
         .map_err(|error| JobsError::NoReport { path: path.to_owned(), reason: error.to_string() })

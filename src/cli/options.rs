@@ -63,7 +63,7 @@ pub struct DocumentOptions {
     /// Direction m of --frame main-direction, in the space of the mesh. [default: 0,1,0]
     #[arg(long, value_parser = direction, value_name = "X,Y,Z", allow_hyphen_values = true)]
     main_direction: Option<[f64; 3]>,
-    /// Relief of height maps, in widths of a repeat (in mesh units with --frame natural), instead of the asset's own.
+    /// BumpMap of height maps, in widths of a repeat (in mesh units with --frame natural), instead of the asset's own.
     #[arg(long, value_parser = finite_f64, value_name = "S", allow_hyphen_values = true)]
     height_scale: Option<f64>,
 }

@@ -179,7 +179,7 @@ impl SettingOptions {
     }
 
     /// Whether anything is said.
-    pub fn is_said(&self) -> bool {
+    pub fn is_explicit(&self) -> bool {
         self.config.is_some() || self.no_config || !self.said().said().is_empty()
     }
 

@@ -13,7 +13,7 @@ use crate::cache::{Cache, CacheError};
 use crate::output::Guard;
 use crate::remote::{Counts, Errand, JobFailure, Options, Remote, Wait};
 use crate::run as plan;
-use crate::run::{Job, Lookup, Room, RunError};
+use crate::run::{Job, Lookup, MemoryBudget, RunError};
 use crate::settings::Settings;
 
 /// What became of jobs.
@@ -123,7 +123,7 @@ impl Work<'_> {
     ) -> io::Result<()> {
         let Outlet { guard, progress, err } = outlet;
         let threads = rayon::current_num_threads();
-        let room = Room::new(threads);
+        let budget = MemoryBudget::new(threads);
         let told = |error: &RunError| JobFailure::from(error);
         let prepare = |index: usize| {
             let start = Instant::now();
@@ -138,7 +138,7 @@ impl Work<'_> {
                 if let Some(lookup) = lookup.as_mut().filter(|_| origin.is_some()) {
                     lookup.share();
                 }
-                Ok((job, origin, plan::prepare(job, lookup, &room, &|share| progress.set(index, share, name))))
+                Ok((job, origin, plan::prepare(job, lookup, &budget, &|share| progress.set(index, share, name))))
             });
             (prepared, start.elapsed().as_secs_f64())
         };

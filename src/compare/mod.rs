@@ -28,7 +28,7 @@ pub use table::csv;
 pub const OURS: usize = 7;
 const PEERS: usize = Peer::ALL.len();
 const ENTRIES: usize = OURS + PEERS + 1;
-/// Coarser levels have footprints of more than 128 x 128 texels, which take long and tell little.
+/// MipTail levels have footprints of more than 128 x 128 texels, which take long and tell little.
 const LAST_LEVEL: usize = 7;
 /// Levels that make the mean, where the map has them: as in docs/accuracy.md.
 const MEAN_FROM: usize = 2;

@@ -3,7 +3,7 @@
 use super::{Comparison, Cost, Entry, Kind, Ours, chart, csv};
 use crate::metric::Peer;
 use crate::mip::Level;
-use crate::render::{Bumps, LostBumps, Material, OwnAnisotropy, Texture};
+use crate::render::{BaseAnisotropy, Bumps, LostBumps, Material, Texture};
 
 fn comparison(material: &str) -> Comparison {
     let entry = |i: u32, kind| Entry {
@@ -63,13 +63,13 @@ fn every_shader_that_was_measured_has_its_cost() {
             roughness: None,
             roughness_factor: 1.0,
             anisotropy,
-            lost: LostBumps::Folded,
+            lost: LostBumps::RoughenedTextures,
         },
         file_bytes: 1,
         seconds: 1.0,
         chosen: false,
     };
-    let ellipse = OwnAnisotropy { texture: None, strength: 0.5, rotation: [1.0, 0.0] };
+    let ellipse = BaseAnisotropy { texture: None, strength: 0.5, rotation: [1.0, 0.0] };
     let [plain, anisotropic] = [None, Some(ellipse)].map(|own| Cost::of_ours(&ours(own)));
     assert!(plain.operations < anisotropic.operations && plain.fetches < anisotropic.fetches);
     for peer in Peer::ALL {

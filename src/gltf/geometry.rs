@@ -16,7 +16,7 @@ pub struct Layout {
     pub turn: [f32; 2],
     /// Root mean square deviation of single triangles from `turn`: 0 where the angle is the same everywhere, and 1.4
     /// where it is arbitrary or texture coordinates are mirrored.
-    pub turn_deviation: f32,
+    pub rotation_deviation: f32,
 }
 
 /// Units per repeat that a layout may have. Beyond, offsets in mesh units and their squares leave the range of floats.
@@ -92,8 +92,8 @@ impl Sums {
         let mean = (x * x + y * y).sqrt();
         let turn = if mean > 0.0 { [(x / mean) as f32, (y / mean) as f32] } else { [1.0, 0.0] };
         // |frame - rotation|^2 = 2 - 2 frame . rotation for unit frames, averaged.
-        let turn_deviation = (2.0 - 2.0 * mean).max(0.0).sqrt() as f32;
-        Some(Layout { units_per_repeat, turn, turn_deviation })
+        let rotation_deviation = (2.0 - 2.0 * mean).max(0.0).sqrt() as f32;
+        Some(Layout { units_per_repeat, turn, rotation_deviation })
     }
 }
 
@@ -146,7 +146,7 @@ mod tests {
         assert_eq!(layout.units_per_repeat, [2.0, 2.0]);
         // m = +y, n = +z: e1 = m x n = +x = T.
         assert_eq!(layout.turn, [1.0, 0.0]);
-        assert!(layout.turn_deviation < 1e-3);
+        assert!(layout.rotation_deviation < 1e-3);
     }
 
     #[test]

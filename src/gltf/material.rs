@@ -310,7 +310,7 @@ impl RawTexture {
     }
 }
 
-/// Relief of a height map whose scale no one tells: a twentieth of a repeat.
+/// BumpMap of a height map whose scale no one tells: a twentieth of a repeat.
 pub const DEFAULT_HEIGHT_SCALE: f32 = 0.05;
 
 #[derive(Default, Deserialize)]

@@ -72,23 +72,23 @@ impl Rows for Rgba<'_> {
 
 impl Rgba<'_> {
     /// Writes the green of row `y` to `out`.
-    pub fn greens(&self, y: u32, out: &mut [f32]) {
+    pub fn green(&self, y: u32, out: &mut [f32]) {
         let channels = self.0.channels as usize;
         let start = y as usize * out.len() * channels;
         match &self.0.samples {
-            Samples::U8(all) => greens(&all[start..], channels, out, |v| UNORM8[usize::from(v)]),
-            Samples::U16(all) => greens(&all[start..], channels, out, |v| f32::from(v) / 65535.0),
-            Samples::F32(all) => greens(&all[start..], channels, out, |v| v),
+            Samples::U8(all) => green(&all[start..], channels, out, |v| UNORM8[usize::from(v)]),
+            Samples::U16(all) => green(&all[start..], channels, out, |v| f32::from(v) / 65535.0),
+            Samples::F32(all) => green(&all[start..], channels, out, |v| v),
         }
     }
 
     /// Red and blue, where they are the same in all texels.
-    pub fn common_sides(&self) -> Option<[f32; 2]> {
+    pub fn common_red_blue(&self) -> Option<[f32; 2]> {
         let channels = self.0.channels as usize;
         let are_same = match &self.0.samples {
-            Samples::U8(all) => have_same_sides(all, channels),
-            Samples::U16(all) => have_same_sides(all, channels),
-            Samples::F32(all) => have_same_sides(all, channels),
+            Samples::U8(all) => have_same_red_blue(all, channels),
+            Samples::U16(all) => have_same_red_blue(all, channels),
+            Samples::F32(all) => have_same_red_blue(all, channels),
         };
         let mut first = [[0.0; 4]];
         self.row(0, &mut first);
@@ -98,7 +98,7 @@ impl Rgba<'_> {
 }
 
 /// Writes the greens of texels, or what is grey, to `out`.
-fn greens<T: Copy>(samples: &[T], channels: usize, out: &mut [f32], value: impl Fn(T) -> f32) {
+fn green<T: Copy>(samples: &[T], channels: usize, out: &mut [f32], value: impl Fn(T) -> f32) {
     match channels {
         1 => each(samples, out, |&[grey]| value(grey)),
         2 => each(samples, out, |&[_, green]| value(green)),
@@ -108,7 +108,7 @@ fn greens<T: Copy>(samples: &[T], channels: usize, out: &mut [f32], value: impl 
 }
 
 /// Whether the first and, where there is one, the third of the channels are the same in all texels.
-fn have_same_sides<T: Copy + PartialEq + Sync>(samples: &[T], channels: usize) -> bool {
+fn have_same_red_blue<T: Copy + PartialEq + Sync>(samples: &[T], channels: usize) -> bool {
     let [red, blue] = [samples[0], samples[if channels > 2 { 2 } else { 0 }]];
     let of_some = |texels: &[T]| match channels {
         1 => all(texels, |&[grey]| grey == red),
@@ -178,10 +178,10 @@ mod tests {
             for samples in all {
                 let image = Image { width: 4, height: 3, channels, samples };
                 for y in 0..3 {
-                    let (mut texels, mut greens) = ([[0.0; 4]; 4], [0.0; 4]);
+                    let (mut texels, mut green) = ([[0.0; 4]; 4], [0.0; 4]);
                     Rgba(&image).row(y, &mut texels);
-                    Rgba(&image).greens(y, &mut greens);
-                    assert_eq!(greens, texels.map(|texel| texel[1]), "{channels} channels");
+                    Rgba(&image).green(y, &mut green);
+                    assert_eq!(green, texels.map(|texel| texel[1]), "{channels} channels");
                 }
             }
         }
@@ -191,16 +191,16 @@ mod tests {
     fn sides_are_common_where_all_texels_have_them() {
         for channels in 1..=4 {
             let mut bytes = [51, 0, 102, 7][..channels].repeat(12);
-            let sides = |bytes: &[u8]| {
+            let red_blue = |bytes: &[u8]| {
                 let image =
                     Image { width: 4, height: 3, channels: channels as u32, samples: Samples::U8(bytes.to_vec()) };
-                Rgba(&image).common_sides()
+                Rgba(&image).common_red_blue()
             };
-            assert_eq!(sides(&bytes), Some([0.2, [0.2, 0.0, 0.4, 0.4][channels - 1]]), "{channels} channels");
+            assert_eq!(red_blue(&bytes), Some([0.2, [0.2, 0.0, 0.4, 0.4][channels - 1]]), "{channels} channels");
             for c in 0..channels {
                 let last = bytes.len() - channels + c;
                 bytes[last] += 1;
-                assert_eq!(sides(&bytes).is_none(), c % 2 == 0, "channel {c} of {channels}");
+                assert_eq!(red_blue(&bytes).is_none(), c % 2 == 0, "channel {c} of {channels}");
                 bytes[last] -= 1;
             }
         }

@@ -59,7 +59,7 @@ impl Storing {
     /// # Errors
     /// [`OutOfMemory`].
     pub fn new(uncompressed: usize, format: Format, effort: Effort) -> Result<Self, OutOfMemory> {
-        // Room is memory only where it is written to, and what grows is copied.
+        // MemoryBudget is memory only where it is written to, and what grows is copied.
         let room = memory::with_capacity(uncompressed)?;
         let zstd = |room| {
             let mut encoder = Encoder::new(room, zstd_level(effort))?;

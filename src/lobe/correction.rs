@@ -5,7 +5,7 @@
 
 use crate::bump::{Offset, ShapedMoments};
 use crate::lobe::family::Family;
-use crate::lobe::lattice::Place;
+use crate::lobe::lattice::LatticePoint;
 use crate::lobe::shape::Shape;
 use crate::lobe::{SquaredAlpha, table};
 use crate::math::symmetric::Symmetric2;
@@ -46,16 +46,16 @@ impl Distribution {
             let [x, y] = shape.axes[k];
             let variance = shape.variance[k];
             let squared_alpha = own.0.uu * x * x + 2.0 * own.0.uv * x * y + own.0.vv * y * y;
-            let place = Place::new(shape.kurtosis[k], variance, squared_alpha);
+            let point = LatticePoint::new(shape.kurtosis[k], variance, squared_alpha);
             *corrected = variance
                 * match self {
-                    Self::Auto => place.interpolate(&table.factor),
-                    Self::Normal => place.along(&table.normal),
-                    Self::Uniform => place.along(&table.uniform),
+                    Self::Auto => point.interpolate(&table.factor),
+                    Self::Normal => point.along(&table.normal),
+                    Self::Uniform => point.along(&table.uniform),
                 };
             if self == Self::Auto {
                 // Nothing was fitted beyond a deviation.
-                let shift = (shape.skewness[k] * place.interpolate(&table.shift)).clamp(-1.0, 1.0) * variance.sqrt();
+                let shift = (shape.skewness[k] * point.interpolate(&table.shift)).clamp(-1.0, 1.0) * variance.sqrt();
                 centre.u -= shift * x;
                 centre.v -= shift * y;
             }

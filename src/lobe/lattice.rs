@@ -24,14 +24,14 @@ pub struct Table {
 
 /// A point between four nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
+pub struct LatticePoint {
     /// First of the two ratios and of the two kurtoses.
     pub node: [usize; 2],
     /// Share of the second of each, in [0, 1].
     pub share: [f32; 2],
 }
 
-impl Place {
+impl LatticePoint {
     /// Where `kurtosis` and sqrt(`variance` / `squared_alpha`) lie; beyond the table its nearest border.
     pub fn new(kurtosis: f32, variance: f32, squared_alpha: f32) -> Self {
         let along = |position: f32, nodes: usize| {
@@ -74,11 +74,11 @@ mod tests {
 
     #[test]
     fn nodes_are_where_they_are_named() {
-        assert_eq!(Place::new(1.0, 0.25, 4.0), Place { node: [0, 0], share: [0.0, 0.0] });
-        assert_eq!(Place::new(4.0, 4.0, 1.0), Place { node: [3, 4], share: [0.0, 0.0] });
-        let far = Place::new(1e9, 1.0, 0.0);
-        assert_eq!(far, Place { node: [RATIOS - 2, KURTOSES - 2], share: [1.0, 1.0] });
-        let flat = Place::new(3.0, 0.0, 0.01);
+        assert_eq!(LatticePoint::new(1.0, 0.25, 4.0), LatticePoint { node: [0, 0], share: [0.0, 0.0] });
+        assert_eq!(LatticePoint::new(4.0, 4.0, 1.0), LatticePoint { node: [3, 4], share: [0.0, 0.0] });
+        let far = LatticePoint::new(1e9, 1.0, 0.0);
+        assert_eq!(far, LatticePoint { node: [RATIOS - 2, KURTOSES - 2], share: [1.0, 1.0] });
+        let flat = LatticePoint::new(3.0, 0.0, 0.01);
         assert_eq!((flat.node[0], flat.share[0]), (0, 0.0));
     }
 
@@ -90,7 +90,7 @@ mod tests {
                 *value = 3.0 * i as f32 + j as f32;
             }
         }
-        let place = Place { node: [2, 5], share: [0.25, 0.5] };
-        assert!((place.interpolate(&lattice) - (3.0 * 2.25 + 5.5)).abs() < 1e-5);
+        let point = LatticePoint { node: [2, 5], share: [0.25, 0.5] };
+        assert!((point.interpolate(&lattice) - (3.0 * 2.25 + 5.5)).abs() < 1e-5);
     }
 }

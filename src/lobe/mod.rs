@@ -22,7 +22,7 @@ pub use correction::{Corrected, Distribution};
 pub use distance::{isotropic_distance, shape_distance};
 pub use factor::{Factor, lambda_1};
 pub use family::Family;
-pub use lattice::{KURTOSES, Lattice, Place, RATIOS, Table};
+pub use lattice::{KURTOSES, Lattice, LatticePoint, RATIOS, Table};
 pub use oriented::OrientedLobe;
 pub use region::Region;
 pub use shape::{CROSS_SKEWNESS, Shape};
@@ -63,7 +63,7 @@ impl SquaredAlpha {
     /// A' = A + 2 K: the lobe of a surface whose bumps have covariance `k` (times its correction) and whose own lobe is
     /// `self`. Exact for Beckmann lobes and normal distributions, where P22 is a normal density of covariance A/2.
     #[inline(always)]
-    pub fn fold(self, k: Symmetric2) -> Self {
+    pub fn roughen(self, k: Symmetric2) -> Self {
         Self(self.0 + 2.0 * k)
     }
 
@@ -76,7 +76,7 @@ impl SquaredAlpha {
     }
 
     /// Whether [`Self::closest_isotropic`] is above 1, without its roots: those of 1 + 3 ulp round to 1.
-    pub fn circle_exceeds_one(self) -> bool {
+    pub fn isotropic_exceeds_one(self) -> bool {
         self.0.determinant() > 1.0 + 3.0 * f32::EPSILON
     }
 

@@ -31,10 +31,10 @@ pub(super) const LEAST_COSINE: f32 = 0.05;
 /// The orthonormal frame of a unit normal: T made perpendicular to it, then B = N x T, as glTF's engines do.
 #[inline(always)]
 pub(super) fn frame<F: Real>(n: [F; 3]) -> [[F; 3]; 3] {
-    let one = n[0].like(1.0);
+    let one = n[0].splat_like(1.0);
     // Normals that lean by almost 90 degrees have an x that rounds to 1; a slope of 16 leaves 0.004.
-    let scale = one / (one - n[0] * n[0]).max(n[0].like(1e-7)).sqrt();
-    let minus_x = n[0].like(0.0) - n[0];
+    let scale = one / (one - n[0] * n[0]).max(n[0].splat_like(1e-7)).sqrt();
+    let minus_x = n[0].splat_like(0.0) - n[0];
     let t = [(one - n[0] * n[0]) * scale, minus_x * n[1] * scale, minus_x * n[2] * scale];
     [t, [n[1] * t[2] - n[2] * t[1], n[2] * t[0] - n[0] * t[2], n[0] * t[1] - n[1] * t[0]], n]
 }

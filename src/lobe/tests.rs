@@ -33,9 +33,9 @@ fn distance(scale: f64, p: impl Fn([f64; 2]) -> f64, q: impl Fn([f64; 2]) -> f64
 #[test]
 fn folding_is_exact_for_beckmann_and_normal_slopes() {
     // Beckmann alpha 0.3 is a normal density of variance 0.045; normal slopes of variance 0.02 add to 0.065 = 0.13/2.
-    let folded = SquaredAlpha::isotropic(Alpha(0.3)).fold(Symmetric2::diagonal(0.02, 0.02));
-    assert!((folded.0.uu - 0.13).abs() < 1e-6);
-    assert!((folded.closest_isotropic().0 - 0.13f32.sqrt()).abs() < 1e-6);
+    let roughened = SquaredAlpha::isotropic(Alpha(0.3)).roughen(Symmetric2::diagonal(0.02, 0.02));
+    assert!((roughened.0.uu - 0.13).abs() < 1e-6);
+    assert!((roughened.closest_isotropic().0 - 0.13f32.sqrt()).abs() < 1e-6);
 }
 
 #[test]
@@ -212,6 +212,6 @@ fn circles_exceed_one_where_their_alpha_does() {
     for step in -64..64 {
         let determinant = f32::from_bits((1.0_f32.to_bits() as i32 + step) as u32);
         let lobe = SquaredAlpha(Symmetric2::diagonal(determinant, 1.0));
-        assert_eq!(lobe.circle_exceeds_one(), lobe.closest_isotropic().0 > 1.0, "{determinant}");
+        assert_eq!(lobe.isotropic_exceeds_one(), lobe.closest_isotropic().0 > 1.0, "{determinant}");
     }
 }

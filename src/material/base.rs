@@ -2,7 +2,7 @@
 
 use crate::image::Rgba;
 use crate::lobe::{Anisotropy, Roughness, SquaredAlpha};
-use crate::mip::{Coarser, Linear, Rows, Wrap, level_sizes};
+use crate::mip::{Linear, MipTail, Rows, Wrap, level_sizes};
 
 /// A texel of the material's own lobe: A (uu, uv, vv), then the red and blue channels, which are only averaged.
 pub type BaseTexel = [f32; 5];
@@ -51,7 +51,7 @@ impl<'a> BaseRows<'a> {
 
 impl BaseRows<'_> {
     /// Whether the material is anisotropic by itself.
-    pub fn is_elliptical(&self) -> bool {
+    pub fn is_anisotropic(&self) -> bool {
         self.strength > 0.0
     }
 
@@ -64,10 +64,10 @@ impl BaseRows<'_> {
     }
 
     /// Writes the green alone of that row to `out`.
-    pub fn greens(&self, y: u32, out: &mut [f32]) {
+    pub fn green(&self, y: u32, out: &mut [f32]) {
         match self.roughness.as_ref().map(Linear::unchanged) {
             None => out.fill(1.0),
-            Some(Some(texels)) => texels.greens(y, out),
+            Some(Some(texels)) => texels.green(y, out),
             Some(None) => {
                 let mut surface = vec![[0.0; 4]; out.len()];
                 self.surface(y, &mut surface);
@@ -77,7 +77,7 @@ impl BaseRows<'_> {
     }
 
     /// Writes row `y` of the texture that holds these lobes, which are round, to `out`: roughness in green, red and blue as they are.
-    pub fn round_row(&self, y: u32, out: &mut [[f32; 4]]) {
+    pub fn isotropic_row(&self, y: u32, out: &mut [[f32; 4]]) {
         self.surface(y, out);
         out.iter_mut().for_each(|texel| texel[1] = self.roughness(texel[1]).0);
     }
@@ -94,8 +94,8 @@ impl BaseRows<'_> {
     }
 
     /// Red and blue of the roughness texture, where they are the same everywhere.
-    fn common_sides(&self) -> Option<[f32; 2]> {
-        self.roughness.as_ref().map_or(Some([1.0; 2]), |rows| rows.source().common_sides())
+    fn common_red_blue(&self) -> Option<[f32; 2]> {
+        self.roughness.as_ref().map_or(Some([1.0; 2]), |rows| rows.source().common_red_blue())
     }
 }
 
@@ -113,7 +113,7 @@ impl Rows for BaseRows<'_> {
     fn row(&self, y: u32, out: &mut [BaseTexel]) {
         let mut surface = vec![[0.0; 4]; out.len()];
         self.surface(y, &mut surface);
-        if !self.is_elliptical() {
+        if !self.is_anisotropic() {
             for (texel, [red, green, blue, _]) in out.iter_mut().zip(surface) {
                 *texel = whole_texel([self.squared_alpha(green), red, blue]);
             }
@@ -137,18 +137,18 @@ impl Rows for BaseRows<'_> {
 }
 
 /// Of a texel whose lobe is round: its squared alpha, red and blue.
-type RoundTexel = [f32; 3];
+type IsotropicTexel = [f32; 3];
 
 /// The texel with all its numbers.
-fn whole_texel([squared_alpha, red, blue]: RoundTexel) -> BaseTexel {
+fn whole_texel([squared_alpha, red, blue]: IsotropicTexel) -> BaseTexel {
     [squared_alpha, 0.0, squared_alpha, red, blue]
 }
 
 /// The rows of a material whose lobes are round.
-struct RoundRows<'r, 'a>(&'r BaseRows<'a>);
+struct IsotropicRows<'r, 'a>(&'r BaseRows<'a>);
 
-impl Rows for RoundRows<'_, '_> {
-    type Texel = RoundTexel;
+impl Rows for IsotropicRows<'_, '_> {
+    type Texel = IsotropicTexel;
 
     fn width(&self) -> u32 {
         self.0.width
@@ -158,7 +158,7 @@ impl Rows for RoundRows<'_, '_> {
         self.0.height
     }
 
-    fn row(&self, y: u32, out: &mut [RoundTexel]) {
+    fn row(&self, y: u32, out: &mut [IsotropicTexel]) {
         let mut surface = vec![[0.0; 4]; out.len()];
         self.0.surface(y, &mut surface);
         for (texel, [red, green, blue, _]) in out.iter_mut().zip(surface) {
@@ -182,7 +182,7 @@ impl Rows for PlainRows<'_, '_> {
     }
 
     fn row(&self, y: u32, out: &mut [[f32; 1]]) {
-        self.0.greens(y, out.as_flattened_mut());
+        self.0.green(y, out.as_flattened_mut());
         out.iter_mut().for_each(|[texel]| *texel = self.0.squared_alpha(*texel));
     }
 }
@@ -194,14 +194,14 @@ pub enum BaseLevels {
     /// Round lobes beside one red and blue.
     Plain {
         /// Their squared alphas.
-        coarser: Coarser<[f32; 1]>,
+        tail: MipTail<[f32; 1]>,
         /// Red and blue.
-        sides: [f32; 2],
+        red_blue: [f32; 2],
     },
     /// Round lobes, of three numbers instead of five.
-    Round(Coarser<RoundTexel>),
+    Isotropic(MipTail<IsotropicTexel>),
     /// Lobes that are ellipses.
-    Elliptical(Coarser<BaseTexel>),
+    Anisotropic(MipTail<BaseTexel>),
 }
 
 impl BaseLevels {
@@ -209,12 +209,12 @@ impl BaseLevels {
     pub fn new(rows: &BaseRows<'_>) -> Self {
         if rows.roughness.is_none() && rows.direction.is_none() {
             Self::Same
-        } else if rows.is_elliptical() {
-            Self::Elliptical(Coarser::new(rows))
-        } else if let Some(sides) = rows.common_sides() {
-            Self::Plain { coarser: Coarser::new(&PlainRows(rows)), sides }
+        } else if rows.is_anisotropic() {
+            Self::Anisotropic(MipTail::new(rows))
+        } else if let Some(red_blue) = rows.common_red_blue() {
+            Self::Plain { tail: MipTail::new(&PlainRows(rows)), red_blue }
         } else {
-            Self::Round(Coarser::new(&RoundRows(rows)))
+            Self::Isotropic(MipTail::new(&IsotropicRows(rows)))
         }
     }
 }
@@ -222,19 +222,19 @@ impl BaseLevels {
 /// A material's own lobe with all its levels.
 pub struct Base<'a> {
     rows: BaseRows<'a>,
-    coarser: BaseLevels,
+    tail: BaseLevels,
 }
 
 impl<'a> Base<'a> {
     /// All levels over `rows`.
     pub fn new(rows: BaseRows<'a>) -> Self {
-        let coarser = BaseLevels::new(&rows);
-        Self { rows, coarser }
+        let tail = BaseLevels::new(&rows);
+        Self { rows, tail }
     }
 
     /// The same, where `coarser` has been made of `rows` before.
-    pub fn with_levels(rows: BaseRows<'a>, coarser: BaseLevels) -> Self {
-        Self { rows, coarser }
+    pub fn with_levels(rows: BaseRows<'a>, tail: BaseLevels) -> Self {
+        Self { rows, tail }
     }
 
     /// Level 0.
@@ -244,10 +244,10 @@ impl<'a> Base<'a> {
 
     /// Whether red and blue of the roughness texture are the same everywhere.
     pub fn is_plain(&self) -> bool {
-        match self.coarser {
+        match self.tail {
             BaseLevels::Same | BaseLevels::Plain { .. } => true,
-            BaseLevels::Round(_) => false,
-            BaseLevels::Elliptical(_) => self.rows.common_sides().is_some(),
+            BaseLevels::Isotropic(_) => false,
+            BaseLevels::Anisotropic(_) => self.rows.common_red_blue().is_some(),
         }
     }
 
@@ -258,36 +258,36 @@ impl<'a> Base<'a> {
 
     /// Writes row `y` of `level` to `out`.
     pub fn row(&self, level: usize, y: u32, out: &mut [BaseTexel]) {
-        match &self.coarser {
+        match &self.tail {
             BaseLevels::Same => self.rows.row(0, out),
-            BaseLevels::Plain { .. } | BaseLevels::Round(_) if level == 0 => self.rows.row(y, out),
-            BaseLevels::Plain { coarser, sides: [red, blue] } => {
-                coarser.with_row(&PlainRows(&self.rows), level, y, |row| {
+            BaseLevels::Plain { .. } | BaseLevels::Isotropic(_) if level == 0 => self.rows.row(y, out),
+            BaseLevels::Plain { tail, red_blue: [red, blue] } => {
+                tail.with_row(&PlainRows(&self.rows), level, y, |row| {
                     out.iter_mut().zip(row).for_each(|(texel, [alpha])| *texel = whole_texel([*alpha, *red, *blue]));
                 });
             }
-            BaseLevels::Round(coarser) => {
-                coarser.with_row(&RoundRows(&self.rows), level, y, |row| {
+            BaseLevels::Isotropic(tail) => {
+                tail.with_row(&IsotropicRows(&self.rows), level, y, |row| {
                     out.iter_mut().zip(row).for_each(|(texel, round)| *texel = whole_texel(*round));
                 });
             }
-            BaseLevels::Elliptical(coarser) => coarser.row(&self.rows, level, y, out),
+            BaseLevels::Anisotropic(tail) => tail.row(&self.rows, level, y, out),
         }
     }
 
     /// Writes the red and blue of row `y` of `level` to `out`.
-    pub fn sides(&self, level: usize, y: u32, out: &mut [[f32; 2]]) {
-        match &self.coarser {
-            BaseLevels::Plain { sides, .. } => out.fill(*sides),
-            BaseLevels::Round(_) | BaseLevels::Elliptical(_) if level == 0 => {
+    pub fn red_blue(&self, level: usize, y: u32, out: &mut [[f32; 2]]) {
+        match &self.tail {
+            BaseLevels::Plain { red_blue, .. } => out.fill(*red_blue),
+            BaseLevels::Isotropic(_) | BaseLevels::Anisotropic(_) if level == 0 => {
                 let mut surface = vec![[0.0; 4]; out.len()];
                 self.rows.surface(y, &mut surface);
-                out.iter_mut().zip(surface).for_each(|(sides, [red, _, blue, _])| *sides = [red, blue]);
+                out.iter_mut().zip(surface).for_each(|(red_blue, [red, _, blue, _])| *red_blue = [red, blue]);
             }
             _ => {
                 let mut texels = vec![BaseTexel::default(); out.len()];
                 self.row(level, y, &mut texels);
-                out.iter_mut().zip(texels).for_each(|(sides, [.., red, blue])| *sides = [red, blue]);
+                out.iter_mut().zip(texels).for_each(|(red_blue, [.., red, blue])| *red_blue = [red, blue]);
             }
         }
     }
@@ -331,8 +331,8 @@ mod tests {
         {
             let rows = || BaseRows::new(size.0, size.1, Some(Rgba(&image)), 0.7, None, [Wrap::Repeat; 2]);
             let plain = Base::new(rows());
-            assert!(matches!(plain.coarser, BaseLevels::Plain { sides: [0.2, 0.4], .. }) && plain.is_plain());
-            let round = Base::with_levels(rows(), BaseLevels::Round(Coarser::new(&RoundRows(&rows()))));
+            assert!(matches!(plain.tail, BaseLevels::Plain { red_blue: [0.2, 0.4], .. }) && plain.is_plain());
+            let round = Base::with_levels(rows(), BaseLevels::Isotropic(MipTail::new(&IsotropicRows(&rows()))));
             for (level, (width, height)) in plain.sizes().into_iter().enumerate() {
                 for y in 0..height {
                     let texels = [&plain, &round].map(|base| {
@@ -340,17 +340,19 @@ mod tests {
                         base.row(level, y, &mut texels);
                         texels
                     });
-                    let sides = [&plain, &round].map(|base| {
-                        let mut sides = vec![[0.0; 2]; width as usize];
-                        base.sides(level, y, &mut sides);
-                        sides
+                    let red_blue = [&plain, &round].map(|base| {
+                        let mut red_blue = vec![[0.0; 2]; width as usize];
+                        base.red_blue(level, y, &mut red_blue);
+                        red_blue
                     });
                     for x in 0..width as usize {
                         let [a, b] = [texels[0][x], texels[1][x]];
                         assert_eq!(a[..3], b[..3], "level {level}, texel {x}, {y}");
                         let is_near = |(a, b): (&f32, &f32)| (a - b).abs() < 1e-6;
-                        assert!(a.iter().zip(&b).all(is_near) && sides[0][x].iter().zip(&sides[1][x]).all(is_near));
-                        assert!(sides[1][x].iter().zip(&b[3..]).all(is_near));
+                        assert!(
+                            a.iter().zip(&b).all(is_near) && red_blue[0][x].iter().zip(&red_blue[1][x]).all(is_near)
+                        );
+                        assert!(red_blue[1][x].iter().zip(&b[3..]).all(is_near));
                     }
                 }
             }
@@ -361,7 +363,7 @@ mod tests {
     fn another_red_anywhere_is_not_plain() {
         let image = surface(16, 8, 3, false);
         let base = Base::new(BaseRows::new(16, 8, Some(Rgba(&image)), 1.0, None, [Wrap::Repeat; 2]));
-        assert!(matches!(base.coarser, BaseLevels::Round(_)) && !base.is_plain());
+        assert!(matches!(base.tail, BaseLevels::Isotropic(_)) && !base.is_plain());
         let ellipse = || Some(BaseAnisotropy { texture: None, strength: 0.5, rotation: [1.0, 0.0] });
         for is_plain in [true, false] {
             let image = surface(16, 8, 3, is_plain);

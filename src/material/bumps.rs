@@ -4,22 +4,22 @@ use std::cell::OnceCell;
 
 use crate::bump::Shaped;
 use crate::lobe::SquaredAlpha;
+use crate::material::bump_map::BumpMap;
 use crate::material::pyramids::mean_correction;
-use crate::material::relief::Relief;
 use crate::mip::{Area, Pyramid, Rows, level_sizes};
 use crate::settings::Settings;
 
 /// Level 0 of a relief on a grid, and its moments when they are asked for.
 pub struct Bumps<'a> {
     /// Level 0.
-    pub rows: Area<&'a Relief>,
-    moments: OnceCell<Pyramid<Area<&'a Relief>>>,
+    pub rows: Area<&'a BumpMap>,
+    moments: OnceCell<Pyramid<Area<&'a BumpMap>>>,
 }
 
 impl<'a> Bumps<'a> {
     /// `relief` on a grid of `width` x `height` texels.
-    pub fn new(relief: &'a Relief, (width, height): (u32, u32)) -> Self {
-        Self { rows: Area::new(relief, width, height), moments: OnceCell::new() }
+    pub fn new(bump_map: &'a BumpMap, (width, height): (u32, u32)) -> Self {
+        Self { rows: Area::new(bump_map, width, height), moments: OnceCell::new() }
     }
 
     /// Columns and rows of level 0.
@@ -33,7 +33,7 @@ impl<'a> Bumps<'a> {
     }
 
     /// Means and covariances of all levels, made by the first call.
-    pub fn moments(&self) -> &Pyramid<Area<&'a Relief>> {
+    pub fn moments(&self) -> &Pyramid<Area<&'a BumpMap>> {
         self.moments.get_or_init(|| Pyramid::new(self.rows))
     }
 

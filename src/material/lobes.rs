@@ -6,18 +6,18 @@ use crate::bump::{Moments, Offset, Shaped, ShapedMoments, normal_from_offset, sl
 use crate::codec::uastc::Effort;
 use crate::lobe::{Distribution, Family, OrientedLobe, SquaredAlpha};
 use crate::material::base::{Base, BaseRows, BaseTexel};
+use crate::material::bump_map::BumpMap;
 use crate::material::bumps::Bumps;
-use crate::material::relief::Relief;
 use crate::math::symmetric::Symmetric2;
 use crate::metric::{Footprint, Lobe, Part, Reference, overlaps, refine};
-use crate::mip::{Area, Coarser, Level, Pyramid, Rows, level_sizes};
+use crate::mip::{Area, Level, MipTail, Pyramid, Rows, level_sizes};
 use crate::settings::Settings;
 use crate::simd::map_row;
 
 /// Lobes of a material on the grid of its bumps.
 pub struct Lobes<'a> {
     finest: Finest<'a>,
-    coarser: Coarser<OrientedLobe>,
+    tail: MipTail<OrientedLobe>,
 }
 
 impl<'a> Lobes<'a> {
@@ -26,14 +26,14 @@ impl<'a> Lobes<'a> {
     /// factor. The best quality then fits them to the bumps' own distribution.
     pub fn new<'b: 'a>(base: &Base<'a>, bumps: &Bumps<'b>, slope_scale: f32, settings: &Settings) -> Self {
         let finest = Finest { base: base.finest().clone(), bumps: bumps.rows, slope_scale };
-        let folded = || finest.folded(base, bumps, settings).into();
-        let coarser = match (settings.distribution, settings.effort) {
-            (Distribution::Normal | Distribution::Uniform, _) => folded(),
+        let roughened = || finest.roughened(base, bumps, settings).into();
+        let tail = match (settings.distribution, settings.effort) {
+            (Distribution::Normal | Distribution::Uniform, _) => roughened(),
             (Distribution::Auto, effort) => {
                 let merged = match settings.family {
-                    Family::Ggx => Coarser::keeping(&finest, MOST_MERGED),
+                    Family::Ggx => MipTail::keeping(&finest, MOST_MERGED),
                     // Merging normal distributions by likelihood is adding moments.
-                    Family::Beckmann => folded(),
+                    Family::Beckmann => roughened(),
                 };
                 match effort {
                     Effort::Fast => merged,
@@ -41,7 +41,7 @@ impl<'a> Lobes<'a> {
                 }
             }
         };
-        Self { finest, coarser }
+        Self { finest, tail }
     }
 
     /// What offsets are multiplied by.
@@ -51,18 +51,18 @@ impl<'a> Lobes<'a> {
 
     /// Writes the lobes of row `y` of `level` to `out`.
     pub fn row(&self, level: usize, y: u32, out: &mut [OrientedLobe]) {
-        self.coarser.row(&self.finest, level, y, out);
+        self.tail.row(&self.finest, level, y, out);
     }
 
     /// Their squared alphas alone.
     pub fn squared_alphas(&self, level: usize, y: u32, out: &mut [SquaredAlpha]) {
-        self.coarser.with_row(&self.finest, level, y, |lobes| {
+        self.tail.with_row(&self.finest, level, y, |lobes| {
             out.iter_mut().zip(lobes).for_each(|(a, lobe)| *a = lobe.squared_alpha);
         });
     }
 
     /// Whether squared alphas of `level` are the material's own: bumps that are not resampled do not vary within a texel.
-    pub fn are_own(&self, level: usize) -> bool {
+    pub fn are_base(&self, level: usize) -> bool {
         level == 0 && self.finest.bumps.unchanged().is_some()
     }
 
@@ -70,7 +70,7 @@ impl<'a> Lobes<'a> {
     /// before scaling.
     pub fn offsets(&self, level: usize, y: u32, out: &mut [[f32; 2]]) {
         let scale = 1.0 / self.slope_scale();
-        self.coarser.with_row(&self.finest, level, y, |lobes| {
+        self.tail.with_row(&self.finest, level, y, |lobes| {
             map_row(
                 lobes.iter().map(|lobe| lobe.normal),
                 out,
@@ -85,7 +85,7 @@ impl<'a> Lobes<'a> {
 
     /// The single texel of the coarsest level.
     pub fn whole(&self) -> OrientedLobe {
-        self.coarser.whole(&self.finest)
+        self.tail.whole(&self.finest)
     }
 }
 
@@ -100,7 +100,7 @@ const FIT_SAMPLES: usize = 128;
 
 /// `merged` fitted to the lobes [`FIT_DEPTH`] levels finer (level 0 for levels 2 and 3) by the lobe error itself. Level 1
 /// stays as merged: four texels are too few to fit to.
-fn fitted(finest: &Finest<'_>, merged: &Coarser<OrientedLobe>, family: Family) -> Coarser<OrientedLobe> {
+fn fitted(finest: &Finest<'_>, merged: &MipTail<OrientedLobe>, family: Family) -> MipTail<OrientedLobe> {
     let sizes = level_sizes(finest.width(), finest.height());
     let row = |level, y, out: &mut [OrientedLobe]| merged.row(finest, level, y, out);
     let levels: Vec<_> = (1..sizes.len()).map(|level| fitted_level(&sizes, row, level, family)).collect();
@@ -153,7 +153,7 @@ fn judged(family: Family, lobe: &OrientedLobe) -> Lobe {
 /// Level 0.
 struct Finest<'a> {
     base: BaseRows<'a>,
-    bumps: Area<&'a Relief>,
+    bumps: Area<&'a BumpMap>,
     slope_scale: f32,
 }
 
@@ -165,12 +165,12 @@ impl Finest<'_> {
     }
 
     /// A row of round lobes over `relief`, whose texels are those of level 0: bumps do not vary within one.
-    fn round_row(&self, relief: &Relief, y: u32, out: &mut [OrientedLobe]) {
-        let mut greens = vec![0.0; out.len()];
-        self.base.greens(y, &mut greens);
-        relief.map_offsets(
+    fn isotropic_row(&self, bump_map: &BumpMap, y: u32, out: &mut [OrientedLobe]) {
+        let mut green = vec![0.0; out.len()];
+        self.base.green(y, &mut green);
+        bump_map.map_offsets(
             y,
-            greens.iter().copied(),
+            green.iter().copied(),
             out,
             |Offset { u, v }, green| {
                 let [x, y, z] = self.normal([u, v]);
@@ -183,13 +183,13 @@ impl Finest<'_> {
         );
     }
 
-    fn folded(&self, base: &Base<'_>, bumps: &Bumps<'_>, settings: &Settings) -> Vec<Level<OrientedLobe>> {
+    fn roughened(&self, base: &Base<'_>, bumps: &Bumps<'_>, settings: &Settings) -> Vec<Level<OrientedLobe>> {
         let levels = bumps.sizes().into_iter().enumerate().skip(1);
         match settings.distribution {
             Distribution::Auto => {
                 let moments = Pyramid::new(Shaped(bumps.rows));
                 let row = |level, y, out: &mut [ShapedMoments]| moments.row(level, y, out);
-                levels.map(|(level, size)| self.folded_level(level, size, base, row, settings)).collect()
+                levels.map(|(level, size)| self.roughened_level(level, size, base, row, settings)).collect()
             }
             Distribution::Normal | Distribution::Uniform => {
                 let moments = bumps.moments();
@@ -198,12 +198,12 @@ impl Finest<'_> {
                     moments.row(level, y, &mut plain);
                     out.iter_mut().zip(plain).for_each(|(shaped, m)| *shaped = ShapedMoments::normal(m));
                 };
-                levels.map(|(level, size)| self.folded_level(level, size, base, row, settings)).collect()
+                levels.map(|(level, size)| self.roughened_level(level, size, base, row, settings)).collect()
             }
         }
     }
 
-    fn folded_level(
+    fn roughened_level(
         &self,
         level: usize,
         (width, height): (u32, u32),
@@ -219,12 +219,12 @@ impl Finest<'_> {
             bumps(level, y as u32, &mut row);
             for ((lobe, texel), m) in out.iter_mut().zip(&own).zip(&row) {
                 // The correction depends on the ratio of both: widths are scaled instead of four orders of moments.
-                let own = own_lobe(texel);
+                let own = base_lobe(texel);
                 let unscaled = SquaredAlpha((1.0 / squared_scale) * own.0);
                 let corrected = settings.distribution.correct(m, unscaled, settings.family);
                 let Offset { u, v } = corrected.centre;
                 let centre = Offset { u: u * self.slope_scale, v: v * self.slope_scale };
-                *lobe = OrientedLobe::new(centre, own.fold(squared_scale * corrected.covariance));
+                *lobe = OrientedLobe::new(centre, own.roughen(squared_scale * corrected.covariance));
             }
         });
         Level { width, height, texels }
@@ -243,9 +243,9 @@ impl Rows for Finest<'_> {
     }
 
     fn row(&self, y: u32, out: &mut [OrientedLobe]) {
-        let relief = self.bumps.unchanged();
-        if let Some(relief) = relief.filter(|_| !self.base.is_elliptical()) {
-            return self.round_row(relief, y, out);
+        let bump_map = self.bumps.unchanged();
+        if let Some(bump_map) = bump_map.filter(|_| !self.base.is_anisotropic()) {
+            return self.isotropic_row(bump_map, y, out);
         }
         let point = |offsets: &[[f32; 2]], out: &mut [OrientedLobe]| {
             let normal = |offset| self.normal(offset);
@@ -253,10 +253,10 @@ impl Rows for Finest<'_> {
         };
         let (mut own, mut offsets) = (vec![BaseTexel::default(); out.len()], vec![[0.0; 2]; out.len()]);
         self.base.row(y, &mut own);
-        if let Some(relief) = relief {
-            relief.offsets(y, &mut offsets);
+        if let Some(bump_map) = bump_map {
+            bump_map.offsets(y, &mut offsets);
             point(&offsets, out);
-            out.iter_mut().zip(&own).for_each(|(lobe, texel)| lobe.squared_alpha = own_lobe(texel));
+            out.iter_mut().zip(&own).for_each(|(lobe, texel)| lobe.squared_alpha = base_lobe(texel));
             return;
         }
         let mut bumps = vec![Moments::default(); out.len()];
@@ -264,12 +264,12 @@ impl Rows for Finest<'_> {
         offsets.iter_mut().zip(&bumps).for_each(|(offset, m)| *offset = [m.mean.u, m.mean.v]);
         point(&offsets, out);
         for ((lobe, texel), m) in out.iter_mut().zip(&own).zip(&bumps) {
-            lobe.squared_alpha = own_lobe(texel).fold(m.covariance.scaled([self.slope_scale; 2]));
+            lobe.squared_alpha = base_lobe(texel).roughen(m.covariance.scaled([self.slope_scale; 2]));
         }
     }
 }
 
 /// The material's own lobe in a texel.
-pub fn own_lobe(texel: &BaseTexel) -> SquaredAlpha {
+pub fn base_lobe(texel: &BaseTexel) -> SquaredAlpha {
     SquaredAlpha(Symmetric2::new(texel[0], texel[1], texel[2]))
 }

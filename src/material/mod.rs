@@ -2,21 +2,21 @@
 //! that hold them. This module knows neither documents nor files.
 
 mod base;
+mod bump_map;
 mod bumps;
-mod chain;
-mod fold;
 mod lobes;
+mod mip_chain;
 mod normals;
 pub(crate) mod notes;
 mod pyramids;
-mod relief;
+mod roughening;
 
 pub use base::{Base, BaseAnisotropy, BaseLevels, BaseRows};
+pub use bump_map::{BumpMap, Framed, Reading};
 pub use bumps::Bumps;
-pub(crate) use chain::EDGE;
-pub use chain::{Chain, Encoding, GridError, LevelRow, encode_chain, grid, kept_bytes};
-pub use fold::Fold;
-pub use lobes::own_lobe;
+pub use lobes::base_lobe;
+pub(crate) use mip_chain::EDGE;
+pub use mip_chain::{Encoding, GridError, LevelRow, MipChain, encode_mip_chain, grid, kept_bytes};
 pub use normals::Normals;
 pub use pyramids::{Quantity, Range, Ranged, bake_quantity, filter_loss, quantity_rows, range_of};
-pub use relief::{Framed, Reading, Relief};
+pub use roughening::Roughening;

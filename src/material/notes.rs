@@ -2,8 +2,8 @@
 
 use crate::bump::{MAX_SLOPE, Outliers};
 use crate::image::Format;
-use crate::material::fold::Fold;
-use crate::material::relief::Relief;
+use crate::material::bump_map::BumpMap;
+use crate::material::roughening::Roughening;
 use crate::math::symmetric::Symmetric2;
 use crate::mip::Rows;
 use crate::settings::Model;
@@ -27,11 +27,11 @@ const ROUNDED: f32 = 0.05;
 const FILTERED: f32 = 0.1;
 
 /// Of a bump map that is baked on a grid of `grid` (columns, rows).
-pub fn of_relief(relief: &Relief, grid: (u32, u32)) -> Vec<String> {
+pub fn of_bump_map(bump_map: &BumpMap, grid: (u32, u32)) -> Vec<String> {
     let mut notes = Vec::new();
-    let (width, height) = (relief.width(), relief.height());
+    let (width, height) = (bump_map.width(), bump_map.height());
     let texels = u64::from(width) * u64::from(height);
-    let Outliers { steep, below } = relief.outliers();
+    let Outliers { steep, below } = bump_map.outliers();
     if steep > 0 {
         notes.push(format!("{steep} of {texels} texels are steeper than {MAX_SLOPE}: taken as that steep"));
     }
@@ -61,15 +61,15 @@ pub fn of_factor(loss: f32) -> Option<String> {
 }
 
 /// Of bumps folded into a lobe; `noise` is the covariance of slopes that rounding alone makes.
-pub fn of_fold(fold: &Fold<'_>, model: Model, noise: Symmetric2) -> Vec<String> {
+pub fn of_roughening(roughening: &Roughening<'_>, model: Model, noise: Symmetric2) -> Vec<String> {
     let mut notes = Vec::new();
-    let too_wide = fold.texels_above_one(model);
+    let too_wide = roughening.texels_above_one(model);
     if too_wide > 0 {
         notes.push(format!(
             "about {too_wide} texels over all levels are rougher than an engine can show: alpha is clamped to 1"
         ));
     }
-    let noise = fold.noise_loss(noise);
+    let noise = roughening.noise_loss(noise);
     if noise > ROUNDED {
         notes.push(format!(
             "the depth of the bump map is too small for so smooth a surface: rounding alone moves its lobes by {noise:.3}; \
@@ -77,7 +77,7 @@ pub fn of_fold(fold: &Fold<'_>, model: Model, noise: Symmetric2) -> Vec<String> 
         ));
     }
     if model == Model::Anisotropic {
-        let opposed = fold.opposed_share();
+        let opposed = roughening.opposed_share();
         if opposed > OPPOSED {
             notes.push(format!(
                 "{:.1} % of the directions of anisotropy point away from a neighbour's, as where axes turn all the way \

@@ -7,7 +7,7 @@ use crate::bump::{Moments, ShapedMoments};
 use crate::codec::EncodeError;
 use crate::lobe::SquaredAlpha;
 use crate::lobe::{Factor, lambda_1};
-use crate::material::chain::{Chain, Encoding, encode_chain};
+use crate::material::mip_chain::{Encoding, MipChain, encode_mip_chain};
 use crate::mip::{Pyramid, Rows};
 use crate::settings::Settings;
 
@@ -60,7 +60,7 @@ impl Range {
 /// A texture of the pyramid profile.
 pub struct Ranged {
     /// The encoded levels.
-    pub chain: Chain,
+    pub mip_chain: MipChain,
     /// What its texels stand for.
     pub range: Range,
 }
@@ -113,8 +113,8 @@ where
     R: Rows<Texel = Moments>,
 {
     let range = range_of(moments, quantity, encoding);
-    let chain = encode_chain(&moments.sizes(), encoding, &quantity_rows(moments, quantity, &range))?;
-    Ok(Ranged { chain, range })
+    let mip_chain = encode_mip_chain(&moments.sizes(), encoding, &quantity_rows(moments, quantity, &range))?;
+    Ok(Ranged { mip_chain, range })
 }
 
 /// The range of a quantity. Integer formats use the smallest that holds every level that is written.

@@ -30,4 +30,4 @@ pub use peers::Peer;
 pub use reference::{Reference, SAMPLES};
 pub use refine::refine;
 pub use score::{Decoded, mean_errors, sample_texels, shown_lobe, shown_normal, with_z};
-pub use survey::{GroundRow, Precision, Site, survey};
+pub use survey::{Level0Row, Precision, Site, survey};

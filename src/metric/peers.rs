@@ -78,14 +78,14 @@ impl Peer {
     pub fn lobe(self, family: Family, m: &FootprintMoments) -> Lobe {
         let [uu, uv, vv] = m.base;
         let a2 = (uu * vv - uv * uv).max(0.0).sqrt();
-        let folded = |[ku, kv, kw]: [f64; 3]| at_most_one([uu + 2.0 * ku, uv + 2.0 * kv, vv + 2.0 * kw]);
+        let roughened = |[ku, kv, kw]: [f64; 3]| at_most_one([uu + 2.0 * ku, uv + 2.0 * kv, vv + 2.0 * kw]);
         match self {
-            Self::D => Lobe::new(family, m.slope_normal(), folded(m.covariance)),
-            Self::LeanHalf => lean(family, m, &folded, |v| {
+            Self::D => Lobe::new(family, m.slope_normal(), roughened(m.covariance)),
+            Self::LeanHalf => lean(family, m, &roughened, |v| {
                 let largest = f64::from(f16::MAX);
                 f16::from_f64(v.clamp(-largest, largest)).to_f64()
             }),
-            Self::LeanFloat => lean(family, m, &folded, |v| f64::from(v as f32)),
+            Self::LeanFloat => lean(family, m, &roughened, |v| f64::from(v as f32)),
             Self::Lambda1 => {
                 let [ku, kv, kw] = m.covariance;
                 let larger = 0.5 * (ku + kw) + (0.25 * (ku - kw) * (ku - kw) + kv * kv).sqrt();
@@ -129,14 +129,14 @@ impl Peer {
 fn lean(
     family: Family,
     m: &FootprintMoments,
-    folded: &dyn Fn([f64; 3]) -> [f64; 3],
+    roughened: &dyn Fn([f64; 3]) -> [f64; 3],
     store: impl Fn(f64) -> f64,
 ) -> Lobe {
     let [u, v] = m.mean.map(&store);
     let [uu, uv, vv] = m.second.map(&store);
     let (ku, kw) = ((uu - u * u).max(0.0), (vv - v * v).max(0.0));
     let bound = (ku * kw).sqrt();
-    Lobe::new(family, [-u, -v, 1.0], folded([ku, (uv - u * v).clamp(-bound, bound), kw]))
+    Lobe::new(family, [-u, -v, 1.0], roughened([ku, (uv - u * v).clamp(-bound, bound), kw]))
 }
 
 /// `a` with eigenvalues above 1 brought down to it.

@@ -18,7 +18,7 @@ pub struct Precision {
     /// Texels of a level.
     pub texels: usize,
     /// Level-0 texels that are drawn from all their footprints together, where there are more.
-    pub ground: u32,
+    pub level0: u32,
     /// Parts of a footprint after clumping.
     pub parts: usize,
     /// Half-vectors for all texels together, at most 2048 for one.
@@ -28,7 +28,7 @@ pub struct Precision {
 impl Precision {
     /// For a default bake: mean errors per level within about 0.01 of the full judge (`examples/survey.rs`: 0.0066, root mean square;
     /// with twice the ground 0.0056, where the choice of texels makes 0.018 of either).
-    pub const QUICK: Self = Self { texels: 64, ground: 1 << 16, parts: 256, half_vectors: 8192 };
+    pub const QUICK: Self = Self { texels: 64, level0: 1 << 16, parts: 256, half_vectors: 8192 };
 
     fn samples(&self, texels: usize) -> usize {
         (self.half_vectors / texels.max(1)).clamp(1, 2048)
@@ -36,7 +36,7 @@ impl Precision {
 
     /// Rows, and columns of each, that are drawn from one of `texels` footprints.
     fn grid(&self, texels: usize) -> u32 {
-        (self.ground / texels.max(1) as u32).isqrt().clamp(1, 256)
+        (self.level0 / texels.max(1) as u32).isqrt().clamp(1, 256)
     }
 }
 
@@ -53,7 +53,7 @@ pub struct Site {
 }
 
 /// A texel to be judged.
-struct Place {
+struct SamplePoint {
     level: usize,
     size: (u32, u32),
     texel: (u32, u32),
@@ -64,7 +64,7 @@ struct Place {
 }
 
 /// Writes a row of level-0 texels.
-pub type GroundRow<'a> = dyn Fn(u32, &mut [OrientedLobe]) + Sync + 'a;
+pub type Level0Row<'a> = dyn Fn(u32, &mut [OrientedLobe]) + Sync + 'a;
 
 /// The judged texels of `levels` of a chain with `sizes`, whose texels have lobes of `family`, level by level: always the same ones. `row` is read once for
 /// each row of level 0 that is needed. Depends on neither machine nor threads.
@@ -73,26 +73,26 @@ pub fn survey(
     levels: Range<usize>,
     family: Family,
     precision: Precision,
-    row: &GroundRow<'_>,
+    row: &Level0Row<'_>,
 ) -> Vec<Site> {
     let Some(&whole) = sizes.first() else { return Vec::new() };
-    let mut places = Vec::new();
+    let mut points = Vec::new();
     for level in levels {
         let Some(&size) = sizes.get(level) else { break };
         let texels = sample_texels(size, precision.texels);
         let (grid, samples) = (precision.grid(texels.len()), precision.samples(texels.len()));
-        let place = |(index, texel)| Place { level, size, texel, grid, samples, index };
-        places.extend(texels.into_iter().enumerate().map(place));
+        let point = |(index, texel)| SamplePoint { level, size, texel, grid, samples, index };
+        points.extend(texels.into_iter().enumerate().map(point));
     }
     // All rows of level 0 that some texel covers, with the texels.
     let mut rows: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
-    for (index, place) in places.iter().enumerate() {
-        for (row, _) in place.rows(whole) {
+    for (index, point) in points.iter().enumerate() {
+        for (row, _) in point.rows(whole) {
             rows.entry(row).or_default().push(index);
         }
     }
     let rows: Vec<(u32, Vec<usize>)> = rows.into_iter().collect();
-    let counts: Vec<usize> = places.iter().map(|place| place.columns(whole, 0).len()).collect();
+    let counts: Vec<usize> = points.iter().map(|point| point.columns(whole, 0).len()).collect();
     // Lobes alone: as parts, with their shares and in double precision, one list for each texel, they cost a bake of 4096 x 4096
     // 14 000 page faults more (`perf stat -e page-faults`).
     let drawn: Vec<Vec<OrientedLobe>> = rows
@@ -103,13 +103,13 @@ pub fn survey(
                 row(*y, lobes);
                 let mut drawn = Vec::with_capacity(users.iter().map(|index| counts[*index]).sum());
                 for index in users {
-                    drawn.extend(places[*index].columns(whole, *y).iter().map(|(column, _)| lobes[*column as usize]));
+                    drawn.extend(points[*index].columns(whole, *y).iter().map(|(column, _)| lobes[*column as usize]));
                 }
                 drawn
             },
         )
         .collect();
-    let mut strips: Vec<Vec<&[OrientedLobe]>> = places.iter().map(|_| Vec::new()).collect();
+    let mut strips: Vec<Vec<&[OrientedLobe]>> = points.iter().map(|_| Vec::new()).collect();
     for ((_, users), mut drawn) in rows.iter().zip(drawn.iter().map(Vec::as_slice)) {
         for index in users {
             let (strip, rest) = drawn.split_at(counts[*index]);
@@ -117,19 +117,19 @@ pub fn survey(
             drawn = rest;
         }
     }
-    let site = |(place, strips): (&Place, Vec<&[OrientedLobe]>)| {
-        let parts = place.rows(whole).into_iter().zip(strips).flat_map(|((y, share), strip)| {
-            let columns = place.columns(whole, y).into_iter().zip(strip);
+    let site = |(point, strips): (&SamplePoint, Vec<&[OrientedLobe]>)| {
+        let parts = point.rows(whole).into_iter().zip(strips).flat_map(|((y, share), strip)| {
+            let columns = point.columns(whole, y).into_iter().zip(strip);
             columns.map(move |((_, weight), lobe)| part(lobe, share * weight))
         });
         let footprint = clumped(parts.collect(), precision.parts)?;
-        let reference = Reference::continued(family, &footprint, place.samples, place.index * place.samples);
-        Some(Site { level: place.level, texel: place.texel, footprint, reference })
+        let reference = Reference::continued(family, &footprint, point.samples, point.index * point.samples);
+        Some(Site { level: point.level, texel: point.texel, footprint, reference })
     };
-    places.par_iter().zip(strips).filter_map(site).collect()
+    points.par_iter().zip(strips).filter_map(site).collect()
 }
 
-impl Place {
+impl SamplePoint {
     /// Rows of level 0, which has the size `whole`, that are drawn from the texel, top to bottom, with their shares.
     fn rows(&self, whole: (u32, u32)) -> Vec<(u32, f64)> {
         drawn(whole.1, self.size.1, self.texel.1, self.grid, self.level)

@@ -11,7 +11,7 @@ fn slope(x: u32, y: u32) -> [f32; 2] {
 
 const SIDE: u32 = 96;
 
-fn ground(y: u32, out: &mut [OrientedLobe]) {
+fn level0(y: u32, out: &mut [OrientedLobe]) {
     for (x, lobe) in (0..).zip(out) {
         let [u, v] = slope(x, y);
         *lobe = OrientedLobe::new(Offset { u, v }, SquaredAlpha::isotropic(Alpha(0.15)));
@@ -82,7 +82,7 @@ fn clumps_keep_directions_apart() {
 #[test]
 fn surveys_agree_with_the_full_judge() {
     let (surface, sizes) = (surface(), crate::mip::level_sizes(SIDE, SIDE));
-    let sites = survey(&sizes, 1..sizes.len(), Family::Ggx, Precision::QUICK, &ground);
+    let sites = survey(&sizes, 1..sizes.len(), Family::Ggx, Precision::QUICK, &level0);
     for (level, &size) in sizes.iter().enumerate().skip(1) {
         let lobes = |footprint: &Footprint| {
             [Peer::PlainMips, Peer::CorrectedVmf, Peer::D].map(|peer| peer.lobe(Family::Ggx, &footprint.moments()))
@@ -106,7 +106,7 @@ fn surveys_do_not_depend_on_threads_and_begin_where_asked() {
     let sizes = crate::mip::level_sizes(SIDE, SIDE);
     let on = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| survey(&sizes, 2..5, Family::Ggx, Precision::QUICK, &ground))
+        pool.install(|| survey(&sizes, 2..5, Family::Ggx, Precision::QUICK, &level0))
     };
     let (one, three) = (on(1), on(3));
     assert_eq!(one.len(), three.len());
@@ -115,7 +115,7 @@ fn surveys_do_not_depend_on_threads_and_begin_where_asked() {
         assert_eq!((a.reference.points(), a.reference.densities()), (b.reference.points(), b.reference.densities()));
     }
     assert!(one.iter().all(|s| (2..5).contains(&s.level)));
-    assert!(survey(&sizes, 40..50, Family::Ggx, Precision::QUICK, &ground).is_empty());
+    assert!(survey(&sizes, 40..50, Family::Ggx, Precision::QUICK, &level0).is_empty());
 }
 
 #[test]

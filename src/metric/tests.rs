@@ -153,8 +153,9 @@ fn folding_normal_slopes_under_beckmann_is_exact() {
     for [u, v] in [[0.02, 0.02], [0.03, 0.01]] {
         let alpha = 0.02;
         let bumpy = normal_footprint(0.0, [u, v], circle(alpha));
-        let folded = Lobe::new(Family::Beckmann, UP, [alpha * alpha + 2.0 * u * u, 0.0, alpha * alpha + 2.0 * v * v]);
-        let found = error(Family::Beckmann, &bumpy, &folded);
+        let roughened =
+            Lobe::new(Family::Beckmann, UP, [alpha * alpha + 2.0 * u * u, 0.0, alpha * alpha + 2.0 * v * v]);
+        let found = error(Family::Beckmann, &bumpy, &roughened);
         assert!(found < 2e-3, "{found}");
         // Not so without the factor of 2, or with another one.
         let half = Lobe::new(Family::Beckmann, UP, [alpha * alpha + u * u, 0.0, alpha * alpha + v * v]);

@@ -1,4 +1,4 @@
-//! Coarser levels: kept, or made anew whenever they are read.
+//! MipTail levels: kept, or made anew whenever they are read.
 
 use fearless_simd::Level as InstructionSet;
 
@@ -7,7 +7,7 @@ use crate::mip::merge::Merge;
 use crate::mip::reduce::{Level, Taps, build, level_size, level_sizes, reduce_row};
 
 /// Levels 1 and coarser of a source, which is handed in to read them.
-pub struct Coarser<T> {
+pub struct MipTail<T> {
     /// How many levels are too large to be kept.
     passing: usize,
     kept: Vec<Level<T>>,
@@ -17,7 +17,7 @@ pub struct Coarser<T> {
 /// costs time, keeping it memory.
 const MOST_KEPT: u64 = 1 << 22;
 
-impl<T: Merge> Coarser<T> {
+impl<T: Merge> MipTail<T> {
     /// The full chain over `source`.
     pub fn new(source: &impl Rows<Texel = T>) -> Self {
         Self::keeping(source, MOST_KEPT)
@@ -60,7 +60,7 @@ impl<T: Merge> Coarser<T> {
     }
 }
 
-impl<T> From<Vec<Level<T>>> for Coarser<T> {
+impl<T> From<Vec<Level<T>>> for MipTail<T> {
     fn from(kept: Vec<Level<T>>) -> Self {
         Self { passing: 0, kept }
     }

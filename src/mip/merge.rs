@@ -109,7 +109,7 @@ where
 
     #[inline(always)]
     fn merged<F: Real, const MOST: usize>(weights: &[F], parts: &[[F; N]]) -> [F; N] {
-        let mut sum = [weights[0].like(0.0); N];
+        let mut sum = [weights[0].splat_like(0.0); N];
         for (w, part) in weights.iter().zip(parts) {
             for i in 0..N {
                 sum[i] = sum[i] + *w * part[i];

@@ -9,7 +9,7 @@ mod reduce;
 mod resample;
 mod wrap;
 
-pub use levels::Coarser;
+pub use levels::MipTail;
 pub(crate) use merge::MAX_PARTS;
 pub use merge::{Merge, Numbers};
 pub use reduce::{Level, build, level_size, level_sizes};
@@ -51,14 +51,14 @@ impl<R: Rows> Rows for &R {
 /// A source with all its coarser levels. Level 0 is read from the source whenever it is needed.
 pub struct Pyramid<R: Rows> {
     source: R,
-    coarser: Coarser<R::Texel>,
+    tail: MipTail<R::Texel>,
 }
 
 impl<R: Rows> Pyramid<R> {
     /// The full chain over `source`.
     pub fn new(source: R) -> Self {
-        let coarser = Coarser::new(&source);
-        Self { source, coarser }
+        let tail = MipTail::new(&source);
+        Self { source, tail }
     }
 
     /// Level 0.
@@ -73,12 +73,12 @@ impl<R: Rows> Pyramid<R> {
 
     /// Writes row `y` of `level` to `out`.
     pub fn row(&self, level: usize, y: u32, out: &mut [R::Texel]) {
-        self.coarser.row(&self.source, level, y, out);
+        self.tail.row(&self.source, level, y, out);
     }
 
     /// The single texel of the coarsest level.
     pub fn whole(&self) -> R::Texel {
-        self.coarser.whole(&self.source)
+        self.tail.whole(&self.source)
     }
 }
 

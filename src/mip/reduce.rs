@@ -66,10 +66,10 @@ pub fn build<R: Rows>(source: &R) -> Vec<Level<R::Texel>> {
     let sizes = level_sizes(source.width(), source.height());
     let mut levels: Vec<Level<R::Texel>> = Vec::with_capacity(sizes.len());
     while levels.len() + 1 < sizes.len() {
-        let coarser = &sizes[levels.len() + 1..];
+        let tail = &sizes[levels.len() + 1..];
         let next = match levels.last() {
-            None => reduce(source, coarser),
-            Some(finer) => reduce(finer, coarser),
+            None => reduce(source, tail),
+            Some(finer) => reduce(finer, tail),
         };
         levels.extend(next);
     }
@@ -98,7 +98,7 @@ fn reduce<R: Rows>(finer: &R, sizes: &[(u32, u32)]) -> Vec<Level<R::Texel>> {
     parts.into_par_iter().enumerate().for_each_init(
         || vec![R::Texel::default(); fine_width * MAX_TAPS],
         |rows, (band, mut levels)| {
-            let (first, coarser) = levels.split_at_mut(1);
+            let (first, tail) = levels.split_at_mut(1);
             let first = &mut *first[0];
             let height = first.len() / sizes[0].0 as usize;
             for (y, out) in first.chunks_exact_mut(sizes[0].0 as usize).enumerate() {
@@ -111,7 +111,7 @@ fn reduce<R: Rows>(finer: &R, sizes: &[(u32, u32)]) -> Vec<Level<R::Texel>> {
             // Only even heights are fused beyond the first level.
             let down = Taps::new(2, 0);
             let mut above: &[R::Texel] = first;
-            for (level, texels) in coarser.iter_mut().enumerate() {
+            for (level, texels) in tail.iter_mut().enumerate() {
                 let (fine, coarse) = (sizes[level].0 as usize, sizes[level + 1].0 as usize);
                 for (rows, out) in above.chunks_exact(2 * fine).zip(texels.chunks_exact_mut(coarse)) {
                     reduce_row(simd, rows, fine, &down, out);
@@ -188,7 +188,7 @@ pub(super) struct Taps {
 }
 
 impl Taps {
-    /// Coarser texel `i` of an axis of `size` finer texels covers [i, i + 1) * size / level_size(size).
+    /// MipTail texel `i` of an axis of `size` finer texels covers [i, i + 1) * size / level_size(size).
     pub fn new(size: u32, i: u32) -> Self {
         match (size, size % 2) {
             (1, _) => Self { first: 0, count: 1, weights: [1.0, 0.0, 0.0] },

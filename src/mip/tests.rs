@@ -40,9 +40,9 @@ fn total(level: &Level<Moments>) -> ([f64; 2], [f64; 3]) {
 fn assert_total_variance_is_kept(width: u32, height: u32) {
     let source = level(width, height, u64::from(width * 65_537 + height));
     let (mean_0, k_0) = total(&source);
-    for coarser in build(&source) {
-        let (mean, k) = total(&coarser);
-        let place = (width, height, coarser.width, coarser.height);
+    for tail in build(&source) {
+        let (mean, k) = total(&tail);
+        let place = (width, height, tail.width, tail.height);
         assert!((mean[0] - mean_0[0]).abs() <= 1e-5 * mean_0[0].abs(), "{place:?}");
         assert!((mean[1] - mean_0[1]).abs() <= 1e-5 * k_0[2].sqrt(), "{place:?}");
         let spread = k_0[0] + k_0[2];
@@ -124,9 +124,9 @@ fn every_texel_matches_the_oracle() {
     // High enough for several levels in one pass.
     for (width, height) in small.into_iter().chain([(34, 256), (4, 512)]) {
         let source = level(width, height, 7);
-        for coarser in build(&source) {
-            let expected = oracle(&source, coarser.width, coarser.height);
-            for (t, (mean, k)) in coarser.texels.iter().zip(expected) {
+        for tail in build(&source) {
+            let expected = oracle(&source, tail.width, tail.height);
+            for (t, (mean, k)) in tail.texels.iter().zip(expected) {
                 assert!((f64::from(t.mean.u) - mean[0]).abs() < 2e-6 * 3.0);
                 assert!((f64::from(t.mean.v) - mean[1]).abs() < 1e-6);
                 let bound = 2e-5 * (k[0] + k[2]) + 1e-9;
@@ -140,8 +140,8 @@ fn every_texel_matches_the_oracle() {
 
 #[test]
 fn covariances_are_positive_semidefinite() {
-    for coarser in build(&level(61, 37, 3)) {
-        for t in &coarser.texels {
+    for tail in build(&level(61, 37, 3)) {
+        for t in &tail.texels {
             let k = t.covariance;
             assert!(k.uu >= 0.0 && k.vv >= 0.0);
             assert!(k.uv * k.uv <= k.uu * k.vv * (1.0 + 1e-5), "{k:?}");
@@ -270,7 +270,7 @@ fn levels_that_are_not_kept_have_the_same_bits() {
         let source = level(width, height, 3);
         let all = build(&source);
         for most in [0, 1, 100, 300] {
-            let some = Coarser::keeping(&source, most);
+            let some = MipTail::keeping(&source, most);
             for (level, expected) in [&source].into_iter().chain(&all).enumerate() {
                 let mut found = vec![Moments::default(); expected.texels.len()];
                 for (y, row) in found.chunks_exact_mut(expected.width as usize).enumerate() {

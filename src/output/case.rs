@@ -6,6 +6,6 @@ use std::path::{Path, PathBuf};
 /// Returns `path` in lower case: paths with the same result are one file on Windows and macOS. Letters that are composed in
 /// different ways (NFC and NFD) are not taken for the same. A name that is not UTF-8 stays as it is.
 pub fn case_folded(path: &Path) -> PathBuf {
-    let folded = |name: &OsStr| name.to_str().map_or_else(|| name.to_owned(), |name| name.to_lowercase().into());
-    path.components().map(|part| -> OsString { folded(part.as_os_str()) }).collect()
+    let roughened = |name: &OsStr| name.to_str().map_or_else(|| name.to_owned(), |name| name.to_lowercase().into());
+    path.components().map(|part| -> OsString { roughened(part.as_os_str()) }).collect()
 }

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use super::case::case_folded;
 use super::error::PublishError;
-use super::place::Place;
+use super::path::OutputPath;
 use super::real::real;
 use super::sweep::sweep;
 
@@ -67,7 +67,7 @@ impl Guard {
     ///
     /// # Errors
     /// [`PublishError`] where it is a source or an output of the run, or no file.
-    pub fn place(&mut self, path: &Path) -> Result<Place, PublishError> {
+    pub fn place(&mut self, path: &Path) -> Result<OutputPath, PublishError> {
         let failed = |error| PublishError::Write { path: path.to_owned(), error };
         let file = self.real_file(path).map_err(failed)?;
         // Systems that ignore case know the file by one name. A link is replaced, not what it names.
@@ -84,7 +84,7 @@ impl Guard {
         }
         check_replaceable(path)?;
         self.taken.insert(case_folded(&file), Taken { path: file.clone(), source: file });
-        Ok(Place::new(path))
+        Ok(OutputPath::new(path))
     }
 
     /// Keeps the place `path` for a copy of `source`, or for the output itself, which is there from an earlier run. Returns

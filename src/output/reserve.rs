@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::error::PublishError;
 use super::guard::Guard;
-use super::place::Place;
+use super::path::OutputPath;
 use super::write::{Staged, show};
 use crate::input_file::check_file;
 
@@ -27,11 +27,11 @@ pub struct Outputs<'a> {
 #[derive(Debug)]
 pub struct Reserved {
     /// Of copies.
-    pub copies: Vec<Place>,
+    pub copies: Vec<OutputPath>,
     /// Of new files.
-    pub files: Vec<Place>,
+    pub files: Vec<OutputPath>,
     /// Of the document.
-    pub document: Place,
+    pub document: OutputPath,
     new_folders: Vec<PathBuf>,
 }
 
@@ -86,9 +86,9 @@ impl Guard {
             named.iter().map(PathBuf::as_path).chain([document]).flat_map(missing).collect();
         new_folders.sort();
         new_folders.dedup();
-        let places = |paths: &[PathBuf]| paths.iter().map(|path| Place::new(path)).collect();
+        let places = |paths: &[PathBuf]| paths.iter().map(|path| OutputPath::new(path)).collect();
         let (copies, files) = named.split_at(copies.len());
-        Ok(Reserved { copies: places(copies), files: places(files), document: Place::new(document), new_folders })
+        Ok(Reserved { copies: places(copies), files: places(files), document: OutputPath::new(document), new_folders })
     }
 }
 

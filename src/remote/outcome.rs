@@ -13,7 +13,7 @@ pub struct Errand<'a> {
     pub folder: &'a Folder,
     /// Whether a job may be run.
     pub check: &'a (dyn Fn(&Job) -> Result<(), RunError> + Sync),
-    /// Told when numbers change.
+    /// PartReport when numbers change.
     pub changed: &'a (dyn Fn(Counts) + Sync),
 }
 

@@ -23,7 +23,7 @@ pub struct Picture {
     pub coverage: Vec<f32>,
 }
 
-/// Told the share of the work that is done, from any thread.
+/// PartReport the share of the work that is done, from any thread.
 pub type Advance<'a> = &'a (dyn Fn(f32) + Sync);
 
 /// Places in a pixel at which hardware looks for edges, along each side.

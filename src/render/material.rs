@@ -46,7 +46,7 @@ pub enum Bumps {
 #[derive(Clone, Debug, PartialEq)]
 pub enum LostBumps {
     /// Nowhere, or folded into the material's own roughness.
-    Folded,
+    RoughenedTextures,
     /// The pyramid profile's D, and the correction factor.
     Factor(Ranged, f64),
     /// The pyramid profile's lambda_1, and the correction factor.
@@ -55,7 +55,7 @@ pub enum LostBumps {
 
 /// `KHR_materials_anisotropy`.
 #[derive(Clone, Debug, PartialEq)]
-pub struct OwnAnisotropy {
+pub struct BaseAnisotropy {
     /// Direction in red and green, strength in blue; along (1, 0) with full strength when absent.
     pub texture: Option<Texture>,
     /// Multiplies the strength.
@@ -74,7 +74,7 @@ pub struct Material {
     /// Multiplies the roughness.
     pub roughness_factor: f64,
     /// Its own anisotropy.
-    pub anisotropy: Option<OwnAnisotropy>,
+    pub anisotropy: Option<BaseAnisotropy>,
     /// Bumps that filtering removed, where the shader adds them.
     pub lost: LostBumps,
 }
@@ -105,7 +105,7 @@ impl Material {
         };
         // A' = A + 2 c K, after filtering: D and lambda_1 are what the sampler averages (DESIGN section 3, "Lobes").
         let lost = match &self.lost {
-            LostBumps::Folded => Symmetric2::ZERO,
+            LostBumps::RoughenedTextures => Symmetric2::ZERO,
             LostBumps::Factor(ranged, c) => {
                 let [d1, d2, d3] = ranged.value(read(&ranged.texture)).map(|d| d as f32);
                 (2.0 * *c as f32) * Factor { d1, d2, d3 }.covariance()
@@ -116,16 +116,16 @@ impl Material {
                 Symmetric2::diagonal(squared, squared)
             }
         };
-        let a = self.own_lobe(read) + lost;
+        let a = self.base_lobe(read) + lost;
         Point { normal: normalised(normal), squared_alpha: [a.uu, a.uv, a.vv].map(f64::from) }
     }
 
-    fn own_lobe(&self, read: &dyn Fn(&Texture) -> [f64; 4]) -> Symmetric2 {
+    fn base_lobe(&self, read: &dyn Fn(&Texture) -> [f64; 4]) -> Symmetric2 {
         let roughness = self.roughness.as_ref().map_or(1.0, |t| read(t)[1]) * self.roughness_factor;
         let roughness = Roughness(roughness.clamp(0.0, 1.0) as f32);
         let (direction, strength) = match &self.anisotropy {
             None => ([1.0, 0.0], 0.0),
-            Some(OwnAnisotropy { texture, strength, rotation: [cos, sin] }) => {
+            Some(BaseAnisotropy { texture, strength, rotation: [cos, sin] }) => {
                 // The texel that glTF defines for a material without an anisotropy texture.
                 let texel = texture.as_ref().map_or([1.0, 0.5, 1.0, 1.0], read);
                 let [x, y, _] = decoded(texel);
@@ -189,8 +189,8 @@ mod tests {
             bumps: Bumps::Normals { texture: constant([0.8, 0.5, 0.9, 1.0]), scale: 0.5, has_z: true },
             roughness: None,
             roughness_factor: 0.5,
-            anisotropy: Some(OwnAnisotropy { texture: None, strength: (1f64 / 3.0).sqrt(), rotation: [0.0, 1.0] }),
-            lost: LostBumps::Folded,
+            anisotropy: Some(BaseAnisotropy { texture: None, strength: (1f64 / 3.0).sqrt(), rotation: [0.0, 1.0] }),
+            lost: LostBumps::RoughenedTextures,
         };
         let point = material.point(&read);
         assert!((point.normal[0] - 0.3 / (0.09f64 + 0.64).sqrt()).abs() < 1e-6, "{point:?}");

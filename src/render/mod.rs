@@ -27,7 +27,7 @@ pub use difference::{Difference, relative_l1};
 pub use draw::{Advance, Picture, Supersampled, filtered, supersampled};
 pub use environment::{Environment, Radiance, Surroundings};
 pub use highlight::highlight;
-pub use material::{Bumps, LostBumps, Material, OwnAnisotropy, Point, Ranged};
+pub use material::{BaseAnisotropy, Bumps, LostBumps, Material, Point, Ranged};
 pub use sampler::{Filter, Footprint, Texel, Texture};
 pub use scene::{Light, Scene, Subject};
 pub use shade::{EnvironmentFilter, Reflection, Shader, View};

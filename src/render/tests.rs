@@ -24,7 +24,7 @@ fn flat(roughness: f64) -> Material {
         roughness: None,
         roughness_factor: roughness,
         anisotropy: None,
-        lost: LostBumps::Folded,
+        lost: LostBumps::RoughenedTextures,
     }
 }
 
@@ -105,7 +105,7 @@ fn taps_along_the_ellipse_beat_one_level_on_an_anisotropic_lobe() {
     let stripes = Scene { light: None, ..scene(32, Surroundings::Stripes) };
     for rotation in [[1.0, 0.0], [0.0, 1.0], [0.8, 0.6]] {
         let brushed =
-            Material { anisotropy: Some(OwnAnisotropy { texture: None, strength: 0.4, rotation }), ..flat(0.15) };
+            Material { anisotropy: Some(BaseAnisotropy { texture: None, strength: 0.4, rotation }), ..flat(0.15) };
         let of = |filter| error(&stripes, &brushed, &Shader { filter, ..METAL }, &brushed, 256);
         let (ellipse, lambda_1) = (of(EnvironmentFilter::Ellipse), of(EnvironmentFilter::Lambda1));
         assert!(ellipse < 0.75 * lambda_1, "{rotation:?}: {ellipse} {lambda_1}");

@@ -10,7 +10,7 @@ pub struct Evidence {
     /// The same if alphas above 1 could be shown.
     pub unclamped: f64,
     /// The same with an ellipse in a circle's place, where the candidate has circles and the layer can have no ellipse.
-    pub ellipse: Option<f64>,
+    pub anisotropic: Option<f64>,
     /// Error of the best single lobe.
     pub oracle: f64,
     /// Share of footprints with two peaks.
@@ -28,7 +28,7 @@ pub enum Reason {
     /// The best lobe is wider than an engine can show.
     AlphaAboveOne,
     /// The layer cannot have an ellipse.
-    Circle,
+    Isotropic,
     /// Normals point in two directions: a single lobe covers the gap between them.
     TwoPeaked,
     /// Much of the area is steeper than slopes can be.
@@ -48,8 +48,8 @@ impl Evidence {
             Reason::Encoding
         } else if without(self.unclamped) {
             Reason::AlphaAboveOne
-        } else if self.ellipse.is_some_and(without) {
-            Reason::Circle
+        } else if self.anisotropic.is_some_and(without) {
+            Reason::Isotropic
         } else if without(self.oracle) {
             Reason::Fit
         } else if self.steep > max_error {
@@ -68,7 +68,7 @@ impl Reason {
         match self {
             Self::Encoding => "lost in encoding",
             Self::AlphaAboveOne => "alpha would have to be above 1",
-            Self::Circle => "a circle in an ellipse's place",
+            Self::Isotropic => "a circle in an ellipse's place",
             Self::TwoPeaked => "two peaks, one lobe",
             Self::Steep => "slopes beyond the clamp",
             Self::NoSingleLobe => "no single lobe has this shape",
@@ -83,11 +83,12 @@ mod tests {
 
     #[test]
     fn reasons_follow_the_evidence() {
-        let all = Evidence { unencoded: 0.3, unclamped: 0.3, ellipse: None, oracle: 0.2, two_peaked: 0.0, steep: 0.0 };
+        let all =
+            Evidence { unencoded: 0.3, unclamped: 0.3, anisotropic: None, oracle: 0.2, two_peaked: 0.0, steep: 0.0 };
         let cases = [
             (Evidence { unencoded: 0.05, ..all }, Reason::Encoding),
             (Evidence { unclamped: 0.05, ..all }, Reason::AlphaAboveOne),
-            (Evidence { ellipse: Some(0.05), oracle: 0.05, ..all }, Reason::Circle),
+            (Evidence { anisotropic: Some(0.05), oracle: 0.05, ..all }, Reason::Isotropic),
             (Evidence { oracle: 0.05, two_peaked: 1.0, ..all }, Reason::Fit),
             (Evidence { two_peaked: 0.8, ..all }, Reason::TwoPeaked),
             (Evidence { two_peaked: 0.8, steep: 0.4, ..all }, Reason::Steep),

@@ -13,12 +13,12 @@ use crate::gltf::document::Container;
 use crate::input_file::read_file;
 use crate::output::Guard;
 use crate::report::AssetReport;
+use crate::run::budget::MemoryBudget;
 use crate::run::error::RunError;
 use crate::run::job::{Job, JobInput, beside, parsed};
 use crate::run::outputs;
 use crate::run::outputs::{New, Outputs};
 use crate::run::restore::{Found, Lookup};
-use crate::run::room::Room;
 use crate::settings::Settings;
 
 /// What a job did.
@@ -82,10 +82,10 @@ enum Ready {
 
 /// Fetches the outputs of `job` if its `lookup` found it, and else bakes them and puts them into the cache, all in memory. Jobs
 /// may be prepared side by side, as far as there is `room` for those that are baked; `advance` is as in [`bake`].
-pub fn prepare(job: &Job, mut lookup: Option<Lookup<'_>>, room: &Room, advance: &dyn Fn(f32)) -> Prepared {
+pub fn prepare(job: &Job, mut lookup: Option<Lookup<'_>>, budget: &MemoryBudget, advance: &dyn Fn(f32)) -> Prepared {
     let outputs = match lookup.as_mut().and_then(Lookup::fetch) {
         Some(found) => Ok(Ready::Found(Box::new(found))),
-        None => baked(job, room, advance).and_then(|baked| {
+        None => baked(job, budget, advance).and_then(|baked| {
             let entry = match lookup.as_mut() {
                 None => None,
                 Some(Lookup { cache, warnings, .. }) => {
@@ -141,14 +141,14 @@ fn baked_outputs<'b>(name: &'b Path, baked: &'b Baked) -> Outputs<'b> {
     }
 }
 
-fn baked(job: &Job, room: &Room, advance: &dyn Fn(f32)) -> Result<Baked, RunError> {
+fn baked(job: &Job, budget: &MemoryBudget, advance: &dyn Fn(f32)) -> Result<Baked, RunError> {
     let settings = job.typed_settings()?;
-    let seat = room.enter(job);
+    let permit = budget.acquire(job);
     match attempt(job, &settings, advance) {
         // What others took meanwhile may be enough.
-        Err(error) if error.is_out_of_memory() && !seat.is_alone() => {
-            drop(seat);
-            let _seat = room.enter_alone();
+        Err(error) if error.is_out_of_memory() && !permit.is_alone() => {
+            drop(permit);
+            let _seat = budget.acquire_all();
             attempt(job, &settings, advance)
         }
         ended => ended,
@@ -315,7 +315,7 @@ mod tests {
         let source = folder.path().join("brushed.gltf");
         let job = Job::new(&source, &folder.path().join("baked"), &serde_json::Map::new()).unwrap();
         let bake = || {
-            let prepared = prepare(&job, None, &Room::new(1), &|_| ());
+            let prepared = prepare(&job, None, &MemoryBudget::new(1), &|_| ());
             finish(&job, prepared, &mut Guard::default(), &mut |_| ())
         };
         assert!(bake().is_ok());

@@ -4,7 +4,7 @@ use std::collections::{BTreeSet, HashSet};
 use std::path::{Path, PathBuf};
 
 use crate::cache::{Entry, Unusable};
-use crate::run::job::{Job, JobOutput, OutputKind, beside, folded};
+use crate::run::job::{Job, JobOutput, OutputKind, beside, roughened};
 
 impl Job {
     /// Checks that `entry` has the document of the job, files only where the job writes them, copies only of what the job
@@ -13,9 +13,9 @@ impl Job {
     /// # Errors
     /// [`Unusable`] tells the first thing that is not so.
     pub fn fits(&self, entry: &Entry) -> Result<(), Unusable> {
-        let at = |path: &Path| folded(&self.output.join(path));
+        let at = |path: &Path| roughened(&self.output.join(path));
         let declared: Vec<(PathBuf, OutputKind)> =
-            self.outputs.iter().map(|JobOutput { path, kind }| (folded(path), *kind)).collect();
+            self.outputs.iter().map(|JobOutput { path, kind }| (roughened(path), *kind)).collect();
         let mut written = BTreeSet::new();
         let document = at(entry.document.path.as_path());
         if declared.first().is_none_or(|(path, _)| *path != document) {

@@ -225,7 +225,7 @@ fn outputs(survey: &Survey, settings: &Settings, stem: &str, folder: &Path) -> V
         outputs.push(JobOutput { path: folder.join(name), kind: OutputKind::Folder });
     }
     if !is_glb {
-        outputs.extend(survey.buffers.iter().map(|buffer| file(folded(&folder.join(buffer)))));
+        outputs.extend(survey.buffers.iter().map(|buffer| file(roughened(&folder.join(buffer)))));
     }
     outputs
 }
@@ -256,22 +256,22 @@ fn command(source: &Path, output: &Path, settings: &Map<String, Value>) -> Vec<S
 /// Where a file is that `source` refers to as `file`: one file, one path, unless links make another of it.
 pub fn beside(source: &Path, file: &Path) -> PathBuf {
     let path = source.parent().unwrap_or(Path::new("")).join(file);
-    let short = folded(&path);
+    let short = roughened(&path);
     let is_same = || matches!((fs::canonicalize(&path), fs::canonicalize(&short)), (Ok(a), Ok(b)) if a == b);
     if short == path || is_same() { short } else { path }
 }
 
 /// Without `.`, and without `..` where a name stands before it: one file, one path.
-pub fn folded(path: &Path) -> PathBuf {
-    let mut folded = PathBuf::new();
+pub fn roughened(path: &Path) -> PathBuf {
+    let mut roughened = PathBuf::new();
     for part in path.components() {
         match part {
             Component::CurDir => {}
-            Component::ParentDir if matches!(folded.components().next_back(), Some(Component::Normal(_))) => {
-                folded.pop();
+            Component::ParentDir if matches!(roughened.components().next_back(), Some(Component::Normal(_))) => {
+                roughened.pop();
             }
-            part => folded.push(part),
+            part => roughened.push(part),
         }
     }
-    folded
+    roughened
 }

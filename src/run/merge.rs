@@ -10,7 +10,7 @@ use crate::run::job::Job;
 
 /// What the report of a part (`schemas/report.schema.json`) tells of jobs.
 #[derive(Debug, Deserialize)]
-pub struct Told {
+pub struct PartReport {
     assets: Vec<Asset>,
 }
 
@@ -58,7 +58,7 @@ enum Word<'t> {
     Done,
 }
 
-impl Told {
+impl PartReport {
     /// Whether it is about other jobs than those of `plan` only.
     pub fn is_foreign(&self, plan: &Plan) -> bool {
         let is_known = |asset: &Asset| plan.jobs.iter().any(|job| Some(job.id) == asset.job);
@@ -68,7 +68,7 @@ impl Told {
 
 impl Merged {
     /// Goes by `reports`, unless there are none, and `looks` for the declared outputs of jobs that are said to be done.
-    pub fn new(plan: &Plan, reports: &[Told], looks: bool) -> Self {
+    pub fn new(plan: &Plan, reports: &[PartReport], looks: bool) -> Self {
         let mut words = BTreeMap::new();
         for asset in reports.iter().flat_map(|report| &report.assets) {
             let word = match &asset.error {

@@ -3,6 +3,7 @@
 //! A job is one asset. It reads the files that it lists and no others, by paths relative to the working folder, and knows
 //! no clock, network or home folder: run anywhere, it writes the same bytes.
 
+mod budget;
 mod confine;
 mod error;
 mod execute;
@@ -15,21 +16,20 @@ mod outputs;
 mod passing;
 mod previous;
 mod restore;
-mod room;
 mod shard;
 
 use serde::{Deserialize, Serialize};
 
+pub use budget::{MemoryBudget, Permit};
 pub use confine::{Misplaced, confine};
 pub use error::RunError;
 pub use execute::{Done, Prepared, Written, finish, prepare};
 pub use in_order::in_order;
-pub use job::{Job, JobInput, JobOutput, OutputKind, folded};
-pub use merge::{Merged, Open, Told};
+pub use job::{Job, JobInput, JobOutput, OutputKind, roughened};
+pub use merge::{Merged, Open, PartReport};
 pub use moved::Moved;
 pub use previous::recorded;
 pub use restore::Lookup;
-pub use room::{Room, Seat};
 pub use shard::Shard;
 
 /// The jobs of a run (`schemas/plan.schema.json`).

@@ -6,7 +6,7 @@ use crate::bake::survey;
 use crate::digest::digest;
 use crate::input_file::read_file;
 use crate::run::error::RunError;
-use crate::run::job::{Job, JobInput, JobOutput, folded, parsed};
+use crate::run::job::{Job, JobInput, JobOutput, parsed, roughened};
 
 /// A job below `in/<id>` and `out/<id>`.
 #[derive(Clone, Debug)]
@@ -36,9 +36,9 @@ impl Job {
         let names = [source.clone()].into_iter().chain(survey.files.iter().map(|file| from.join(file)));
         let (mut inputs, mut files, mut folders) = (Vec::new(), Vec::<(PathBuf, PathBuf)>::new(), Vec::new());
         for (name, input) in names.zip(&self.inputs) {
-            let path = folded(&name);
+            let path = roughened(&name);
             if input.blake3.is_some() {
-                folders.extend(name.ancestors().skip(1).map(folded).filter(|folder| folder.starts_with(&from)));
+                folders.extend(name.ancestors().skip(1).map(roughened).filter(|folder| folder.starts_with(&from)));
                 match files.iter().find(|(there, _)| *there == path) {
                     Some((_, other)) if *other != input.path => {
                         return Err(RunError::NotMovable { path: input.path.clone() });
@@ -49,10 +49,10 @@ impl Job {
             }
             inputs.push(JobInput { path, ..input.clone() });
         }
-        let root = folded(&self.output);
+        let root = roughened(&self.output);
         let mut outputs = Vec::with_capacity(self.outputs.len());
         for output in &self.outputs {
-            let path = folded(&output.path);
+            let path = roughened(&output.path);
             let below = path.strip_prefix(&root).map_err(|_| RunError::NotMovable { path: output.path.clone() })?;
             outputs.push(JobOutput { path: to.join(below), kind: output.kind });
         }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use crate::output::{Guard, Outputs as Wanted, Place, PublishError, Staged};
+use crate::output::{Guard, OutputPath, Outputs as Wanted, PublishError, Staged};
 use crate::run::error::RunError;
 use crate::run::job::{Job, beside};
 use crate::run::previous::Previous;
@@ -49,7 +49,7 @@ pub fn write(job: &Job, outputs: &Outputs<'_>, guard: &mut Guard) -> Result<Vec<
     let absent = copies.par_iter().zip(&reserved.copies).filter(|((_, is_absent), _)| *is_absent);
     let staged: Vec<Result<Staged, RunError>> = absent.map(|((file, _), place)| copy(job, file, place)).collect();
     let mut staged = staged.into_iter().collect::<Result<Vec<_>, _>>()?;
-    let stage = |(file, place): (&New<'_>, &Place)| Some(place.stage(file.bytes?));
+    let stage = |(file, place): (&New<'_>, &OutputPath)| Some(place.stage(file.bytes?));
     let new: Vec<Result<Staged, PublishError>> = files.par_iter().zip(&reserved.files).filter_map(stage).collect();
     for file in new {
         staged.push(file?);
@@ -63,7 +63,7 @@ pub fn write(job: &Job, outputs: &Outputs<'_>, guard: &mut Guard) -> Result<Vec<
 }
 
 /// Copies an input that the document refers to as `file` beside `place`, if it is as it was planned.
-fn copy(job: &Job, file: &Path, place: &Place) -> Result<Staged, RunError> {
+fn copy(job: &Job, file: &Path, place: &OutputPath) -> Result<Staged, RunError> {
     let from = beside(&job.source, file);
     let staged = match job.input(file).and_then(|input| input.blake3) {
         Some(planned) => place.stage_copy(&from, planned).map_err(|error| gone(job, error))?,

@@ -35,7 +35,7 @@ impl Shard {
 fn parts(jobs: &[&Job], count: usize) -> Vec<usize> {
     let total: u128 = jobs.iter().map(|job| u128::from(job.cost)).sum();
     let mean = total.div_ceil(count as u128);
-    let room = mean + mean / SLACK;
+    let budget = mean + mean / SLACK;
     let mut order: Vec<usize> = (0..jobs.len()).collect();
     order.sort_by_key(|&at| (Reverse(jobs[at].cost), jobs[at].id, &jobs[at].source));
     let (mut loads, mut parts) = (vec![0_u128; count], vec![0; jobs.len()]);
@@ -43,7 +43,7 @@ fn parts(jobs: &[&Job], count: usize) -> Vec<usize> {
         let cost = u128::from(jobs[at].cost);
         let own = own_part(jobs[at].id, count);
         let mut from_own = (own..count).chain(0..own);
-        let free = from_own.find(|&part| loads[part] + cost <= room);
+        let free = from_own.find(|&part| loads[part] + cost <= budget);
         let part = free.or_else(|| (0..count).min_by_key(|&part| loads[part])).unwrap_or(own);
         loads[part] += cost;
         parts[at] = part;

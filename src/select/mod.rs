@@ -1,10 +1,10 @@
 //! The cheapest of several candidates that stays within the error bound, and why a bound cannot be met.
 
+mod candidates;
 mod case;
 mod sampled;
-mod trial;
 
-pub use case::Trial;
+pub use case::Candidates;
 
 /// Differences between mean errors that a quick judgement cannot tell apart.
 pub const NOISE: f32 = 0.01;

@@ -10,7 +10,7 @@ use crate::material::{EDGE, Encoding, LevelRow};
 use crate::mip::{Wrap, neighbours};
 
 /// A texel of a level: level, column, row.
-pub type Place = (usize, u32, u32);
+pub type SamplePoint = (usize, u32, u32);
 
 /// A texture that may not exist yet.
 pub struct Sampled<'a> {
@@ -30,8 +30,8 @@ impl Sampled<'_> {
     /// What a sampler returns at the centres of `places`, texels of a chain of `grid` sizes: the level that covers as much
     /// as a texel of theirs, linear between its texels where their centres differ. A level that the texture lacks is
     /// magnified from its first.
-    pub fn at(&self, grid: &[(u32, u32)], places: &[Place]) -> Result<Vec<[f32; 4]>, EncodeError> {
-        let taps: Vec<(usize, [Tap; 4])> = places.iter().map(|place| self.taps(grid, *place)).collect();
+    pub fn at(&self, grid: &[(u32, u32)], points: &[SamplePoint]) -> Result<Vec<[f32; 4]>, EncodeError> {
+        let taps: Vec<(usize, [Tap; 4])> = points.iter().map(|point| self.taps(grid, *point)).collect();
         let mut blocks = BTreeSet::new();
         for (level, taps) in &taps {
             blocks.extend(taps.iter().filter(|t| t.weight > 0.0).map(|t| (*level, t.y / EDGE, t.x / EDGE)));
@@ -53,7 +53,7 @@ impl Sampled<'_> {
         Ok(taps.iter().map(value).collect())
     }
 
-    fn taps(&self, grid: &[(u32, u32)], (level, x, y): Place) -> (usize, [Tap; 4]) {
+    fn taps(&self, grid: &[(u32, u32)], (level, x, y): SamplePoint) -> (usize, [Tap; 4]) {
         let size = grid[level];
         // A texture of another size than the grid is sampled as many levels earlier or later.
         let offset = log2(grid[0]) - log2(self.sizes[0]);

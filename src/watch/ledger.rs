@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use crate::digest::Digest;
 use crate::input_file::holds;
-use crate::run::{Written, folded};
+use crate::run::{Written, roughened};
 
 /// Who has which outputs.
 #[derive(Debug, Default)]
@@ -37,7 +37,7 @@ pub struct Removed {
 impl Ledger {
     /// `asset` has the outputs `written` below `base`, and no others.
     pub fn set(&mut self, asset: &Path, base: &Path, written: &[Written]) {
-        let mut paths: Vec<PathBuf> = written.iter().map(|file| folded(&file.path)).collect();
+        let mut paths: Vec<PathBuf> = written.iter().map(|file| roughened(&file.path)).collect();
         for (path, file) in paths.iter().zip(written) {
             let output = self.outputs.entry(path.clone()).or_insert_with(|| Output {
                 blake3: file.blake3,
@@ -72,7 +72,7 @@ impl Ledger {
             if !holds(&path, blake3) || fs::remove_file(&path).is_err() {
                 continue;
             }
-            let base = folded(&base);
+            let base = roughened(&base);
             let folders = path.ancestors().skip(1).take_while(|folder| folder.starts_with(&base) && *folder != base);
             // The first that holds anything else stays, and so do those above it.
             let _ = folders.map(fs::remove_dir).take_while(Result::is_ok).count();

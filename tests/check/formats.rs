@@ -35,7 +35,7 @@ fn missing(said: &Once, what: &str) {
 
 /// A file in the sources of one of the crates of `tools/report-schemas`.
 fn published(package: &str, path: &str) -> Option<PathBuf> {
-    static SAID: Once = Once::new();
+    static PRINTED: Once = Once::new();
     let manifest = Path::new(env!("CARGO_MANIFEST_DIR")).join("tools/report-schemas/Cargo.toml");
     let arguments = ["metadata", "--offline", "--locked", "--format-version", "1", "--manifest-path"];
     let output = Command::new(env!("CARGO")).args(arguments).arg(manifest).output().unwrap();
@@ -43,7 +43,7 @@ fn published(package: &str, path: &str) -> Option<PathBuf> {
     let found = metadata["packages"].as_array().and_then(|packages| packages.iter().find(|p| p["name"] == package));
     let file = found.and_then(|p| Some(Path::new(p["manifest_path"].as_str()?).with_file_name(path)));
     if file.is_none() {
-        missing(&SAID, "schemas of reports need `cargo fetch --manifest-path tools/report-schemas/Cargo.toml`");
+        missing(&PRINTED, "schemas of reports need `cargo fetch --manifest-path tools/report-schemas/Cargo.toml`");
     }
     file
 }
@@ -61,11 +61,11 @@ fn assert_is_sarif(text: &str) {
 }
 
 fn assert_is_junit(text: &str) {
-    static SAID: Once = Once::new();
+    static PRINTED: Once = Once::new();
     let Some(schema) = published("junit-report", "tests/JUnit.xsd") else { return };
     let tool = Path::new(env!("CARGO_MANIFEST_DIR")).join("tools/validate-junit");
     if !tool.join("node_modules/xmllint-wasm").is_dir() {
-        return missing(&SAID, "validating JUnit reports needs Node 20 and `npm ci` in tools/validate-junit");
+        return missing(&PRINTED, "validating JUnit reports needs Node 20 and `npm ci` in tools/validate-junit");
     }
     let folder = tempfile::tempdir().unwrap();
     let is_valid = |text: &str| {

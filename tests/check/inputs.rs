@@ -301,7 +301,7 @@ fn noise(x: u32, y: u32) -> u32 {
 }
 
 /// Normals of slopes that `slope` gives.
-fn relief(width: u32, height: u32, slope: impl Fn(u32, u32) -> [f64; 2]) -> RgbImage {
+fn bump_map(width: u32, height: u32, slope: impl Fn(u32, u32) -> [f64; 2]) -> RgbImage {
     RgbImage::from_fn(width, height, |x, y| {
         let [u, v] = slope(x, y);
         let length = f64::sqrt(u * u + v * v + 1.0);
@@ -311,7 +311,7 @@ fn relief(width: u32, height: u32, slope: impl Fn(u32, u32) -> [f64; 2]) -> RgbI
 
 /// Ridges with some noise.
 fn normals(width: u32, height: u32) -> RgbImage {
-    relief(width, height, |x, y| {
+    bump_map(width, height, |x, y| {
         let noise = |seed: u32| f64::from(noise(x + seed, y)) / 65536.0 - 0.5;
         [if x % 2 == 0 { 0.6 } else { -0.5 } + 0.3 * noise(0), if y % 4 == 0 { 0.2 } else { -0.1 } + 0.2 * noise(99)]
     })
@@ -319,7 +319,7 @@ fn normals(width: u32, height: u32) -> RgbImage {
 
 /// Steep folds a few texels wide, as those of wrapping film.
 fn wrinkles(size: u32) -> RgbImage {
-    relief(size, size, |x, y| {
+    bump_map(size, size, |x, y| {
         let (x, y) = (f64::from(x), f64::from(y));
         let fold = (0.9 * x + 0.35 * y + 2.0 * (0.2 * y).sin()).sin();
         [2.5 * fold * fold * fold, 1.2 * (0.5 * y - 0.7 * x).sin()]

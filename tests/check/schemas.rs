@@ -53,7 +53,7 @@ fn extensions_satisfy_their_schema_and_the_strict_reader() {
 #[test]
 fn own_lobes_satisfy_the_schema_and_the_strict_reader() {
     let schema = schema(&format!("material.{EXTENSION}"));
-    for (profile, model, is_told) in [
+    for (profile, model, is_recorded) in [
         ("both", "anisotropic", true),
         ("both", "isotropic", true),
         ("both", "none", false),
@@ -61,7 +61,7 @@ fn own_lobes_satisfy_the_schema_and_the_strict_reader() {
     ] {
         let extension = extension_of(&["--profile", profile, "--model", model]);
         assert_valid(&schema, &extension);
-        assert_eq!(RoughnessPyramid::read(&extension).unwrap().unfolded.is_some(), is_told, "{profile}, {model}");
+        assert_eq!(RoughnessPyramid::read(&extension).unwrap().base_lobe.is_some(), is_recorded, "{profile}, {model}");
     }
 }
 
@@ -77,7 +77,7 @@ fn schema_and_strict_reader_refuse_the_same() {
         "correctionFactor": 0.9,
         "frame": "mainDirection",
         "mainDirection": [0, 1, 0],
-        "unfolded": {
+        "baseLobe": {
             "roughnessFactor": 0.5,
             "metallicRoughnessTexture": { "index": 0, "texCoord": 1 },
             "anisotropy": { "anisotropyStrength": 0.5, "anisotropyRotation": 1, "anisotropyTexture": { "index": 3 } }
@@ -105,12 +105,12 @@ fn schema_and_strict_reader_refuse_the_same() {
         ("/frame", json!("tangent")),
         ("/mainDirection", json!([0, 1])),
         ("/roughnesstexture", json!({ "index": 2 })),
-        ("/unfolded", json!(1)),
-        ("/unfolded", json!({ "roughnessFactor": null })),
-        ("/unfolded", json!({ "metallicRoughnessTexture": 0 })),
-        ("/unfolded", json!({ "metallicFactor": 1 })),
-        ("/unfolded", json!({ "anisotropy": { "anisotropyTexture": null } })),
-        ("/unfolded", json!({ "anisotropy": { "strength": 1 } })),
+        ("/baseLobe", json!(1)),
+        ("/baseLobe", json!({ "roughnessFactor": null })),
+        ("/baseLobe", json!({ "metallicRoughnessTexture": 0 })),
+        ("/baseLobe", json!({ "metallicFactor": 1 })),
+        ("/baseLobe", json!({ "anisotropy": { "anisotropyTexture": null } })),
+        ("/baseLobe", json!({ "anisotropy": { "strength": 1 } })),
     ];
     for (pointer, value) in edits {
         let mut broken = whole.clone();
@@ -118,7 +118,7 @@ fn schema_and_strict_reader_refuse_the_same() {
         assert!(!schema.is_valid(&broken), "the schema takes {pointer} = {value}");
         assert!(RoughnessPyramid::read(&broken).is_err(), "the reader takes {pointer} = {value}");
     }
-    for member in whole.as_object().unwrap().keys().filter(|k| !["extras", "unfolded"].contains(&k.as_str())) {
+    for member in whole.as_object().unwrap().keys().filter(|k| !["extras", "baseLobe"].contains(&k.as_str())) {
         let mut broken = whole.clone();
         broken.as_object_mut().unwrap().remove(member);
         assert!(!schema.is_valid(&broken), "the schema misses no {member}");

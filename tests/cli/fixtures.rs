@@ -67,8 +67,8 @@ fn both_profiles_together_keep_the_own_lobe() {
     let document = fs::read(folder.path().join("brushed.gltf")).expect("a document");
     let document: Value = serde_json::from_slice(&document).expect("JSON");
     let at = |pointer: &str| document.pointer(pointer).unwrap_or_else(|| panic!("no {pointer}"));
-    let unfolded = "/materials/0/extensions/ROUGHCAST_materials_roughness_pyramid/unfolded";
-    let texture = at(&format!("{unfolded}/metallicRoughnessTexture/index"));
+    let base_lobe = "/materials/0/extensions/ROUGHCAST_materials_roughness_pyramid/baseLobe";
+    let texture = at(&format!("{base_lobe}/metallicRoughnessTexture/index"));
     assert_ne!(texture, at("/materials/0/pbrMetallicRoughness/metallicRoughnessTexture/index"));
     let image = at(&format!("/textures/{texture}/source"));
     assert_eq!(at(&format!("/images/{image}/uri")), "brushed_surface.png");

@@ -85,8 +85,8 @@ fn what_no_part_did_is_missing_until_it_is_run() {
     done(folder, "plan merge plan.json more.json 0.json 1.json 2.json --rest rest.json");
     done(folder, "bake --plan rest.json");
     let merged = lost(folder, "more.json");
-    let untold = |name: &str| format!("missing assets/{name}: no report tells of it");
-    let (brushed, heights) = (untold("brushed/brushed.gltf"), untold("heights/heights.gltf"));
+    let unreported = |name: &str| format!("missing assets/{name}: no report tells of it");
+    let (brushed, heights) = (unreported("brushed/brushed.gltf"), unreported("heights/heights.gltf"));
     assert_eq!(first_lines(&merged), (4, vec!["3 jobs: 1 done, 0 failed, 2 missing", &brushed, &heights]));
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use roughcast::bake::{OwnRoughness, bake_map};
+use roughcast::bake::{BaseRoughness, bake_map};
 use roughcast::bump::{NormalLayout, NormalMap};
 use roughcast::codec::Target;
 use roughcast::codec::uastc::{Effort, Metric};
@@ -10,7 +10,7 @@ use roughcast::decode::decode;
 use roughcast::image::{DecodeOptions, Image};
 use roughcast::ktx2::Ktx2;
 use roughcast::lobe::{Alpha, Family, Roughness, SquaredAlpha};
-use roughcast::material::Relief;
+use roughcast::material::BumpMap;
 use roughcast::metric::{Decoded, Surface, mean_errors, sample_texels};
 use roughcast::report::Content;
 use roughcast::settings::{Model, Settings};
@@ -58,11 +58,11 @@ pub fn measure(images: &[&str]) -> Result<Value, Failure> {
 fn errors(image: &Image) -> Result<[f64; COLUMNS], Failure> {
     let map = || NormalMap::new(image.clone(), NormalLayout::Auto, false);
     let surface = Surface::of_map(&map()?, SquaredAlpha::isotropic(Alpha(ALPHA)));
-    let own = OwnRoughness { image: None, factor: Roughness::from(Alpha(ALPHA)).0 };
+    let own = BaseRoughness { image: None, factor: Roughness::from(Alpha(ALPHA)).0 };
     let settings =
         Settings { model: Model::Anisotropic, target: Target::Float, provenance: false, ..Settings::default() };
-    let baked = bake_map(&Relief::Normals(map()?), Some(&own), &settings)?;
-    let files: Vec<_> = baked.textures.iter().map(|t| (t.content, t.chain.to_ktx2(&[]).unwrap())).collect();
+    let baked = bake_map(&BumpMap::Normals(map()?), Some(&own), &settings)?;
+    let files: Vec<_> = baked.textures.iter().map(|t| (t.content, t.mip_chain.to_ktx2(&[]).unwrap())).collect();
     let mut sums = [0.0; COLUMNS];
     for level in LEVELS {
         let of = |content| -> Result<Option<Image>, Failure> {

@@ -12,7 +12,7 @@ pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
     type Mask: Copy + BitAnd<Output = Self::Mask> + BitOr<Output = Self::Mask>;
 
     /// Returns `value` in every lane of a number or vector of the same type as `self`.
-    fn like(self, value: f32) -> Self;
+    fn splat_like(self, value: f32) -> Self;
 
     /// Returns the square root, correctly rounded.
     fn sqrt(self) -> Self;
@@ -24,13 +24,13 @@ pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
     fn min(self, other: Self) -> Self;
 
     /// Compares lane by lane: set where `self` is at most `other`.
-    fn at_most(self, other: Self) -> Self::Mask;
+    fn lanes_le(self, other: Self) -> Self::Mask;
 
     /// Compares lane by lane: set where `self` is 0.
     fn is_zero(self) -> Self::Mask;
 
     /// Selects `self` where `mask` is set and `other` elsewhere.
-    fn or(self, other: Self, mask: Self::Mask) -> Self;
+    fn select(self, other: Self, mask: Self::Mask) -> Self;
 
     /// Returns whether `mask` is set in all lanes.
     fn all(mask: Self::Mask) -> bool;
@@ -40,7 +40,7 @@ impl Real for f32 {
     type Mask = bool;
 
     #[inline(always)]
-    fn like(self, value: f32) -> Self {
+    fn splat_like(self, value: f32) -> Self {
         value
     }
 
@@ -60,7 +60,7 @@ impl Real for f32 {
     }
 
     #[inline(always)]
-    fn at_most(self, other: Self) -> bool {
+    fn lanes_le(self, other: Self) -> bool {
         self <= other
     }
 
@@ -70,7 +70,7 @@ impl Real for f32 {
     }
 
     #[inline(always)]
-    fn or(self, other: Self, mask: bool) -> Self {
+    fn select(self, other: Self, mask: bool) -> Self {
         if mask { self } else { other }
     }
 
@@ -84,8 +84,8 @@ impl<S: Simd> Real for Wide<S> {
     type Mask = mask32x16<S>;
 
     #[inline(always)]
-    fn like(self, value: f32) -> Self {
-        Self::splat(self.simd, value)
+    fn splat_like(self, value: f32) -> Self {
+        SimdBase::splat(self.simd, value)
     }
 
     #[inline(always)]
@@ -104,7 +104,7 @@ impl<S: Simd> Real for Wide<S> {
     }
 
     #[inline(always)]
-    fn at_most(self, other: Self) -> Self::Mask {
+    fn lanes_le(self, other: Self) -> Self::Mask {
         self.simd_le(other)
     }
 
@@ -114,7 +114,7 @@ impl<S: Simd> Real for Wide<S> {
     }
 
     #[inline(always)]
-    fn or(self, other: Self, mask: Self::Mask) -> Self {
+    fn select(self, other: Self, mask: Self::Mask) -> Self {
         mask.select(self, other)
     }
 

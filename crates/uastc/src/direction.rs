@@ -47,7 +47,7 @@ pub(crate) fn normals<S: Simd>(texels: &[Grid<S>; 3]) -> Normals<S> {
 /// A vector at length [`UNIT`]. It is not 0, since levels are whole numbers.
 #[inline(always)]
 pub(crate) fn normal<F: Real>([x, y, z]: [F; 3]) -> [F; 3] {
-    let scale = x.like(UNIT) / (x * x + y * y + z * z).sqrt();
+    let scale = x.splat_like(UNIT) / (x * x + y * y + z * z).sqrt();
     [x * scale, y * scale, z * scale]
 }
 
@@ -55,20 +55,20 @@ pub(crate) fn normal<F: Real>([x, y, z]: [F; 3]) -> [F; 3] {
 /// and as rebuilt, and the part of the error that does not depend on the normal.
 #[inline(always)]
 pub(crate) fn seen<F: Real>([x, y, z]: [F; 3]) -> ([F; 3], F) {
-    let like = |value: f32| x.like(value);
-    let unit = like(UNIT);
+    let splat = |value: f32| x.splat_like(value);
+    let unit = splat(UNIT);
     let flat = x * x + y * y;
     let length = (flat + z * z).sqrt();
     let scale = unit / length;
-    let rebuilt = (unit * unit - flat).max(like(0.0)).sqrt();
-    let stay = like(LONG).or(like(SHORT), unit.at_most(length));
+    let rebuilt = (unit * unit - flat).max(splat(0.0)).sqrt();
+    let stay = splat(LONG).select(splat(SHORT), unit.lanes_le(length));
     let mut loss = stay * (length - unit) * (length - unit);
     let mut direction = [x; 3];
     // (1 - r) |u - n|^2 + r |v - n|^2 = |w - n|^2 + r (1 - r) |u - v|^2 with w = (1 - r) u + r v.
     for (c, (read, rebuilt)) in [(x, x), (y, y), (z, rebuilt)].into_iter().enumerate() {
         let u = read * scale;
-        loss = loss + (u - rebuilt) * like(REBUILT * (1.0 - REBUILT)) * (u - rebuilt);
-        direction[c] = u * like(1.0 - REBUILT) + rebuilt * like(REBUILT);
+        loss = loss + (u - rebuilt) * splat(REBUILT * (1.0 - REBUILT)) * (u - rebuilt);
+        direction[c] = u * splat(1.0 - REBUILT) + rebuilt * splat(REBUILT);
     }
     (direction, loss)
 }

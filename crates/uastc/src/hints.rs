@@ -94,7 +94,7 @@ impl Hints {
 /// [`LEAST_BIAS`] and both tables. All sums are whole numbers that floats hold.
 #[inline(always)]
 fn etc1<F: Real>(levels: &[[F; 16]; 3]) -> [F; 5] {
-    let (zero, one) = (levels[0][0].like(0.0), levels[0][0].like(1.0));
+    let (zero, one) = (levels[0][0].splat_like(0.0), levels[0][0].splat_like(1.0));
     // Sums over the 2x2 quadrants, row 0 first.
     let mut quadrants = [[zero; 3]; 4];
     for (quadrant, first) in quadrants.iter_mut().zip([0, 2, 8, 10]) {
@@ -105,28 +105,29 @@ fn etc1<F: Real>(levels: &[[F; 16]; 3]) -> [F; 5] {
     let side = [add(quadrants[0], quadrants[2]), add(quadrants[1], quadrants[3])];
     let stacked = [add(quadrants[0], quadrants[1]), add(quadrants[2], quadrants[3])];
     // The split whose halves differ more leaves less variance inside them.
-    let is_side = distance(stacked).at_most(distance(side));
+    let is_side = distance(stacked).lanes_le(distance(side));
     let mut sums = side;
     for (half, stacked) in sums.iter_mut().zip(stacked) {
         for (sum, stacked) in half.iter_mut().zip(stacked) {
-            *sum = sum.or(stacked, is_side);
+            *sum = sum.select(stacked, is_side);
         }
     }
     let (five, four) = (bases(&sums, 31.0), bases(&sums, 15.0));
-    let mut is_near = one.at_most(one);
+    let mut is_near = one.lanes_le(one);
     for c in 0..3 {
         let difference = five[c + 3] - five[c];
-        is_near = is_near & difference.at_most(zero.like(3.0)) & zero.like(-4.0).at_most(difference);
+        is_near = is_near & difference.lanes_le(zero.splat_like(3.0)) & zero.splat_like(-4.0).lanes_le(difference);
     }
     let mut state = zero;
     for (five, four) in five.into_iter().zip(four).rev() {
         // A digit to base 3: at 0, inside or at the limit.
-        let base = five.or(four, is_near);
-        let limit = zero.like(31.0).or(zero.like(15.0), is_near);
-        state = state * zero.like(3.0) + zero.or(one, base.is_zero()) + one.or(zero, limit.at_most(base));
+        let base = five.select(four, is_near);
+        let limit = zero.splat_like(31.0).select(zero.splat_like(15.0), is_near);
+        state =
+            state * zero.splat_like(3.0) + zero.select(one, base.is_zero()) + one.select(zero, limit.lanes_le(base));
     }
     let [first, second] = intensity_tables(levels, &sums, is_side);
-    [zero.or(one, is_side), one.or(zero, is_near), state, first, second]
+    [zero.select(one, is_side), one.select(zero, is_near), state, first, second]
 }
 
 #[inline(always)]
@@ -143,12 +144,12 @@ fn distance<F: Real>([a, b]: [[F; 3]; 2]) -> F {
 /// The nearest of 0..=`limit` to the means of both halves.
 #[inline(always)]
 fn bases<F: Real>(sums: &[[F; 3]; 2], limit: f32) -> [F; 6] {
-    let zero = sums[0][0].like(0.0);
+    let zero = sums[0][0].splat_like(0.0);
     let mut bases = [zero; 6];
     for (base, sum) in bases.iter_mut().zip(sums.as_flattened()) {
         // Its floor: fractions are multiples of 1/2040.
-        let exact = (*sum * zero.like(limit) + zero.like(1020.0)) / zero.like(2040.0);
-        *base = round(exact - zero.like(0.5 - 1.0 / 4096.0));
+        let exact = (*sum * zero.splat_like(limit) + zero.splat_like(1020.0)) / zero.splat_like(2040.0);
+        *base = round(exact - zero.splat_like(0.5 - 1.0 / 4096.0));
     }
     bases
 }
@@ -156,21 +157,21 @@ fn bases<F: Real>(sums: &[[F; 3]; 2], limit: f32) -> [F; 6] {
 /// Luma weights of the transcoder's choice of selectors, in 1/256.
 #[inline(always)]
 fn luma<F: Real>([r, g, b]: [F; 3]) -> F {
-    r * r.like(54.0) + g * r.like(183.0) + b * r.like(19.0)
+    r * r.splat_like(54.0) + g * r.splat_like(183.0) + b * r.splat_like(19.0)
 }
 
 /// The intensity table of each half, from its largest departure in luma.
 #[inline(always)]
 fn intensity_tables<F: Real>(levels: &[[F; 16]; 3], sums: &[[F; 3]; 2], is_side: F::Mask) -> [F; 2] {
-    let zero = levels[0][0].like(0.0);
+    let zero = levels[0][0].splat_like(0.0);
     // Their floors: fractions are eighths.
     let means = [
-        round(luma(sums[0]) * zero.like(0.125) - zero.like(0.4375)),
-        round(luma(sums[1]) * zero.like(0.125) - zero.like(0.4375)),
+        round(luma(sums[0]) * zero.splat_like(0.125) - zero.splat_like(0.4375)),
+        round(luma(sums[1]) * zero.splat_like(0.125) - zero.splat_like(0.4375)),
     ];
     // The second quadrant is of the second half where halves stand side by side, the third where one is above the
     // other.
-    let of_quadrants = [means[0], means[1].or(means[0], is_side), means[0].or(means[1], is_side), means[1]];
+    let of_quadrants = [means[0], means[1].select(means[0], is_side), means[0].select(means[1], is_side), means[1]];
     let mut reach = [zero; 4];
     for ((reach, mean), first) in reach.iter_mut().zip(of_quadrants).zip([0, 2, 8, 10]) {
         for i in [first, first + 1, first + 4, first + 5] {
@@ -178,10 +179,10 @@ fn intensity_tables<F: Real>(levels: &[[F; 16]; 3], sums: &[[F; 3]; 2], is_side:
             *reach = reach.max(departure.max(zero - departure));
         }
     }
-    let first = reach[0].max(reach[2].or(reach[1], is_side));
-    let second = reach[3].max(reach[1].or(reach[2], is_side));
+    let first = reach[0].max(reach[2].select(reach[1], is_side));
+    let second = reach[3].max(reach[1].select(reach[2], is_side));
     // 9/16 of the reach: full reach loses 1.5 dB of ETC1 on normals and gains 0.1 on ORM maps.
-    [table_for(first * zero.like(9.0 / 4096.0)), table_for(second * zero.like(9.0 / 4096.0))]
+    [table_for(first * zero.splat_like(9.0 / 4096.0)), table_for(second * zero.splat_like(9.0 / 4096.0))]
 }
 
 /// The table whose larger offset suits departures up to `reach`.
@@ -189,10 +190,10 @@ fn intensity_tables<F: Real>(levels: &[[F; 16]; 3], sums: &[[F; 3]; 2], is_side:
 fn table_for<F: Real>(reach: F) -> F {
     // The least whole numbers beyond half way between the larger offsets of neighbouring tables.
     const LIMITS: [f32; 7] = [13.0, 24.0, 36.0, 52.0, 71.0, 94.0, 145.0];
-    let (zero, one) = (reach.like(0.0), reach.like(1.0));
+    let (zero, one) = (reach.splat_like(0.0), reach.splat_like(1.0));
     let mut table = zero;
     for limit in LIMITS {
-        table = table + one.or(zero, zero.like(limit).at_most(reach));
+        table = table + one.select(zero, zero.splat_like(limit).lanes_le(reach));
     }
     table
 }

@@ -39,23 +39,23 @@ pub(crate) struct Points<'a, S: Simd, const N: usize> {
 /// The nearest whole number, which is less than 2^22.
 #[inline(always)]
 pub(crate) fn round<F: Real>(v: F) -> F {
-    v + v.like(ROUND) - v.like(ROUND)
+    v + v.splat_like(ROUND) - v.splat_like(ROUND)
 }
 
 /// The weight ramp of the format: index to 0..=64, for 1 to 5 bits.
 #[inline(always)]
 pub(crate) fn ramp<const BITS: u32, F: Real>(index: F) -> F {
-    let like = |value| index.like(value);
+    let splat = |value| index.splat_like(value);
     // Halves and quarters without their fractions: nothing lies half way after the shift.
     match BITS {
-        1 => index * like(64.0),
-        2 => index * like(21.0) + round(index * like(0.5) - like(0.25)),
-        3 => index * like(9.0) + round(index * like(0.25) - like(0.375)),
+        1 => index * splat(64.0),
+        2 => index * splat(21.0) + round(index * splat(0.5) - splat(0.25)),
+        3 => index * splat(9.0) + round(index * splat(0.25) - splat(0.375)),
         4 => {
-            let (quarter, eighth) = (index * like(0.25), index * like(0.125));
-            index * like(4.0) + round(quarter - like(0.375)) + round(eighth - like(0.4375))
+            let (quarter, eighth) = (index * splat(0.25), index * splat(0.125));
+            index * splat(4.0) + round(quarter - splat(0.375)) + round(eighth - splat(0.4375))
         }
-        _ => index * like(2.0) + round(index * like(0.0625) - like(0.46875)) * like(2.0),
+        _ => index * splat(2.0) + round(index * splat(0.0625) - splat(0.46875)) * splat(2.0),
     }
 }
 
@@ -63,10 +63,10 @@ pub(crate) fn ramp<const BITS: u32, F: Real>(index: F) -> F {
 /// floor((257 (64 low + (high - low) weight) + 32) / 2^14), in exact `f32` steps.
 #[inline(always)]
 pub(crate) fn decode<F: Real>(low: F, step: F, weight: F) -> F {
-    let like = |value| low.like(value);
+    let splat = |value| low.splat_like(value);
     // A multiple of 2^-14 below 2^8, shifted by 1/2 - 2^-15: rounding is then a floor without ties.
-    let start = low * like(257.0 / 256.0) + like(32.0 / 16384.0 - (0.5 - 1.0 / 32768.0));
-    round(start + step * like(257.0 / 16384.0) * weight)
+    let start = low * splat(257.0 / 256.0) + splat(32.0 / 16384.0 - (0.5 - 1.0 / 32768.0));
+    round(start + step * splat(257.0 / 16384.0) * weight)
 }
 
 /// Nearest level of `range` to a value, which may lie outside of 0..=255.

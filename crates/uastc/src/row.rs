@@ -65,12 +65,12 @@ impl Row {
                 }
             }
             (_, Effort::Fast) => {
-                let (greens, others): (Vec<_>, Vec<_>) =
+                let (green, others): (Vec<_>, Vec<_>) =
                     which.iter().copied().partition(|&k| is_green_alone(&self.texels[k]));
                 self.by_groups(
-                    &greens,
+                    &green,
                     #[inline(always)]
-                    |texels, _| search::fast_greens(simd, &colours(simd, texels, &scale), &scale),
+                    |texels, _| search::fast_green(simd, &colours(simd, texels, &scale), &scale),
                 );
                 let [planes, grey] = self.first(
                     &others,

@@ -220,11 +220,11 @@ pub(crate) fn fast_lines<S: Simd>(
 /// Lines through opaque texels of which only the green varies: those of [`fast_lines`], of a third of the numbers. A
 /// roughness texture of a material with one metalness and no occlusion is made of them.
 #[inline(always)]
-pub(crate) fn fast_greens<S: Simd>(simd: S, [reds, greens, blues]: &[Grid<S>; 3], scale: &[f32; 3]) -> Blocks<S> {
-    let greens = [*greens];
-    let all = moments(simd, &greens, None);
+pub(crate) fn fast_green<S: Simd>(simd: S, [reds, green, blues]: &[Grid<S>; 3], scale: &[f32; 3]) -> Blocks<S> {
+    let green = [*green];
+    let all = moments(simd, &green, None);
     let mut winner = Blocks::none(simd);
-    winner.offer_line(simd, &greens, &all, &[Wide::splat(simd, 1.0)], &[scale[1]], QUICK_ROUNDS, every(simd));
+    winner.offer_line(simd, &green, &all, &[Wide::splat(simd, 1.0)], &[scale[1]], QUICK_ROUNDS, every(simd));
     let [green, ..] = winner.endpoints[0];
     let [red, blue] =
         [winner.nearest(simd, reds[0] * (1.0 / scale[0])), winner.nearest(simd, blues[0] * (1.0 / scale[2]))];

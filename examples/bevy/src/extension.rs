@@ -21,13 +21,13 @@ pub struct Extension {
     pub correction_factor: f32,
     pub frame: Frame,
     pub main_direction: Option<Vec3>,
-    pub unfolded: Option<Unfolded>,
+    pub base_lobe: Option<BaseLobe>,
 }
 
 /// The material's own lobe, where the core material has K folded in.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(rename_all = "camelCase")]
-pub struct Unfolded {
+pub struct BaseLobe {
     #[serde(default = "one")]
     pub roughness_factor: f32,
     pub metallic_roughness_texture: Option<TextureInfo>,
@@ -138,8 +138,8 @@ impl Extension {
 
     /// All its textures.
     pub fn textures(&self) -> impl Iterator<Item = &TextureInfo> {
-        let unfolded = self.unfolded.as_ref();
-        let own = unfolded.into_iter().flat_map(|own| [&own.metallic_roughness_texture, &own.anisotropy.texture]);
+        let base_lobe = self.base_lobe.as_ref();
+        let own = base_lobe.into_iter().flat_map(|own| [&own.metallic_roughness_texture, &own.anisotropy.texture]);
         [Some(&self.offset_texture), self.roughness_texture.as_ref()]
             .into_iter()
             .chain(own.map(Option::as_ref))
@@ -204,11 +204,11 @@ mod tests {
     #[test]
     fn an_own_lobe_has_the_defaults_of_gltf() {
         let mut definition = definition();
-        definition["unfolded"] = json!({ "metallicRoughnessTexture": { "index": 5 } });
+        definition["baseLobe"] = json!({ "metallicRoughnessTexture": { "index": 5 } });
         let extension = Extension::read(&definition).unwrap();
         let indices: Vec<usize> = extension.textures().map(|info| info.index).collect();
         assert_eq!(indices, [1, 2, 5]);
-        let own = extension.unfolded.unwrap();
+        let own = extension.base_lobe.unwrap();
         assert_eq!((own.roughness_factor, own.anisotropy.strength), (1.0, 0.0));
     }
 

@@ -89,7 +89,7 @@ impl Handler {
         base.normal_map_texture = None;
         // The G-buffer has no anisotropy.
         base.opaque_render_method = OpaqueRendererMethod::Forward;
-        if let Some(own) = &extension.unfolded {
+        if let Some(own) = &extension.base_lobe {
             base.perceptual_roughness = own.roughness_factor;
             base.metallic_roughness_texture = self.optional(own.metallic_roughness_texture.as_ref())?;
             base.metallic_roughness_channel = channel(own.metallic_roughness_texture.as_ref());

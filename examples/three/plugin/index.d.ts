@@ -36,11 +36,11 @@ export interface PyramidExtension extends Shared {
   offset: Range & { texture: TextureInfo };
   roughness: (Range & { texture: TextureInfo; model: RoughnessModel }) | null;
   /** The lobe that K is added to, where the core material has it folded in already. */
-  unfolded: UnfoldedLobe | null;
+  baseLobe: BaseLobe | null;
 }
 
 /** A material's own lobe; what is absent has glTF's default. */
-export interface UnfoldedLobe {
+export interface BaseLobe {
   roughnessFactor?: number;
   metallicRoughnessTexture?: TextureInfo;
   /** KHR_materials_anisotropy. */

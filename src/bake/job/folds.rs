@@ -9,11 +9,11 @@ use crate::gltf::material::LayerKind;
 use crate::gltf::texture::TextureSource;
 use crate::image::{Image, Rgba};
 use crate::material::{
-    Base, BaseAnisotropy, BaseLevels, BaseRows, Bumps, Encoding, Fold, Normals, Relief, grid, notes, own_lobe,
+    Base, BaseAnisotropy, BaseLevels, BaseRows, BumpMap, Bumps, Encoding, Normals, Roughening, base_lobe, grid, notes,
 };
 use crate::mip::Rows;
 use crate::report::{Choice, Content};
-use crate::select::Trial;
+use crate::select::Candidates;
 use crate::settings::Model;
 
 impl Job<'_> {
@@ -21,9 +21,9 @@ impl Job<'_> {
     /// folded first on their grid. `own` is the first layer's.
     pub(super) fn portable<'r>(
         &self,
-        relief: &'r Relief,
+        bump_map: &'r BumpMap,
         bumps: &Bumps<'r>,
-        mut own: Option<Own>,
+        mut own: Option<BaseMaps>,
         output: &mut JobOutput,
     ) -> Result<(), JobError> {
         let layers = &self.plan.layers;
@@ -36,23 +36,23 @@ impl Job<'_> {
         for (group, users) in groups.iter().enumerate() {
             let layer = &layers[users[0]];
             let has_later = group + 1 < groups.len();
-            let Own { images, size: own_size, levels } =
-                own.take().map_or_else(|| self.own(layer, Some(relief)), Ok)?;
-            let size = self.grid(&images, Some(relief))?;
+            let BaseMaps { images, size: own_size, levels } =
+                own.take().map_or_else(|| self.own(layer, Some(bump_map)), Ok)?;
+            let size = self.grid(&images, Some(bump_map))?;
             let base = self.base(layer, &images, size);
             let base = if own_size == size { Base::with_levels(base, levels) } else { Base::new(base) };
             let is_base = layer.layer.kind == LayerKind::Base;
             let correction = (self.settings.profile.has_pyramid() && is_base)
-                .then(|| bumps.correction(layer.slope_scale, self.settings, own_lobe(&base.whole())));
+                .then(|| bumps.correction(layer.slope_scale, self.settings, base_lobe(&base.whole())));
             // The extension describes the base lobe only.
-            let fold = (layer.own.is_ok() && (is_portable || is_base)).then(|| {
-                let resampled = (size != bumps.size()).then(|| Bumps::new(relief, size));
-                Fold::new(base, resampled.as_ref().unwrap_or(bumps), layer.slope_scale, self.settings)
+            let roughening = (layer.own.is_ok() && (is_portable || is_base)).then(|| {
+                let resampled = (size != bumps.size()).then(|| Bumps::new(bump_map, size));
+                Roughening::new(base, resampled.as_ref().unwrap_or(bumps), layer.slope_scale, self.settings)
             });
-            let leads = |f: &&Fold<'_>| {
+            let leads = |f: &&Roughening<'_>| {
                 is_portable && normal_texture.is_none() && layer.slope_scale != 0.0 && f.sizes()[0] == bumps.size()
             };
-            let lobes = fold.as_ref().filter(leads).map(Fold::lobes);
+            let lobes = roughening.as_ref().filter(leads).map(Roughening::lobes);
             let led = lobes.map(|lobes| Normals::of_lobes(bumps, lobes));
             let widest = match layer.layer.kind {
                 LayerKind::Base => Model::Anisotropic,
@@ -62,8 +62,8 @@ impl Job<'_> {
             let used_by = || users.iter().map(|user| &layers[*user]);
             let first = self.first_level(used_by(), size);
             let means = (is_portable && normals.is_none() && led.is_none()).then(|| Normals::of_means(bumps));
-            let trial = fold.as_ref().map(|fold| Trial {
-                fold,
+            let candidates = roughening.as_ref().map(|roughening| Candidates {
+                roughening,
                 settings: self.settings,
                 normals: normals.as_ref().or(led.as_ref()).or(means.as_ref()),
                 pyramid: correction.map(|c| (bumps.moments(), c)),
@@ -75,7 +75,7 @@ impl Job<'_> {
             // The trial waits for its slowest texels more than once: normals are encoded meanwhile.
             let (encoded, choice) = rayon::join(
                 || led.as_ref().map(|led| led.bake(normal_encoding)).transpose(),
-                || trial.map(|trial| trial.run()).transpose(),
+                || candidates.map(|candidates| candidates.run()).transpose(),
             );
             normal_texture = encoded?.or(normal_texture);
             let choice = choice?;
@@ -88,12 +88,12 @@ impl Job<'_> {
                 (None, Model::Auto) => (widest, first),
                 (None, model) => (model.min(widest), first),
             };
-            let fold = fold.filter(|_| is_portable && model != Model::None);
+            let roughening = roughening.filter(|_| is_portable && model != Model::None);
             let folding = Encoding::of(self.settings, 3).starting_at(first);
-            let folded = fold.as_ref().map(|f| f.bake(model, folding)).transpose()?;
-            let fold_notes = fold.map_or_else(Vec::new, |fold| {
-                let notes = notes::of_fold(&fold, model, relief.noise());
-                fold.drop_all();
+            let roughened = roughening.as_ref().map(|f| f.bake(model, folding)).transpose()?;
+            let roughening_notes = roughening.map_or_else(Vec::new, |roughening| {
+                let notes = notes::of_roughening(&roughening, model, bump_map.noise());
+                roughening.drop_all();
                 notes
             });
             for user in users {
@@ -104,7 +104,7 @@ impl Job<'_> {
                     correction: c,
                     unit_factor,
                     anisotropy,
-                    circle,
+                    dropped_anisotropy,
                     ..
                 } = &mut output.layers[*user];
                 (*chosen, *start, *c) = (model, first, correction.unwrap_or(1.0));
@@ -117,28 +117,28 @@ impl Job<'_> {
                     report.notes.push(reason.clone());
                 }
                 report.notes.extend(choice.as_ref().and_then(|c| c.warning(self.settings)));
-                report.notes.extend(fold_notes.iter().cloned());
-                if let Some(folded) = &folded {
+                report.notes.extend(roughening_notes.iter().cloned());
+                if let Some(roughened) = &roughened {
                     if model == Model::Isotropic && layers[*user].layer.anisotropy.is_some() {
-                        *circle = Some(layers[*user].pointer("extensions/KHR_materials_anisotropy"));
+                        *dropped_anisotropy = Some(layers[*user].pointer("extensions/KHR_materials_anisotropy"));
                         report
                             .notes
                             .push("a circle took the place of the material's own anisotropy, as asked for".into());
                     }
                     *unit_factor = Some(layers[*user].roughness_factor_pointer());
-                    *anisotropy = folded
+                    *anisotropy = roughened
                         .anisotropy
                         .is_some()
                         .then(|| layers[*user].pointer("extensions/KHR_materials_anisotropy"));
                 }
             }
-            let Some(folded) = folded else { continue };
-            let [roughness, anisotropy] = layer.own_textures();
+            let Some(roughened) = roughened else { continue };
+            let [roughness, anisotropy] = layer.base_textures();
             let stem = roughness.map_or_else(|| layer.name.clone(), TextureSource::stem);
-            let sources = self.hashed([&self.plan.source.location].into_iter().chain(layer.own_locations()));
-            let texture = |content, chain, sampler, slots| JobTexture {
+            let sources = self.hashed([&self.plan.source.location].into_iter().chain(layer.base_locations()));
+            let texture = |content, mip_chain, sampler, slots| JobTexture {
                 content,
-                chain,
+                mip_chain,
                 range: None,
                 stem: stem.clone(),
                 sources: sources.clone(),
@@ -150,24 +150,24 @@ impl Job<'_> {
             let sampler = |own: Option<&TextureSource>| own.map_or(self.plan.source.sampler, |own| own.sampler);
             output.textures.push(texture(
                 Content::Roughness,
-                folded.roughness,
+                roughened.roughness,
                 sampler(roughness),
                 users.iter().flat_map(|u| layers[*u].roughness_slots()).collect(),
             ));
-            if let Some(chain) = folded.anisotropy {
+            if let Some(mip_chain) = roughened.anisotropy {
                 output.textures.push(texture(
                     Content::Anisotropy,
-                    chain,
+                    mip_chain,
                     sampler(anisotropy),
                     users.iter().map(|u| layers[*u].anisotropy_slot()).collect(),
                 ));
             }
         }
         if is_portable {
-            let chain = normal_texture.map_or_else(|| Normals::of_means(bumps).bake(normal_encoding), Ok)?;
+            let mip_chain = normal_texture.map_or_else(|| Normals::of_means(bumps).bake(normal_encoding), Ok)?;
             let texture = JobTexture {
                 content: Content::Normal,
-                chain,
+                mip_chain,
                 range: None,
                 stem: self.plan.source.stem(),
                 sources: self.hashed([&self.plan.source.location]),
@@ -183,23 +183,23 @@ impl Job<'_> {
 
     /// The layer's own lobe. Without `relief`, which may not be there yet, its levels are on the grid of its own images, which
     /// the bumps most often share.
-    pub(super) fn own(&self, layer: &LayerPlan, relief: Option<&Relief>) -> Result<Own, JobError> {
+    pub(super) fn own(&self, layer: &LayerPlan, bump_map: Option<&BumpMap>) -> Result<BaseMaps, JobError> {
         let image = |texture: Option<&TextureSource>| texture.map(|t| self.image(t, &layer.name)).transpose();
-        let [roughness, anisotropy] = layer.own_textures();
-        let images = OwnImages { roughness: image(roughness)?, anisotropy: image(anisotropy)? };
-        let size = self.grid(&images, relief)?;
+        let [roughness, anisotropy] = layer.base_textures();
+        let images = BaseImages { roughness: image(roughness)?, anisotropy: image(anisotropy)? };
+        let size = self.grid(&images, bump_map)?;
         let levels = BaseLevels::new(&self.base(layer, &images, size));
-        Ok(Own { images, size, levels })
+        Ok(BaseMaps { images, size, levels })
     }
 
     /// A grid that holds the layer's own lobe and, where they are given, the bumps.
-    fn grid(&self, own: &OwnImages, relief: Option<&Relief>) -> Result<(u32, u32), JobError> {
+    fn grid(&self, own: &BaseImages, bump_map: Option<&BumpMap>) -> Result<(u32, u32), JobError> {
         let sizes = [&own.roughness, &own.anisotropy].into_iter().flatten().map(|i| (i.width, i.height));
-        Ok(grid(self.settings, sizes.chain(relief.map(|r| (r.width(), r.height()))))?)
+        Ok(grid(self.settings, sizes.chain(bump_map.map(|r| (r.width(), r.height()))))?)
     }
 
     /// The layer's own lobe on a grid of `width` x `height` texels.
-    fn base<'r>(&self, layer: &LayerPlan, own: &'r OwnImages, (width, height): (u32, u32)) -> BaseRows<'r> {
+    fn base<'r>(&self, layer: &LayerPlan, own: &'r BaseImages, (width, height): (u32, u32)) -> BaseRows<'r> {
         let anisotropy = layer.layer.anisotropy.as_ref().map(|a| {
             let rotation = f64::from(a.rotation);
             BaseAnisotropy {
@@ -219,7 +219,7 @@ fn groups(layers: &[LayerPlan]) -> Vec<Vec<usize>> {
     let mut groups: Vec<Vec<usize>> = Vec::new();
     let mut places: HashMap<_, usize> = HashMap::new();
     for (index, layer) in layers.iter().enumerate() {
-        match layer.fold_key().map(|key| places.entry(key)) {
+        match layer.roughened_lobe_key().map(|key| places.entry(key)) {
             Some(Entry::Occupied(place)) => {
                 let place = *place.get();
                 groups[place].push(index);
@@ -234,15 +234,15 @@ fn groups(layers: &[LayerPlan]) -> Vec<Vec<usize>> {
 }
 
 /// A layer's own lobe.
-pub(super) struct Own {
-    images: OwnImages,
+pub(super) struct BaseMaps {
+    images: BaseImages,
     size: (u32, u32),
     /// Levels 1 and coarser on a grid of `size`.
     levels: BaseLevels,
 }
 
 /// Images of a layer's own lobe.
-struct OwnImages {
+struct BaseImages {
     roughness: Option<Image>,
     anisotropy: Option<Image>,
 }

@@ -10,9 +10,9 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::extension::Unfolded;
+use super::extension::BaseLobe;
 use super::geometry::Geometry;
-use super::plan::{LayerPlan, ReliefKind, ReliefPlan};
+use super::plan::{BumpMapKind, BumpMapPlan, LayerPlan};
 use super::reader::Reader;
 use crate::bump::{Frame, HeightMap, NormalLayout, NormalMap};
 use crate::decode::{DecodeError, decode, decode_colours};
@@ -23,7 +23,7 @@ use crate::gltf::rewrite::Slot;
 use crate::gltf::texture::{ImageLocation, TextureSource};
 use crate::image::{DecodeOptions, Image};
 use crate::ktx2::{Ktx2, PROVENANCE_KEY};
-use crate::material::{Bumps, Chain, Range, Relief, grid, notes};
+use crate::material::{BumpMap, Bumps, MipChain, Range, grid, notes};
 use crate::mip::Rows;
 use crate::report::{Content, LayerReport};
 use crate::settings::{Finest, Model, Settings};
@@ -33,7 +33,7 @@ pub struct JobTexture {
     /// What its texels are.
     pub content: Content,
     /// The encoded levels.
-    pub chain: Chain,
+    pub mip_chain: MipChain,
     /// What texels of 0 and 1 stand for, in the pyramid profile.
     pub range: Option<Range>,
     /// What its file is named after: an image, or the material that has none.
@@ -65,7 +65,7 @@ pub struct LayerOutcome {
     /// JSON pointer of `KHR_materials_anisotropy`, where it was written.
     pub anisotropy: Option<String>,
     /// JSON pointer of `KHR_materials_anisotropy`, where a circle took the place of the material's own ellipse.
-    pub circle: Option<String>,
+    pub dropped_anisotropy: Option<String>,
     /// What the vendor extension says, where it is written.
     pub pyramid: Option<PyramidUse>,
 }
@@ -87,7 +87,7 @@ pub struct PyramidUse {
     /// c.
     pub correction: f32,
     /// The material's own lobe, where the core properties have the folded one.
-    pub unfolded: Option<Unfolded>,
+    pub base_lobe: Option<BaseLobe>,
 }
 
 /// What a job produced.
@@ -101,19 +101,19 @@ pub struct JobOutput {
 
 /// Bakes `plan`.
 pub fn run(
-    plan: &ReliefPlan,
+    plan: &BumpMapPlan,
     reader: &Reader<'_>,
     geometry: &Geometry<'_>,
     settings: &Settings,
 ) -> Result<JobOutput, JobError> {
     let job = Job { plan, reader, settings, geometry, digests: Mutex::default() };
     // Decoders have one thread each, and normals take the longest.
-    let (relief, first) = rayon::join(|| job.relief(), || plan.layers.first().map(|layer| job.own(layer, None)));
-    let (relief, mut relief_notes) = relief?;
+    let (bump_map, first) = rayon::join(|| job.bump_map(), || plan.layers.first().map(|layer| job.own(layer, None)));
+    let (bump_map, mut bump_map_notes) = bump_map?;
     let first = first.transpose()?;
-    let size = grid(settings, [(relief.width(), relief.height())])?;
+    let size = grid(settings, [(bump_map.width(), bump_map.height())])?;
     let mut output = JobOutput::default();
-    relief_notes.extend(notes::of_relief(&relief, size));
+    bump_map_notes.extend(notes::of_bump_map(&bump_map, size));
     for layer in &plan.layers {
         let mut notes = layer.notes.clone();
         if !plan.source.samples_mips {
@@ -121,7 +121,7 @@ pub fn run(
                 "the sampler's minFilter never reads mips: the bake has no effect in engines that obey it".into(),
             );
         }
-        notes.extend(relief_notes.iter().cloned());
+        notes.extend(bump_map_notes.iter().cloned());
         let finest = match job.finest(layer, size) {
             None => None,
             Some(Ok(finest)) => Some(finest),
@@ -145,18 +145,18 @@ pub fn run(
             first: 0,
             unit_factor: None,
             anisotropy: None,
-            circle: None,
+            dropped_anisotropy: None,
             pyramid: None,
         });
     }
-    let bumps = Bumps::new(&relief, size);
-    job.portable(&relief, &bumps, first, &mut output)?;
+    let bumps = Bumps::new(&bump_map, size);
+    job.portable(&bump_map, &bumps, first, &mut output)?;
     if settings.profile.has_pyramid() {
-        job.pyramids(&relief, &bumps, &mut output)?;
+        job.pyramids(&bump_map, &bumps, &mut output)?;
     }
     drop(bumps);
     // The system takes memory back page by page, for 10 ms after 4096 x 4096: files are made meanwhile.
-    rayon::spawn(|| drop(relief));
+    rayon::spawn(|| drop(bump_map));
     Ok(output)
 }
 
@@ -164,7 +164,7 @@ pub fn run(
 type Decode = fn(&[u8], &DecodeOptions) -> Result<Image, DecodeError>;
 
 struct Job<'a> {
-    plan: &'a ReliefPlan,
+    plan: &'a BumpMapPlan,
     reader: &'a Reader<'a>,
     settings: &'a Settings,
     geometry: &'a Geometry<'a>,
@@ -190,21 +190,21 @@ impl Job<'_> {
     }
 
     /// The bumps, and what the user should know of them.
-    fn relief(&self) -> Result<(Relief, Vec<String>), JobError> {
+    fn bump_map(&self) -> Result<(BumpMap, Vec<String>), JobError> {
         let material = self.plan.layers.first().map(|l| l.name.clone()).unwrap_or_default();
         let file = self.file(&self.plan.source, &material)?;
         let image = self.decoded(&file, &self.plan.source, &material, decode)?;
         let failed = |error| JobError::Map { material, texture: describe(&self.plan.source.location), error };
-        let relief = match self.plan.kind {
-            ReliefKind::Normals => Relief::Normals(NormalMap::new(image, NormalLayout::Auto, false).map_err(failed)?),
-            ReliefKind::Heights { slope_per_repeat: [across, up], square_texels, wrap } => {
+        let bump_map = match self.plan.kind {
+            BumpMapKind::Normals => BumpMap::Normals(NormalMap::new(image, NormalLayout::Auto, false).map_err(failed)?),
+            BumpMapKind::Heights { slope_per_repeat: [across, up], square_texels, wrap } => {
                 let rows = if square_texels { image.width } else { image.height };
                 let slope_per_step = [across * image.width as f32, up * rows as f32];
-                Relief::Heights { map: HeightMap::new(image).map_err(failed)?, slope_per_step, wrap }
+                BumpMap::Heights { map: HeightMap::new(image).map_err(failed)?, slope_per_step, wrap }
             }
         };
         let notes = if notes::is_jpeg(&file) { vec![notes::JPEG.to_owned()] } else { Vec::new() };
-        Ok((relief, notes))
+        Ok((bump_map, notes))
     }
 
     /// Decodes the image of `texture`, which `material` uses for a lobe.

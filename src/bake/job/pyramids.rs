@@ -1,24 +1,29 @@
 //! The job's textures of the pyramid profile.
 
 use super::{Job, JobError, JobOutput, JobTexture, PyramidUse};
-use crate::bake::extension::Unfolded;
+use crate::bake::extension::BaseLobe;
 use crate::bake::plan::LayerPlan;
 use crate::bump::{Frame, FrameTransform};
 use crate::gltf::material::LayerKind;
-use crate::material::{Bumps, Encoding, Framed, Quantity, Ranged, Reading, Relief, bake_quantity, filter_loss, notes};
+use crate::material::{BumpMap, Bumps, Encoding, Framed, Quantity, Ranged, Reading, bake_quantity, filter_loss, notes};
 use crate::mip::{Area, Pyramid, Rows};
 use crate::report::{Choice, Content};
 use crate::settings::Model;
 
 /// Root mean square deviation of triangles up to which they count as turned alike: 6 degrees.
-const MAX_TURN_DEVIATION: f32 = 0.1;
+const MAX_ROTATION_DEVIATION: f32 = 0.1;
 
 /// Index of a texture and what the user should know of it.
 type Made = (usize, Option<String>);
 
 impl Job<'_> {
     /// Offsets and D or lambda_1 for the base layers.
-    pub(super) fn pyramids(&self, relief: &Relief, bumps: &Bumps<'_>, output: &mut JobOutput) -> Result<(), JobError> {
+    pub(super) fn pyramids(
+        &self,
+        bump_map: &BumpMap,
+        bumps: &Bumps<'_>,
+        output: &mut JobOutput,
+    ) -> Result<(), JobError> {
         let mut made: Vec<(Reading, Quantity, usize, Made)> = Vec::new();
         let first_offset = self.first_level(&self.plan.layers, bumps.size());
         for (index, layer) in self.plan.layers.iter().enumerate() {
@@ -29,7 +34,7 @@ impl Job<'_> {
                 );
                 continue;
             }
-            let (frame, reading) = self.reading(relief, layer).unwrap_or_else(|reason| {
+            let (frame, reading) = self.reading(bump_map, layer).unwrap_or_else(|reason| {
                 outcome.report.notes.push(reason);
                 (Frame::Unit, Reading::Uniform(FrameTransform::IDENTITY))
             });
@@ -48,7 +53,7 @@ impl Job<'_> {
                 if let Some((.., made)) = made.iter().find(|(r, q, f, _)| (r, *q, *f) == (&reading, quantity, first)) {
                     return Ok(made.clone());
                 }
-                let (mut texture, note) = self.pyramid(relief, bumps, &reading, quantity, first)?;
+                let (mut texture, note) = self.pyramid(bump_map, bumps, &reading, quantity, first)?;
                 if quantity != Quantity::Offset {
                     texture.lobe_errors = lobe_errors.clone().unwrap_or_default();
                 }
@@ -69,7 +74,7 @@ impl Job<'_> {
                 mapping: layer.layer.bumps.texture().mapping.clone(),
                 frame,
                 correction,
-                unfolded: outcome.unit_factor.is_some().then(|| Unfolded::new(&layer.layer)),
+                base_lobe: outcome.unit_factor.is_some().then(|| BaseLobe::new(&layer.layer)),
             });
         }
         Ok(())
@@ -77,7 +82,7 @@ impl Job<'_> {
 
     fn pyramid(
         &self,
-        relief: &Relief,
+        bump_map: &BumpMap,
         bumps: &Bumps<'_>,
         reading: &Reading,
         quantity: Quantity,
@@ -85,11 +90,11 @@ impl Job<'_> {
     ) -> Result<(JobTexture, Option<String>), JobError> {
         let encoding = Encoding::of(self.settings, quantity.channels() as u32).starting_at(first);
         let is_factor = quantity == Quantity::Factor;
-        let (Ranged { chain, range }, loss) = if *reading == Reading::Uniform(FrameTransform::IDENTITY) {
+        let (Ranged { mip_chain, range }, loss) = if *reading == Reading::Uniform(FrameTransform::IDENTITY) {
             (bake_quantity(bumps.moments(), quantity, encoding)?, is_factor.then(|| filter_loss(bumps.moments())))
         } else {
             let (width, height) = bumps.size();
-            let framed = Pyramid::new(Area::new(Framed { relief, reading }, width, height));
+            let framed = Pyramid::new(Area::new(Framed { bump_map, reading }, width, height));
             (bake_quantity(&framed, quantity, encoding)?, is_factor.then(|| filter_loss(&framed)))
         };
         let (content, model) = match quantity {
@@ -99,7 +104,7 @@ impl Job<'_> {
         };
         let texture = JobTexture {
             content,
-            chain,
+            mip_chain,
             range: Some(range),
             stem: self.plan.source.stem(),
             sources: self.hashed([&self.plan.source.location]),
@@ -112,7 +117,7 @@ impl Job<'_> {
     }
 
     /// How to read the bumps in the frame asked for, or why this layer cannot have it.
-    fn reading(&self, relief: &Relief, layer: &LayerPlan) -> Result<(Frame, Reading), String> {
+    fn reading(&self, bump_map: &BumpMap, layer: &LayerPlan) -> Result<(Frame, Reading), String> {
         let frame = self.settings.frame;
         let layout = layer.layout.as_ref();
         match (frame, layout) {
@@ -122,20 +127,20 @@ impl Job<'_> {
                 let [p_u, p_v] = layout.units_per_repeat;
                 Ok((frame, Reading::Uniform(FrameTransform::natural(p_u, p_v))))
             }
-            (Frame::MainDirection(_), Some(layout)) if layout.turn_deviation <= MAX_TURN_DEVIATION => {
+            (Frame::MainDirection(_), Some(layout)) if layout.rotation_deviation <= MAX_ROTATION_DEVIATION => {
                 let [cos, sin] = layout.turn;
                 Ok((frame, Reading::Uniform(FrameTransform::rotation(cos, sin))))
             }
             (Frame::MainDirection(_), Some(layout)) => {
                 let mapping = &layer.layer.bumps.texture().mapping;
-                let turns = self.geometry.turn_map(layer.material, mapping, [relief.width(), relief.height()]);
+                let turns = self.geometry.rotation_map(layer.material, mapping, [bump_map.width(), bump_map.height()]);
                 match turns {
-                    Some(turns) if turns.conflict <= MAX_TURN_DEVIATION => Ok((frame, Reading::PerTexel(turns))),
+                    Some(turns) if turns.conflict <= MAX_ROTATION_DEVIATION => Ok((frame, Reading::PerTexel(turns))),
                     turns => Err(format!(
                         "the tangent does not keep its angle to the main direction over the mesh (deviation {:.2}), and \
                          parts of the map are used in several directions (deviation {:.2}): one offset map cannot serve, \
                          so offsets are in the unit frame",
-                        layout.turn_deviation,
+                        layout.rotation_deviation,
                         turns.map_or(2.0, |t| t.conflict)
                     )),
                 }

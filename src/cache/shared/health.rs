@@ -16,7 +16,7 @@ const REST: Duration = Duration::from_secs(60);
 #[derive(Debug, Default)]
 pub struct Health {
     asleep_until: Mutex<Option<Instant>>,
-    was_told: AtomicBool,
+    was_reported: AtomicBool,
     is_read_only: AtomicBool,
 }
 
@@ -40,7 +40,7 @@ impl Health {
         if let Ok(mut until) = self.asleep_until.lock() {
             *until = Some(Instant::now() + REST);
         }
-        if self.was_told.swap(true, Ordering::Relaxed) {
+        if self.was_reported.swap(true, Ordering::Relaxed) {
             return Ok(());
         }
         Err(CacheError::Unreachable { url: url.to_owned(), reason: reason(error) })

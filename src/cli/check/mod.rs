@@ -88,7 +88,7 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
                 return Ok(Outcome::Usage);
             }
         },
-        None if args.settings.is_said() => {
+        None if args.settings.is_explicit() => {
             writeln!(err, "error: expected --source with settings, found none; name the folder that was baked")?;
             return Ok(Outcome::Usage);
         }

@@ -83,7 +83,7 @@ impl Sources {
     /// # Errors
     /// [`SelectionError`] where settings make no sense.
     pub fn find(source: &Path, baked: &[PathBuf], settings: &SettingOptions) -> Result<Self, SelectionError> {
-        let mut sources = Self { is_configured: settings.is_said(), ..Self::default() };
+        let mut sources = Self { is_configured: settings.is_explicit(), ..Self::default() };
         for argument in baked {
             let is_folder = argument.is_dir();
             let (inputs, output) = if is_folder {

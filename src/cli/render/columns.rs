@@ -16,7 +16,7 @@ use crate::gltf::texture::{ImageLocation, texture_source};
 use crate::image::{DecodeOptions, Image, Rgba};
 use crate::ktx2::Ktx2;
 use crate::mip::{Level, Rows};
-use crate::render::{Bumps, LostBumps, Material, OwnAnisotropy, Ranged, Texture};
+use crate::render::{BaseAnisotropy, Bumps, LostBumps, Material, Ranged, Texture};
 use crate::settings::{Form, Model, Profile, Settings};
 
 /// A material in all its forms.
@@ -132,7 +132,7 @@ impl Reader<'_> {
             Some(a) => {
                 let texture = a.texture.as_ref().map(|t| self.texture(t.texture)).transpose()?;
                 let (sin, cos) = libm::sincos(f64::from(a.rotation));
-                Some(OwnAnisotropy {
+                Some(BaseAnisotropy {
                     texture: texture.map(|t| t.texture),
                     strength: a.strength.into(),
                     rotation: [cos, sin],
@@ -145,10 +145,10 @@ impl Reader<'_> {
                 BumpSource::Normals(texture, scale) => {
                     let Loaded { texture, channels } = self.texture(texture.texture)?;
                     let bumps = Bumps::Normals { texture, scale: f64::from(*scale), has_z: channels > 2 };
-                    (bumps, LostBumps::Folded)
+                    (bumps, LostBumps::RoughenedTextures)
                 }
                 // Every bake gives height maps a normal or an offset map.
-                BumpSource::Heights(..) => (Bumps::Flat, LostBumps::Folded),
+                BumpSource::Heights(..) => (Bumps::Flat, LostBumps::RoughenedTextures),
             },
         };
         Ok(Material {
@@ -177,7 +177,7 @@ impl Reader<'_> {
                     RoughnessModel::StandardDeviation => LostBumps::Lambda1(ranged, pyramid.correction_factor),
                 }
             }
-            _ => LostBumps::Folded,
+            _ => LostBumps::RoughenedTextures,
         };
         Ok((Bumps::Offsets(bumps), lost))
     }

@@ -67,7 +67,7 @@ pub struct Args {
     /// INPUT is an image of heights, not of normals.
     #[arg(long)]
     height: bool,
-    /// Relief between heights 0 and 1, in widths of the map.
+    /// BumpMap between heights 0 and 1, in widths of the map.
     #[arg(long, value_parser = finite, default_value_t = 0.05, value_name = "S", allow_hyphen_values = true)]
     height_scale: f32,
     /// Roughness of a bare map or the waves, 0 to 1. [default: what suits the scene]

@@ -90,7 +90,7 @@ pub struct Changes {
 }
 
 /// Tells what happens.
-pub struct Teller<'w> {
+pub struct EventWriter<'w> {
     out: &'w mut dyn Write,
     err: &'w mut dyn Write,
     is_json: bool,
@@ -99,14 +99,14 @@ pub struct Teller<'w> {
     changes: Changes,
 }
 
-impl<'w> Teller<'w> {
+impl<'w> EventWriter<'w> {
     /// Results go to `out`, as JSON or unless `is_quiet`; complaints to `err`.
     pub fn new(out: &'w mut dyn Write, err: &'w mut dyn Write, is_json: bool, is_quiet: bool) -> Self {
         Self { out, err, is_json, is_quiet, has_news: true, changes: Changes::default() }
     }
 
     /// Tells of `event` on a line of its own, if lines are asked for.
-    pub fn tell(&mut self, event: &Event<'_>) -> io::Result<()> {
+    pub fn write(&mut self, event: &Event<'_>) -> io::Result<()> {
         if self.is_json {
             serde_json::to_writer(&mut self.out, event)?;
             self.out.write_all(b"\n")?;
@@ -138,7 +138,14 @@ impl<'w> Teller<'w> {
         }
         let files = done.written.iter().map(|Written { path, .. }| Name(path)).collect();
         let status = Status::of(done, None);
-        self.tell(&Event::Baked { input: &name, output: Name(&done.output), status, files, bytes: done.bytes, seconds })
+        self.write(&Event::Baked {
+            input: &name,
+            output: Name(&done.output),
+            status,
+            files,
+            bytes: done.bytes,
+            seconds,
+        })
     }
 
     /// An asset, or everything, cannot be baked; the document `kept` of an earlier bake stays.
@@ -149,7 +156,7 @@ impl<'w> Teller<'w> {
             Some(input) => writeln!(self.err, "error: {input}: {error}{stays}")?,
             None => writeln!(self.err, "error: {error}{stays}")?,
         }
-        self.tell(&Event::Failed { input, error, kept })
+        self.write(&Event::Failed { input, error, kept })
     }
 
     /// Files were removed.
@@ -160,7 +167,7 @@ impl<'w> Teller<'w> {
         }
         for (input, files) in by_asset {
             let files = files.into_iter().map(Name).collect();
-            self.tell(&Event::Removed { input: Name(input), files })?;
+            self.write(&Event::Removed { input: Name(input), files })?;
         }
         self.has_news |= !removed.is_empty();
         self.changes.removed.extend(removed.iter().map(|removed| removed.path.clone()));
@@ -169,7 +176,7 @@ impl<'w> Teller<'w> {
 
     /// Nothing is left to do, if there was anything.
     pub fn idle(&mut self, (assets, failed): (usize, usize)) -> io::Result<()> {
-        if std::mem::take(&mut self.has_news) { self.tell(&Event::Idle { assets, failed }) } else { Ok(()) }
+        if std::mem::take(&mut self.has_news) { self.write(&Event::Idle { assets, failed }) } else { Ok(()) }
     }
 
     /// Tells a person what need not be changed, unless errors only are asked for.

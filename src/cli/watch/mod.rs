@@ -18,7 +18,7 @@ pub use args::Args;
 
 use crate::cli::outcome::Outcome;
 use crate::watch::{Scope, Wake, Wakes, WatchError};
-use events::{Event, Name, Teller};
+use events::{Event, EventWriter, Name};
 use hook::Hook;
 use round::Round;
 
@@ -67,7 +67,7 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
         }
         waking.wake();
     });
-    let mut teller = Teller::new(out, err, args.json, args.quiet);
+    let mut events = EventWriter::new(out, err, args.json, args.quiet);
     let mut poll = args.poll.map(Duration::from_millis);
     let mut wakes = None;
     let hook = args.on_change.as_deref().map(|command| Hook::new(command, args.json));
@@ -78,33 +78,33 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
         if poll.is_none()
             && let Err(error) = follow(&mut wakes, &wake, round.scope())
         {
-            teller.warn(&format_args!("{error}; looking at all files every {} ms instead", POLL.as_millis()))?;
+            events.warn(&format_args!("{error}; looking at all files every {} ms instead", POLL.as_millis()))?;
             (wakes, poll) = (None, Some(POLL));
         }
         if is_first {
-            teller.tell(&Event::Started {
+            events.write(&Event::Started {
                 version: env!("CARGO_PKG_VERSION"),
                 folder: Name(&args.folder),
                 output: Name(round.output()),
                 poll: poll.map(|poll| poll.as_millis() as u64),
             })?;
         }
-        let next = round.run(args, &stop, &mut teller, is_first)?;
+        let next = round.run(args, &stop, &mut events, is_first)?;
         is_first = false;
         if stop.load(Ordering::Acquire) {
             return Ok(Outcome::Done);
         }
         if let Some(hook) = &hook
-            && let Some(changes) = teller.take_changes()
+            && let Some(changes) = events.take_changes()
         {
-            hook.run(&changes, &stop).iter().try_for_each(|error| teller.warn(error))?;
+            hook.run(&changes, &stop).iter().try_for_each(|error| events.warn(error))?;
         }
         let is_followed = wakes.as_ref().is_none_or(|wakes| wakes.is_following(round.scope()));
         if !is_followed {
             continue;
         }
         if next.is_idle {
-            teller.idle(round.counts())?;
+            events.idle(round.counts())?;
         }
         // Looking takes half of the time at most, however many events there are.
         let earliest = Instant::now() + next.took.clamp(LEAST_PAUSE, LONGEST_PAUSE);

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use super::args::Args;
 use super::asset::{Asset, Looks, Planned, State};
 use super::documents::Documents;
-use super::events::Teller;
+use super::events::EventWriter;
 use crate::cache::Cache;
 use crate::cli::selection::Selected;
 use crate::output::Guard;
@@ -85,26 +85,32 @@ impl Round {
     }
 
     /// Looks at everything and bakes what changed; the `first` time without waiting for what is being written.
-    pub fn run(&mut self, args: &Args, stop: &AtomicBool, teller: &mut Teller<'_>, first: bool) -> io::Result<Next> {
+    pub fn run(
+        &mut self,
+        args: &Args,
+        stop: &AtomicBool,
+        events: &mut EventWriter<'_>,
+        first: bool,
+    ) -> io::Result<Next> {
         let now = Instant::now();
         let (mut retry, mut baking) = (None, Duration::ZERO);
-        if let Some(selected) = self.select(args, teller, first)?
+        if let Some(selected) = self.select(args, events, first)?
             && (first || self.has_settled_configs(&selected.configs, now))
         {
             let configs = selected.configs.iter().map(|path| (path.clone(), Look::at(path))).collect();
             let mut is_same_scope = self.configs == configs && self.output == selected.output;
             (self.configs, self.output) = (configs, selected.output);
             is_same_scope &= !self.forget_others(&selected.assets, now);
-            teller.removed(&self.ledger.sweep())?;
+            events.removed(&self.ledger.sweep())?;
             let planned = self.plan(&selected.assets, now, first);
             if planned.iter().any(Option::is_some) {
                 is_same_scope = false;
                 let start = Instant::now();
-                retry = self.work(&selected.assets, planned, stop, teller)?;
+                retry = self.work(&selected.assets, planned, stop, events)?;
                 baking = start.elapsed();
-                teller.removed(&self.ledger.sweep())?;
+                events.removed(&self.ledger.sweep())?;
                 if let Some(cache) = &self.cache {
-                    cache.trim(&mut |error| drop(teller.warn(&error)));
+                    cache.trim(&mut |error| drop(events.warn(&error)));
                 }
             }
             if !is_same_scope {
@@ -114,8 +120,8 @@ impl Round {
         if real(&args.folder) != self.scope.root() {
             self.scope = self.current_scope(args);
         }
-        let untold = self.complaints.values().any(|was_told| !was_told).then(|| now + self.window);
-        let waits = [self.settling.pending(now), untold, retry.filter(Duration::is_zero).map(|_| now)];
+        let unreported = self.complaints.values().any(|was_reported| !was_reported).then(|| now + self.window);
+        let waits = [self.settling.pending(now), unreported, retry.filter(Duration::is_zero).map(|_| now)];
         let is_idle = waits.iter().all(Option::is_none);
         let at = waits.into_iter().flatten().chain(retry.map(|retry| Instant::now() + retry)).min();
         Ok(Next { at, is_idle, took: now.elapsed().saturating_sub(baking) })
@@ -128,7 +134,7 @@ impl Round {
     }
 
     /// The assets that are there now; `None` where that cannot be told, or not yet: outputs stay as they are.
-    fn select(&mut self, args: &Args, teller: &mut Teller<'_>, first: bool) -> io::Result<Option<Selected>> {
+    fn select(&mut self, args: &Args, events: &mut EventWriter<'_>, first: bool) -> io::Result<Option<Selected>> {
         let folder = &args.folder;
         let (mut selected, mut wrong) = (None, Vec::new());
         if folder.is_dir() {
@@ -137,7 +143,7 @@ impl Round {
                 Ok(found) => {
                     if let Some(note) = found.note_of_baked().filter(|_| !self.told_of_baked) {
                         self.told_of_baked = true;
-                        teller.note(&note)?;
+                        events.note(&note)?;
                     }
                     // Assets of a folder without any are still to come.
                     let errors = found.errors.iter().filter(|error| !matches!(error, InputError::EmptyFolder { .. }));
@@ -153,13 +159,13 @@ impl Round {
         // What comes and goes while a folder is listed or a file is written is not worth a word.
         let before = std::mem::take(&mut self.complaints);
         for complaint in wrong {
-            let was_told = before.get(&complaint).copied();
-            if was_told == Some(false) || (first && was_told.is_none()) {
-                teller.failed(None, &complaint, None)?;
+            let was_reported = before.get(&complaint).copied();
+            if was_reported == Some(false) || (first && was_reported.is_none()) {
+                events.failed(None, &complaint, None)?;
             }
-            self.complaints.insert(complaint, first || was_told.is_some());
+            self.complaints.insert(complaint, first || was_reported.is_some());
         }
-        let is_lasting = self.complaints.values().all(|was_told| *was_told);
+        let is_lasting = self.complaints.values().all(|was_reported| *was_reported);
         Ok(selected.filter(|_| is_lasting))
     }
 

@@ -25,7 +25,7 @@ pub fn place_images(
     freed: &mut Freed,
 ) -> Result<Vec<Placed>, JsonError> {
     // First of all each takes its own, so that none takes another's.
-    let claims: Vec<Vec<usize>> = textures
+    let replaced: Vec<Vec<usize>> = textures
         .iter()
         .zip(&freed.replaced)
         .map(|(new, replaced)| {
@@ -36,9 +36,9 @@ pub fn place_images(
         })
         .collect();
     let mut placed = Vec::with_capacity(textures.len());
-    for (new, claims) in textures.iter().zip(claims) {
-        let mut claims = claims.into_iter();
-        let mut place = |image: &NewImage| match claims.next() {
+    for (new, replaced) in textures.iter().zip(replaced) {
+        let mut replaced = replaced.into_iter();
+        let mut place = |image: &NewImage| match replaced.next() {
             Some(index) => overwrite(json, root, index, image, &new.name, true).map(|()| index),
             None => match freed.images.pop_first() {
                 Some(index) => overwrite(json, root, index, image, &new.name, false).map(|()| index),

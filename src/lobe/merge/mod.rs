@@ -42,7 +42,7 @@ impl Merge for OrientedLobe {
 
     #[inline(always)]
     fn merged<F: Real, const MOST: usize>(weights: &[F], parts: &[[F; 6]]) -> [F; 6] {
-        let mut lobes = [Part::of([weights[0].like(0.0); 6]); MOST];
+        let mut lobes = [Part::of([weights[0].splat_like(0.0); 6]); MOST];
         lobes.iter_mut().zip(parts).for_each(|(lobe, part)| *lobe = Part::of(*part));
         merged::<_, MOST>(weights, &lobes[..parts.len()]).numbers()
     }
@@ -68,7 +68,7 @@ impl Merge for OrientedLobe {
 /// The merged lobe of at least one and at most `MOST` parts.
 #[inline(always)]
 fn merged<F: Real, const MOST: usize>(weights: &[F], parts: &[Part<F>]) -> Part<F> {
-    let zero = weights[0].like(0.0);
+    let zero = weights[0].splat_like(0.0);
     let mut sum = [zero; 3];
     for (w, part) in weights.iter().zip(parts) {
         add(&mut sum, *w, part.normal);
@@ -81,10 +81,10 @@ fn merged<F: Real, const MOST: usize>(weights: &[F], parts: &[Part<F>]) -> Part<
         let mut room = [[[zero; 2]; POINTS]; MOST];
         let points = half_vectors(&mut room, parts, about);
         let likeliest = likeliest(&start, weights, parts, points, WHOLE_STEPS);
-        slopes = slopes.or(likeliest, start.is_smooth);
+        slopes = slopes.select(likeliest, start.is_smooth);
     }
     // Normals that cancel have no frame.
-    parts[0].or(tilted(about, slopes), length.is_zero())
+    parts[0].select(tilted(about, slopes), length.is_zero())
 }
 
 /// The lobe where EM ends, with [`WHOLE_STEPS`] to within 0.003 of the width of rough lobes (test `the_steps_suffice`).
@@ -120,13 +120,13 @@ fn likeliest<F: Real, const MOST: usize>(
 #[inline(always)]
 fn tilted<F: Real>(about: [[F; 3]; 3], Slopes { mean, a }: Slopes<F>) -> Part<F> {
     let [t, b, n] = about;
-    let length = (mean[0].like(1.0) + mean[0] * mean[0] + mean[1] * mean[1]).sqrt();
+    let length = (mean[0].splat_like(1.0) + mean[0] * mean[0] + mean[1] * mean[1]).sqrt();
     let mut normal = n;
     for i in 0..3 {
         normal[i] = n[i] + mean[0] * t[i] + mean[1] * b[i];
     }
     // Parts all around can make one that points below the surface.
-    normal[2] = normal[2].max(length.like(LEAST_COSINE) * length);
+    normal[2] = normal[2].max(length.splat_like(LEAST_COSINE) * length);
     let long = dot(normal, normal).sqrt();
     let normal = [normal[0] / long, normal[1] / long, normal[2] / long];
     let [own_t, own_b, _] = frame(normal);

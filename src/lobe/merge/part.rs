@@ -23,10 +23,10 @@ impl<F: Real> Part<F> {
     }
 
     #[inline(always)]
-    pub(super) fn or(self, other: Self, mask: F::Mask) -> Self {
+    pub(super) fn select(self, other: Self, mask: F::Mask) -> Self {
         let (mut numbers, other) = (self.numbers(), other.numbers());
         for i in 0..6 {
-            numbers[i] = numbers[i].or(other[i], mask);
+            numbers[i] = numbers[i].select(other[i], mask);
         }
         Self::of(numbers)
     }

@@ -37,8 +37,9 @@ pub fn half_vectors<'r, F: Real>(
     parts: &[Part<F>],
     about: [[F; 3]; 3],
 ) -> &'r [[[F; 2]; POINTS]] {
-    let zero = parts[0].a.uu.like(0.0);
-    let (one, least, least_cosine) = (zero.like(1.0), zero.like(MIN_SQUARED_ALPHA), zero.like(LEAST_COSINE));
+    let zero = parts[0].a.uu.splat_like(0.0);
+    let (one, least, least_cosine) =
+        (zero.splat_like(1.0), zero.splat_like(MIN_SQUARED_ALPHA), zero.splat_like(LEAST_COSINE));
     let first: &[[[f32; 2]; RADII.len()]; MAX_PARTS] = &FIRST;
     for ((part, first), points) in parts.iter().zip(first).zip(room.iter_mut()) {
         // The part's axes, scaled by its lobe (A = L L^T, L lower triangular), in the common frame.
@@ -55,7 +56,7 @@ pub fn half_vectors<'r, F: Real>(
             up[i] = dot(n, about[i]);
         }
         for (&[cos, sin], points) in first.iter().zip(points.as_chunks_mut::<SPOKES>().0) {
-            let (cos, sin) = (zero.like(cos), zero.like(sin));
+            let (cos, sin) = (zero.splat_like(cos), zero.splat_like(sin));
             let (mut leg, mut turned) = ([zero; 3], [zero; 3]);
             for i in 0..3 {
                 leg[i] = cos * along[i] + sin * across[i];
@@ -78,8 +79,8 @@ pub fn half_vectors<'r, F: Real>(
 /// weights.
 #[inline(always)]
 pub fn sums<F: Real>(weights: &[F], points: &[[[F; 2]; POINTS]], Slopes { mean, a }: Slopes<F>) -> [F; 6] {
-    let zero = mean[0].like(0.0);
-    let (one, twice_share) = (zero.like(1.0), zero.like(2.0 / POINTS as f32));
+    let zero = mean[0].splat_like(0.0);
+    let (one, twice_share) = (zero.splat_like(1.0), zero.splat_like(2.0 / POINTS as f32));
     let inverse = a.inverse();
     let twice_uv = inverse.uv + inverse.uv;
     let mut sums = [zero; 6];

@@ -30,8 +30,8 @@ impl<F: Real> Matrix<F> {
     /// determinant.
     #[inline(always)]
     pub fn inverse(self) -> Self {
-        let zero = self.uu.like(0.0);
-        let (one, least) = (zero.like(1.0), zero.like(MIN_SQUARED_ALPHA));
+        let zero = self.uu.splat_like(0.0);
+        let (one, least) = (zero.splat_like(1.0), zero.splat_like(MIN_SQUARED_ALPHA));
         let uu = self.uu.max(least);
         let shortest = least * (one + self.vv);
         let vv = self.vv.max(self.uv * self.uv / uu + shortest);
@@ -57,11 +57,11 @@ pub struct Slopes<F> {
 
 impl<F: Real> Slopes<F> {
     #[inline(always)]
-    pub fn or(self, other: Self, mask: F::Mask) -> Self {
+    pub fn select(self, other: Self, mask: F::Mask) -> Self {
         self.with(
             other,
             #[inline(always)]
-            |own, other| own.or(other, mask),
+            |own, other| own.select(other, mask),
         )
     }
 
@@ -91,7 +91,7 @@ impl<F: Real> Slopes<F> {
     /// The lobe after this one in EM, given the sums of w, w x, w y, w x^2, w x y and w y^2 about the mean.
     #[inline(always)]
     pub fn next(self, [weight, x, y, xx, xy, yy]: [F; 6]) -> Self {
-        let (share, two) = (weight.like(1.0) / weight, weight.like(2.0));
+        let (share, two) = (weight.splat_like(1.0) / weight, weight.splat_like(2.0));
         let (dx, dy) = (x * share, y * share);
         let a = Matrix {
             uu: two * (xx * share - dx * dx),
@@ -106,15 +106,15 @@ impl<F: Real> Slopes<F> {
     /// `otherwise`; else to this.
     #[inline(always)]
     pub fn step(self, next: Self, otherwise: Self) -> Self {
-        let zero = self.mean[0].like(0.0);
-        let stride = zero.like(STRIDE);
+        let zero = self.mean[0].splat_like(0.0);
+        let stride = zero.splat_like(STRIDE);
         let far = self.with(
             next,
             #[inline(always)]
             |from, to| from + stride * (to - from),
         );
-        let least = zero.like(0.1) * otherwise.a.determinant();
-        let overshoots = far.a.determinant().at_most(least) | far.a.uu.at_most(zero);
-        otherwise.or(far, overshoots)
+        let least = zero.splat_like(0.1) * otherwise.a.determinant();
+        let overshoots = far.a.determinant().lanes_le(least) | far.a.uu.lanes_le(zero);
+        otherwise.select(far, overshoots)
     }
 }

@@ -20,13 +20,13 @@ pub struct Start<F: Real, const MOST: usize> {
 impl<F: Real, const MOST: usize> Start<F, MOST> {
     #[inline(always)]
     pub fn of(weights: &[F], parts: &[Part<F>], [t, b, n]: [[F; 3]; 3]) -> Self {
-        let zero = weights[0].like(0.0);
-        let half = zero.like(0.5);
+        let zero = weights[0].splat_like(0.0);
+        let half = zero.splat_like(0.5);
         let mut slopes = [[zero; 2]; MOST];
         let mut mean = [zero; 2];
-        let (mut least, mut largest) = (zero.like(f32::INFINITY), zero);
+        let (mut least, mut largest) = (zero.splat_like(f32::INFINITY), zero);
         for ((w, part), slope) in weights.iter().zip(parts).zip(&mut slopes) {
-            let z = dot(part.normal, n).max(zero.like(LEAST_COSINE));
+            let z = dot(part.normal, n).max(zero.splat_like(LEAST_COSINE));
             let (x, y) = (dot(part.normal, t) / z, dot(part.normal, b) / z);
             *slope = [x, y];
             mean = [mean[0] + *w * x, mean[1] + *w * y];
@@ -45,10 +45,10 @@ impl<F: Real, const MOST: usize> Start<F, MOST> {
         }
         // Parts of unlike widths merge to one that fits both only through EM.
         let trace = spread[0] + spread[2];
-        let alike = largest.at_most(zero.like(1.2) * least) | trace.is_zero();
-        let is_smooth = trace.at_most(zero.like(SMOOTH) * least) & alike;
+        let alike = largest.lanes_le(zero.splat_like(1.2) * least) | trace.is_zero();
+        let is_smooth = trace.lanes_le(zero.splat_like(SMOOTH) * least) & alike;
         // EM comes to the same lobe from wherever it starts, soonest from what a heavy-tailed spread would want.
-        add(&mut own, zero.like(2.0).or(half, is_smooth), spread);
+        add(&mut own, zero.splat_like(2.0).select(half, is_smooth), spread);
         let [uu, uv, vv] = own;
         Self { parts: slopes, slopes: Slopes { mean, a: Matrix { uu, uv, vv } }, is_smooth }
     }
@@ -57,8 +57,8 @@ impl<F: Real, const MOST: usize> Start<F, MOST> {
     /// E[w x x^T] / E[w] of a lobe.
     #[inline(always)]
     pub fn roughly_next(&self, slopes: Slopes<F>, weights: &[F], parts: &[Part<F>]) -> Slopes<F> {
-        let zero = weights[0].like(0.0);
-        let (one, half) = (zero.like(1.0), zero.like(0.5));
+        let zero = weights[0].splat_like(0.0);
+        let (one, half) = (zero.splat_like(1.0), zero.splat_like(0.5));
         let (inverse, mut sums) = (slopes.a.inverse(), [zero; 6]);
         for ((weight, part), [x, y]) in weights.iter().zip(parts).zip(self.parts) {
             let (x, y) = (x - slopes.mean[0], y - slopes.mean[1]);

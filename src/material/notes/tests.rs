@@ -1,19 +1,19 @@
 //! Where the method fails, the user is told; where it does not, not.
 
-use crate::bake::{OwnRoughness, bake_map};
+use crate::bake::{BaseRoughness, bake_map};
 use crate::bump::{HeightMap, NormalLayout, NormalMap};
 use crate::codec::Target;
 use crate::image::{Image, Samples};
-use crate::material::relief::Relief;
+use crate::material::bump_map::BumpMap;
 use crate::mip::Wrap;
 use crate::settings::{Model, Profile, Settings};
 
 const N: u32 = 64;
 
 /// The notes of a bake on a surface of roughness `roughness`.
-fn notes(relief: &Relief, roughness: f32, settings: Settings) -> Vec<String> {
-    let own = OwnRoughness { image: None, factor: roughness };
-    bake_map(relief, Some(&own), &settings).unwrap().notes
+fn notes(bump_map: &BumpMap, roughness: f32, settings: Settings) -> Vec<String> {
+    let own = BaseRoughness { image: None, factor: roughness };
+    bake_map(bump_map, Some(&own), &settings).unwrap().notes
 }
 
 /// Without a bound to miss.
@@ -21,12 +21,12 @@ fn anisotropic() -> Settings {
     Settings { model: Model::Anisotropic, target: Target::Float, max_error: 1.0, ..Settings::default() }
 }
 
-fn normals(width: u32, height: u32, samples: Samples) -> Relief {
-    Relief::Normals(NormalMap::new(Image { width, height, channels: 3, samples }, NormalLayout::Xyz, false).unwrap())
+fn normals(width: u32, height: u32, samples: Samples) -> BumpMap {
+    BumpMap::Normals(NormalMap::new(Image { width, height, channels: 3, samples }, NormalLayout::Xyz, false).unwrap())
 }
 
 /// Normals from slopes, as floats.
-fn of_slopes(width: u32, height: u32, slope: impl Fn(u32, u32) -> [f32; 2]) -> Relief {
+fn of_slopes(width: u32, height: u32, slope: impl Fn(u32, u32) -> [f32; 2]) -> BumpMap {
     let texel = |i: u32| {
         let [u, v] = slope(i % width, i / width);
         // Negative somewhere, so that floats are components.
@@ -51,8 +51,8 @@ fn nothing_is_said_of_a_map_without_faults() {
 
 #[test]
 fn slopes_beyond_the_clamp_are_counted() {
-    let relief = of_slopes(N, N, |x, y| if (x, y) == (3, 5) { [40.0, 0.0] } else { ridges(x, y) });
-    one_says(&notes(&relief, 0.4, anisotropic()), "1 of 4096 texels are steeper than 16");
+    let bump_map = of_slopes(N, N, |x, y| if (x, y) == (3, 5) { [40.0, 0.0] } else { ridges(x, y) });
+    one_says(&notes(&bump_map, 0.4, anisotropic()), "1 of 4096 texels are steeper than 16");
 }
 
 #[test]
@@ -65,21 +65,21 @@ fn normals_below_the_surface_are_counted() {
 
 #[test]
 fn alphas_above_one_are_counted() {
-    let relief = of_slopes(N, N, |x, _| [if x.is_multiple_of(2) { 3.0 } else { -3.0 }, 0.0]);
+    let bump_map = of_slopes(N, N, |x, _| [if x.is_multiple_of(2) { 3.0 } else { -3.0 }, 0.0]);
     let texels = (0..6).map(|level| (32 >> level) * (32 >> level)).sum::<u32>();
-    one_says(&notes(&relief, 0.4, anisotropic()), &format!("{texels} texels over all levels are rougher"));
+    one_says(&notes(&bump_map, 0.4, anisotropic()), &format!("{texels} texels over all levels are rougher"));
 }
 
 #[test]
 fn sizes_that_blocks_do_not_allow_are_told() {
     for (size, grid) in [((7, 5), "8 x 8"), ((1, 9), "4 x 12"), ((1, 1), "4 x 4")] {
-        let relief = of_slopes(size.0, size.1, ridges);
+        let bump_map = of_slopes(size.0, size.1, ridges);
         let blocks = Settings { target: Target::Basis, ..anisotropic() };
         one_says(
-            &notes(&relief, 0.4, blocks),
+            &notes(&bump_map, 0.4, blocks),
             &format!("the map of {} x {} texels was resampled to {grid}", size.0, size.1),
         );
-        assert_eq!(notes(&relief, 0.4, anisotropic()), Vec::<String>::new());
+        assert_eq!(notes(&bump_map, 0.4, anisotropic()), Vec::<String>::new());
     }
 }
 
@@ -104,15 +104,15 @@ fn depths_too_small_for_a_smooth_surface_are_told() {
 /// Of heights 8 bits roughen even paint.
 #[test]
 fn heights_of_eight_bits_are_told() {
-    let relief = |samples| {
+    let bump_map = |samples| {
         let image = Image { width: N, height: N, channels: 1, samples };
         let (slope_per_step, wrap) = ([0.05 * 1024.0; 2], [Wrap::Clamp; 2]);
-        Relief::Heights { map: HeightMap::new(image).unwrap(), slope_per_step, wrap }
+        BumpMap::Heights { map: HeightMap::new(image).unwrap(), slope_per_step, wrap }
     };
     let ramp = |one: f32| (0..N * N).map(move |i| (i % N) as f32 / 1000.0 * one);
-    let bytes = relief(Samples::U8(ramp(255.0).map(|h| h.round() as u8).collect()));
-    let words = relief(Samples::U16(ramp(65535.0).map(|h| h.round() as u16).collect()));
-    let floats = relief(Samples::F32(ramp(1.0).collect()));
+    let bytes = bump_map(Samples::U8(ramp(255.0).map(|h| h.round() as u8).collect()));
+    let words = bump_map(Samples::U16(ramp(65535.0).map(|h| h.round() as u16).collect()));
+    let floats = bump_map(Samples::F32(ramp(1.0).collect()));
     one_says(&notes(&bytes, 0.3, anisotropic()), "the depth of the bump map is too small");
     for deep in [words, floats] {
         assert_eq!(notes(&deep, 0.3, anisotropic()), Vec::<String>::new());
@@ -128,9 +128,9 @@ fn axes_that_turn_all_the_way_round_are_told() {
         let slope = if (radius as u32).is_multiple_of(2) { 0.3 } else { -0.3 };
         [slope * x / radius, slope * y / radius]
     };
-    let relief = of_slopes(N, N, lathe);
-    one_says(&notes(&relief, 0.3, anisotropic()), "directions of anisotropy point away");
+    let bump_map = of_slopes(N, N, lathe);
+    one_says(&notes(&bump_map, 0.3, anisotropic()), "directions of anisotropy point away");
     let pyramid = Settings { profile: Profile::Pyramid, ..anisotropic() };
-    one_says(&notes(&relief, 0.3, pyramid), "filtering D loses");
+    one_says(&notes(&bump_map, 0.3, pyramid), "filtering D loses");
     assert_eq!(notes(&of_slopes(N, N, ridges), 0.3, pyramid), Vec::<String>::new());
 }

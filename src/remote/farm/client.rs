@@ -49,7 +49,7 @@ pub struct Client {
     /// Whether blobs go compressed.
     pub is_zstd: bool,
     /// MiB that blobs on their way may take.
-    room: Semaphore,
+    budget: Semaphore,
     /// How often something is tried again.
     retries: u32,
     /// What was done.
@@ -67,7 +67,7 @@ impl Client {
             instance: options.instance.clone(),
             batch: BATCH,
             is_zstd: false,
-            room: Semaphore::new(ROOM as usize),
+            budget: Semaphore::new(ROOM as usize),
             retries: options.retries,
             counts: Mutex::default(),
         };
@@ -136,10 +136,10 @@ impl Client {
     }
 
     /// Waits until there is memory for `bytes`, or for the one blob that is larger than all of it.
-    pub async fn room(&self, bytes: u64) -> Option<SemaphorePermit<'_>> {
+    pub async fn budget(&self, bytes: u64) -> Option<SemaphorePermit<'_>> {
         let megabytes = u32::try_from(bytes >> 20).unwrap_or(ROOM).clamp(1, ROOM);
         // Never closed.
-        self.room.acquire_many(megabytes).await.ok()
+        self.budget.acquire_many(megabytes).await.ok()
     }
 
     /// Awaits a call that moves `bytes`.

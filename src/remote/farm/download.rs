@@ -29,7 +29,7 @@ pub async fn fetch(digests: &[Digest], client: &Client, take: Take<'_>) -> Resul
     for digest in digests.iter().copied() {
         let cost = digest.bytes.saturating_add(200);
         if cost > client.batch / 2 {
-            let _room = client.room(digest.bytes).await;
+            let _room = client.budget(digest.bytes).await;
             let content = client.attempts().at(|| read(digest, client)).await?;
             took(digest, &content)?;
             continue;
@@ -63,7 +63,7 @@ async fn fetch_batch(digests: &[Digest], client: &Client, take: Take<'_>) -> Res
         return Ok(());
     }
     let bytes = digests.iter().map(|digest| digest.bytes).sum();
-    let _room = client.room(bytes).await;
+    let _room = client.budget(bytes).await;
     let request = api::BatchReadBlobsRequest {
         instance_name: client.instance.clone(),
         digests: digests.iter().map(|digest| digest.to_api()).collect(),

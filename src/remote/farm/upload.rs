@@ -28,14 +28,14 @@ enum State {
 }
 
 /// Blobs that one caller sends and others wait for.
-struct Claim<'u> {
+struct Reservation<'u> {
     uploads: &'u Uploads,
     blobs: Vec<Blob>,
     /// Closed when this is dropped.
     _ended: watch::Sender<()>,
 }
 
-impl Drop for Claim<'_> {
+impl Drop for Reservation<'_> {
     fn drop(&mut self) {
         let mut states = self.uploads.states();
         for blob in &self.blobs {
@@ -50,16 +50,16 @@ impl Uploads {
     /// Sees to it that the server has all of `blobs`. Returns when it has them, whoever sent them.
     pub async fn send(&self, blobs: &[Blob], client: &Client) -> Result<(), RemoteError> {
         loop {
-            let (claim, others) = self.claim(blobs);
-            if !claim.blobs.is_empty() {
-                let missing = client.attempts().at(|| missing(&claim.blobs, client)).await?;
+            let (reserve, others) = self.reserve(blobs);
+            if !reserve.blobs.is_empty() {
+                let missing = client.attempts().at(|| missing(&reserve.blobs, client)).await?;
                 send(&missing, client).await?;
                 let mut states = self.states();
-                for blob in claim.blobs.iter().filter(|blob| blob.is_file()) {
+                for blob in reserve.blobs.iter().filter(|blob| blob.is_file()) {
                     states.insert(blob.digest, State::There);
                 }
             }
-            drop(claim);
+            drop(reserve);
             if others.is_empty() {
                 return Ok(());
             }
@@ -81,7 +81,7 @@ impl Uploads {
         }
     }
 
-    fn claim(&self, blobs: &[Blob]) -> (Claim<'_>, Vec<watch::Receiver<()>>) {
+    fn reserve(&self, blobs: &[Blob]) -> (Reservation<'_>, Vec<watch::Receiver<()>>) {
         let (ended, end) = watch::channel(());
         let (mut mine, mut others) = (Vec::new(), Vec::new());
         let mut states = self.states();
@@ -97,7 +97,7 @@ impl Uploads {
                 }
             }
         }
-        (Claim { uploads: self, blobs: mine, _ended: ended }, others)
+        (Reservation { uploads: self, blobs: mine, _ended: ended }, others)
     }
 
     fn states(&self) -> MutexGuard<'_, HashMap<Digest, State>> {
@@ -128,7 +128,7 @@ async fn send(blobs: &[Blob], client: &Client) -> Result<(), RemoteError> {
         // A digest and framing besides.
         let cost = blob.digest.bytes + 200;
         if cost > client.batch / 2 {
-            let _room = client.room(blob.digest.bytes).await;
+            let _room = client.budget(blob.digest.bytes).await;
             let content = blob.read()?;
             client.attempts().at(|| write(blob.digest, &content, client)).await?;
             client.count(|counts| {

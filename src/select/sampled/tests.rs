@@ -1,6 +1,6 @@
 use crate::codec::Target;
 use crate::ktx2::Ktx2;
-use crate::material::encode_chain;
+use crate::material::encode_mip_chain;
 use crate::mip::level_sizes;
 use crate::select::sampled::*;
 use crate::settings::Settings;
@@ -29,7 +29,7 @@ fn texels_are_those_of_the_encoded_texture() {
             let sizes = level_sizes(width, height);
             for channels in 1..=3 {
                 let encoding = Encoding::of(&Settings { target, ..Settings::default() }, channels);
-                let chain = encode_chain(&sizes, encoding, &values).unwrap();
+                let mip_chain = encode_mip_chain(&sizes, encoding, &values).unwrap();
                 let texture = Sampled {
                     sizes: &sizes,
                     first: 0,
@@ -37,13 +37,13 @@ fn texels_are_those_of_the_encoded_texture() {
                     row: &values,
                     wrap: [Wrap::Repeat; 2],
                 };
-                let file = chain.to_ktx2(&[]).unwrap();
+                let file = mip_chain.to_ktx2(&[]).unwrap();
                 let file = Ktx2::parse(&file).unwrap();
                 for (level, &size) in sizes.iter().enumerate() {
                     let image = file.decode_level(level as u32).unwrap();
-                    let places: Vec<Place> =
+                    let points: Vec<SamplePoint> =
                         (0..size.1).flat_map(|y| (0..size.0).map(move |x| (level, x, y))).collect();
-                    for (&(_, x, y), texel) in places.iter().zip(texture.at(&sizes, &places).unwrap()) {
+                    for (&(_, x, y), texel) in points.iter().zip(texture.at(&sizes, &points).unwrap()) {
                         for c in 0..channels {
                             let whole = image.sample(x, y, c).unwrap();
                             assert_eq!(texel[c as usize], whole, "{target:?} {channels} {level} {x} {y}");
@@ -63,9 +63,9 @@ fn missing_levels_are_magnified_as_a_sampler_does() {
             *texel = [level as f32, x as f32, y as f32, 1.0];
         }
     };
-    let at = |first, wrap, place| {
+    let at = |first, wrap, point| {
         let texture = Sampled { sizes: &sizes, first, encoding: None, row: &row, wrap: [wrap; 2] };
-        texture.at(&sizes, &[place]).unwrap()[0]
+        texture.at(&sizes, &[point]).unwrap()[0]
     };
     assert_eq!(at(0, Wrap::Repeat, (0, 5, 3)), [0.0, 5.0, 3.0, 1.0]);
     assert_eq!(at(1, Wrap::Repeat, (1, 2, 3)), [1.0, 2.0, 3.0, 1.0]);

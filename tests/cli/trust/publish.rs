@@ -9,7 +9,7 @@ use std::process::{Command, Stdio};
 use roughcast::cache::Cache;
 use roughcast::output::Guard;
 use roughcast::project::resolve;
-use roughcast::run::{Job, Lookup, Room, RunError, finish, prepare};
+use roughcast::run::{Job, Lookup, MemoryBudget, RunError, finish, prepare};
 use serde_json::{Value, json};
 use tempfile::tempdir;
 
@@ -43,11 +43,11 @@ fn a_file_that_changes_before_it_is_copied_is_not_published() {
     let cache = Cache::new(Some(&folder.join("cache")), None, 1 << 30).expect("a cache");
     let job = Job::new(&source, &out, &settings).expect("a job");
     // Fills the cache.
-    let _ = prepare(&job, Some(Lookup::new(&job, &cache)), &Room::new(1), &|_| ());
+    let _ = prepare(&job, Some(Lookup::new(&job, &cache)), &MemoryBudget::new(1), &|_| ());
     for is_cached in [false, true] {
         let prepare = || {
             let lookup = is_cached.then(|| Lookup::new(&job, &cache));
-            prepare(&job, lookup, &Room::new(1), &|_| ())
+            prepare(&job, lookup, &MemoryBudget::new(1), &|_| ())
         };
         let finish = |prepared| finish(&job, prepared, &mut Guard::default(), &mut |error| panic!("{error}"));
         for name in ["brushed_colour.png", "brushed.bin"] {
@@ -60,9 +60,9 @@ fn a_file_that_changes_before_it_is_copied_is_not_published() {
                     None => fs::remove_file(&path).expect("a file"),
                 }
                 let found = finish(prepared).err();
-                let is_told = matches!(&found, Some(error @ RunError::Changed { path: told })
+                let is_recorded = matches!(&found, Some(error @ RunError::Changed { path: told })
                     if *told == path && error.is_passing());
-                assert!(is_told, "{name}, cached: {is_cached}: {found:?}");
+                assert!(is_recorded, "{name}, cached: {is_cached}: {found:?}");
                 let document = out.join("brushed.gltf");
                 assert!(!out.join(name).exists() && !document.exists(), "{name} was published");
                 fs::write(&path, &bytes).expect("a file");
@@ -125,8 +125,9 @@ fn assets_whose_names_differ_in_case_only_are_refused() {
     let found = run(folder, "bake in -o out -q --model none");
     assert_eq!((found.code, found.err.lines().count()), (1, 2), "{}", found.err);
     for pair in [["in/lake.glb", "in/Lake.glb"], ["in/deep/x.glb", "in/Deep/x.glb"]] {
-        let is_told = |line: &str| pair.iter().all(|name| line.contains(name)) && line.contains("rename one of them");
-        assert!(found.err.lines().any(is_told), "{pair:?}: {}", found.err);
+        let is_recorded =
+            |line: &str| pair.iter().all(|name| line.contains(name)) && line.contains("rename one of them");
+        assert!(found.err.lines().any(is_recorded), "{pair:?}: {}", found.err);
     }
     let documents: Vec<String> = names(&folder.join("out")).into_iter().filter(|name| name.ends_with("f")).collect();
     assert_eq!(documents, ["Deep/x.gltf", "Lake.gltf"]);
@@ -158,8 +159,8 @@ fn files_whose_names_differ_in_case_only_are_refused() {
     ] {
         let found = run(folder, &format!("bake {inputs} -o out -q --model none"));
         assert_eq!((found.code, found.err.lines().count()), (1, 1), "{}", found.err);
-        let is_told = parts.iter().all(|part| found.err.contains(part)) && found.err.contains("rename one of them");
-        assert!(is_told, "{}", found.err);
+        let is_recorded = parts.iter().all(|part| found.err.contains(part)) && found.err.contains("rename one of them");
+        assert!(is_recorded, "{}", found.err);
     }
 }
 

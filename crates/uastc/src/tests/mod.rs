@@ -148,12 +148,12 @@ pub(super) fn all_kinds() -> Vec<Texels> {
     blocks.extend(normals(0.0, 32));
     blocks.extend(normals(0.1, 32));
     blocks.extend(normals(0.9, 32));
-    blocks.extend([3, 12, 60, 255].into_iter().flat_map(greens));
+    blocks.extend([3, 12, 60, 255].into_iter().flat_map(green));
     blocks
 }
 
 /// Blocks of which only the green varies, by less than `spread`, between sides of every level.
-pub(super) fn greens(spread: u64) -> impl Iterator<Item = Texels> {
+pub(super) fn green(spread: u64) -> impl Iterator<Item = Texels> {
     let mut random = Random(spread);
     (0..16).map(move |_| {
         let [red, base, blue, _]: [u8; 4] = std::array::from_fn(|_| random.byte());

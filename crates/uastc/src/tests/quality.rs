@@ -62,7 +62,7 @@ fn roughness_alone_stays_near() {
     // sixteenth.
     for (spread, most) in [(3, 0.0), (12, 88.0), (60, 361.0), (255, 1002.0)] {
         let [fast, best] = EFFORTS.map(|effort| {
-            greens(spread).fold(0.0, |sum, texels| {
+            green(spread).fold(0.0, |sum, texels| {
                 let block = decoded(&encode_block(&texels, SURFACE, effort));
                 let of = |c: usize| (0..16).map(|i| f64::from(texels[i][c].abs_diff(block[i][c])).powi(2)).sum::<f64>();
                 sum + of(1) + (of(0) + of(2)) / 16.0

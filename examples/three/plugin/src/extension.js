@@ -27,19 +27,19 @@ export function readExtension(definition) {
     correctionFactor,
     frame,
     mainDirection: frame === 'mainDirection' ? numbers(definition, 'mainDirection', 3) : null,
-    unfolded: readUnfolded(definition.unfolded),
+    baseLobe: readBaseLobe(definition.baseLobe),
   };
 }
 
 /** The material's own lobe, where the core material has K folded in; null where it has not. */
-function readUnfolded(unfolded) {
-  if (unfolded === undefined) return null;
-  if (typeof unfolded !== 'object' || unfolded === null || Array.isArray(unfolded)) throw wrong('unfolded', 'an object', unfolded);
-  return unfolded;
+function readBaseLobe(baseLobe) {
+  if (baseLobe === undefined) return null;
+  if (typeof baseLobe !== 'object' || baseLobe === null || Array.isArray(baseLobe)) throw wrong('baseLobe', 'an object', baseLobe);
+  return baseLobe;
 }
 
 /** A glTF material with its own lobe in the place of the folded one. */
-export function withOwnLobe(material, { roughnessFactor, metallicRoughnessTexture, anisotropy }) {
+export function withBaseLobe(material, { roughnessFactor, metallicRoughnessTexture, anisotropy }) {
   const own = { roughnessFactor, metallicRoughnessTexture };
   return {
     ...material,

@@ -1,4 +1,4 @@
-import { EXTENSION, readExtension, withOwnLobe } from './extension.js';
+import { EXTENSION, readExtension, withBaseLobe } from './extension.js';
 import { applyPyramid, applyReflections } from './material.js';
 
 /** Plugin of GLTFLoader. See index.d.ts. */
@@ -25,14 +25,14 @@ export class RoughcastPlugin {
       console.warn(`materials[${index}]: ${error.message}; shown without it`);
       return this.parser.loadMaterial(index);
     }
-    const { roughness, unfolded, ...rest } = extension;
+    const { roughness, baseLobe, ...rest } = extension;
     const [offsetMap, roughnessMap] = await Promise.all([
       this.#texture(extension.offset.texture),
       roughness && this.#texture(roughness.texture),
     ]);
     const isComplete = offsetMap && (!roughness || roughnessMap);
     // The loader's other plugins, too, look materials up there.
-    if (isComplete && unfolded) materials[index] = withOwnLobe(materials[index], unfolded);
+    if (isComplete && baseLobe) materials[index] = withBaseLobe(materials[index], baseLobe);
     const material = await this.parser.loadMaterial(index);
     if (!material.isMeshStandardMaterial || !isComplete) {
       const reason = material.isMeshStandardMaterial ? 'a texture cannot be loaded' : `${material.type} is not lit`;

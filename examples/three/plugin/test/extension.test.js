@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 import { EXTENSION, readExtension } from '../src/index.js';
-import { withOwnLobe } from '../src/extension.js';
+import { withBaseLobe } from '../src/extension.js';
 
 const definition = () => ({
   offsetTexture: { index: 3, texCoord: 1 },
@@ -19,7 +19,7 @@ test('what the tool writes is read', () => {
   const { offset, roughness, ...rest } = readExtension(definition());
   assert.deepEqual(offset, { texture: { index: 3, texCoord: 1 }, min: [-1, -0.5], max: [1, 0.5] });
   assert.deepEqual(roughness, { model: 'covarianceFactor', texture: { index: 4 }, min: [0, -0.1, 0], max: [0.2, 0.1, 0.3] });
-  assert.deepEqual(rest, { correctionFactor: 0.8, frame: 'unit', mainDirection: null, unfolded: null });
+  assert.deepEqual(rest, { correctionFactor: 0.8, frame: 'unit', mainDirection: null, baseLobe: null });
 });
 
 test('roughness may be absent, and lambda_1 has one channel', () => {
@@ -46,7 +46,7 @@ test('each property that is wrong is named', () => {
     roughnessMax: [[1, 1, null]],
     correctionFactor: [undefined, -1, NaN, '1'],
     frame: [undefined, 'world', null],
-    unfolded: [null, 1, []],
+    baseLobe: [null, 1, []],
   };
   for (const [name, values] of Object.entries(wrong)) {
     for (const value of values) {
@@ -66,14 +66,14 @@ test('the own lobe takes the place of the folded one, whole', () => {
     pbrMetallicRoughness: { metallicFactor: 1, roughnessFactor: 1, metallicRoughnessTexture: { index: 5 } },
     extensions: { KHR_materials_anisotropy: { anisotropyStrength: 1 }, KHR_materials_ior: {} },
   };
-  assert.deepEqual(withOwnLobe(folded, { roughnessFactor: 0.3 }), {
+  assert.deepEqual(withBaseLobe(folded, { roughnessFactor: 0.3 }), {
     name: 'brass',
     pbrMetallicRoughness: { metallicFactor: 1, roughnessFactor: 0.3 },
     extensions: { KHR_materials_ior: {} },
   });
   const anisotropy = { anisotropyStrength: 0.5 };
   const metallicRoughnessTexture = { index: 1 };
-  assert.deepEqual(withOwnLobe({}, { metallicRoughnessTexture, anisotropy }), {
+  assert.deepEqual(withBaseLobe({}, { metallicRoughnessTexture, anisotropy }), {
     pbrMetallicRoughness: { metallicRoughnessTexture },
     extensions: { KHR_materials_anisotropy: anisotropy },
   });

@@ -48,7 +48,7 @@ test('K is added to the own lobe, not to the folded one', async (t) => {
       return new MeshStandardMaterial();
     },
   };
-  folded.extensions[EXTENSION] = { ...definition, unfolded: { roughnessFactor: 0.3 } };
+  folded.extensions[EXTENSION] = { ...definition, baseLobe: { roughnessFactor: 0.3 } };
   await new RoughcastPlugin(given).loadMaterial(0);
   json.materials[0] = folded;
   t.mock.method(console, 'warn', () => {});

@@ -23,6 +23,6 @@ applyPyramid(new MeshBasicMaterial(), pyramid);
 // @ts-expect-error: a frame that is not there
 const frame: Frame = 'world';
 
-const { offset, roughness, unfolded } = readExtension({});
+const { offset, roughness, baseLobe } = readExtension({});
 const name: 'ROUGHCAST_materials_roughness_pyramid' = EXTENSION;
-export const used = [standard, physical, frame, offset.texture.index, roughness?.model, unfolded?.anisotropy?.anisotropyStrength, name];
+export const used = [standard, physical, frame, offset.texture.index, roughness?.model, baseLobe?.anisotropy?.anisotropyStrength, name];

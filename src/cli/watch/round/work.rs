@@ -8,14 +8,14 @@ use std::time::{Duration, Instant};
 use rayon::prelude::*;
 
 use super::super::asset::{Asset, Planned, State};
-use super::super::events::Teller;
+use super::super::events::EventWriter;
 use super::Round;
 use crate::cache::CacheError;
 use crate::output::lock::{Kind, OutputLock};
 use crate::output::{Guard, PublishError};
 use crate::project::{Input, Resolved};
 use crate::run as plan;
-use crate::run::{Lookup, Room, RunError, Written};
+use crate::run::{Lookup, MemoryBudget, RunError, Written};
 use crate::watch::Removed;
 
 /// After how long a lock or a vanished disk is tried again, at least.
@@ -31,7 +31,7 @@ impl Round {
         selected: &[(Input, Resolved)],
         mut planned: Vec<Option<Planned>>,
         stop: &AtomicBool,
-        teller: &mut Teller<'_>,
+        events: &mut EventWriter<'_>,
     ) -> io::Result<Option<Duration>> {
         for ((input, resolved), slot) in selected.iter().zip(&mut planned) {
             if let Some(known) = self.assets.get_mut(&input.path)
@@ -45,14 +45,14 @@ impl Round {
             return Ok(None);
         }
         let lock = OutputLock::take(&self.output, Kind::Alone, &mut |message| {
-            message.map_or(Ok(()), |message| teller.note(&message)).map(|()| !stop.load(Ordering::Acquire))
+            message.map_or(Ok(()), |message| events.note(&message)).map(|()| !stop.load(Ordering::Acquire))
         })?;
         // Folders that come and go above the outputs would be a reason to look again.
         let _lock = lock.map(OutputLock::keep_folders);
         let look_up =
             |planned: &Option<Planned>| Some(Lookup::new(planned.as_ref()?.job.as_ref().ok()?, self.cache.as_ref()?));
         let lookups: Vec<Option<Lookup>> = planned.par_iter().map(look_up).collect();
-        let (mut guard, room) = (self.guard(&planned), Room::new(1));
+        let (mut guard, budget) = (self.guard(&planned), MemoryBudget::new(1));
         let mut retry: Option<Duration> = None;
         let mut soon = |after: Option<Duration>| retry = [retry, after].into_iter().flatten().min();
         for (((input, resolved), planned), lookup) in selected.iter().zip(planned).zip(lookups) {
@@ -75,17 +75,17 @@ impl Round {
             let mut warn = |error: CacheError| {
                 let whose = if error.is_general() { String::new() } else { format!("{name}: ") };
                 // The bake does not depend on who reads this.
-                let _ = teller.warn(&format_args!("{whose}{error}"));
+                let _ = events.warn(&format_args!("{whose}{error}"));
             };
             let result = job.and_then(|job| {
-                let prepared = plan::prepare(&job, lookup, &room, &|_| ());
+                let prepared = plan::prepare(&job, lookup, &budget, &|_| ());
                 plan::finish(&job, prepared, &mut guard, &mut warn)
             });
             let state = match result {
                 Ok(done) => {
-                    teller.baked(name, &done, start.elapsed().as_secs_f64())?;
+                    events.baked(name, &done, start.elapsed().as_secs_f64())?;
                     let removed = |path: &PathBuf| Removed { path: path.clone(), asset: input.path.clone() };
-                    teller.removed(&done.removed.iter().map(removed).collect::<Vec<_>>())?;
+                    events.removed(&done.removed.iter().map(removed).collect::<Vec<_>>())?;
                     self.ledger.set(&input.path, &self.output, &done.written);
                     State::Done(done.written)
                 }
@@ -100,7 +100,7 @@ impl Round {
                     // A file that was written to meanwhile is one that had not settled.
                     let is_news = !matches!(error, RunError::Changed { .. });
                     if is_news && !known.is_some_and(|known| known.has_failed_so(&text, &seen)) {
-                        teller.failed(Some(&name), &text, kept.last().map(|document| document.path.as_path()))?;
+                        events.failed(Some(&name), &text, kept.last().map(|document| document.path.as_path()))?;
                     }
                     if kept.is_empty() {
                         self.ledger.set(&input.path, &self.output, &[]);

@@ -7,37 +7,47 @@ use crate::lobe::SquaredAlpha;
 use crate::material::{Encoding, LevelRow, Quantity, quantity_rows, range_of};
 use crate::math::symmetric::Symmetric2;
 use crate::metric::{Lobe, Site, shown_lobe, shown_normal, with_z};
-use crate::select::case::{Errors, Trial};
-use crate::select::sampled::{Place, Sampled};
+use crate::select::case::{Candidates, Errors};
+use crate::select::sampled::{SamplePoint, Sampled};
 use crate::settings::Model;
 
 /// What the sites of a trial see of it.
 pub(super) struct Scene<'t, 'f, 'r> {
-    trial: &'t Trial<'t, 'f, 'r>,
+    candidates: &'t Candidates<'t, 'f, 'r>,
     sizes: Vec<(u32, u32)>,
-    places: Vec<Place>,
+    points: Vec<SamplePoint>,
     /// By profile and site; empty for a profile that is not written.
     normals: [Vec<[f64; 3]>; 2],
     encoded: bool,
 }
 
 impl<'t, 'f, 'r> Scene<'t, 'f, 'r> {
-    pub(super) fn new(trial: &'t Trial<'t, 'f, 'r>, places: Vec<Place>, encoded: bool) -> Result<Self, EncodeError> {
-        let mut scene = Self { trial, sizes: trial.fold.sizes(), places, normals: [Vec::new(), Vec::new()], encoded };
-        let scale = trial.fold.lobes().slope_scale();
-        if let Some(normals) = trial.normals {
-            let encoding = Encoding::of_normals(trial.settings);
+    pub(super) fn new(
+        candidates: &'t Candidates<'t, 'f, 'r>,
+        points: Vec<SamplePoint>,
+        encoded: bool,
+    ) -> Result<Self, EncodeError> {
+        let mut scene = Self {
+            candidates,
+            sizes: candidates.roughening.sizes(),
+            points,
+            normals: [Vec::new(), Vec::new()],
+            encoded,
+        };
+        let scale = candidates.roughening.lobes().slope_scale();
+        if let Some(normals) = candidates.normals {
+            let encoding = Encoding::of_normals(candidates.settings);
             let row = |level: usize, y: u32, out: &mut [[f32; 4]]| normals.row(level, y, out);
-            let texels = scene.read(&normals.sizes(), trial.first, encoding, &row)?;
+            let texels = scene.read(&normals.sizes(), candidates.first, encoding, &row)?;
             let has_z = !encoded || encoding.format != Format::Bc5;
             let normal = |[x, y, z, _]: [f32; 4]| shown_normal(if has_z { [x, y, z] } else { with_z([x, y]) }, scale);
             scene.normals[0] = texels.into_iter().map(normal).collect();
         }
-        if let Some((moments, _)) = trial.pyramid {
-            let encoding = Encoding::of(trial.settings, 2).starting_at(trial.first);
+        if let Some((moments, _)) = candidates.pyramid {
+            let encoding = Encoding::of(candidates.settings, 2).starting_at(candidates.first);
             let range = range_of(moments, Quantity::Offset, encoding);
             let rows = quantity_rows(moments, Quantity::Offset, &range);
-            let texels = scene.read(&moments.sizes(), trial.first, encoding, &rows)?;
+            let texels = scene.read(&moments.sizes(), candidates.first, encoding, &rows)?;
             let normal = |texel: [f32; 4]| {
                 let [u, v] = range.values(texel).map(|f: f32| f64::from(f * scale));
                 [-u, -v, 1.0]
@@ -51,9 +61,9 @@ impl<'t, 'f, 'r> Scene<'t, 'f, 'r> {
     pub(super) fn part(&self, sites: &[usize]) -> Self {
         let of = |normals: &Vec<[f64; 3]>| sites.iter().filter_map(|i| normals.get(*i).copied()).collect();
         Self {
-            trial: self.trial,
+            candidates: self.candidates,
             sizes: self.sizes.clone(),
-            places: sites.iter().map(|i| self.places[*i]).collect(),
+            points: sites.iter().map(|i| self.points[*i]).collect(),
             normals: [of(&self.normals[0]), of(&self.normals[1])],
             encoded: self.encoded,
         }
@@ -67,7 +77,7 @@ impl<'t, 'f, 'r> Scene<'t, 'f, 'r> {
         row: &LevelRow<'_>,
     ) -> Result<Vec<[f32; 4]>, EncodeError> {
         let encoding = self.encoded.then_some(encoding);
-        Sampled { sizes, first, encoding, row, wrap: self.trial.wrap }.at(&self.sizes, &self.places)
+        Sampled { sizes, first, encoding, row, wrap: self.candidates.wrap }.at(&self.sizes, &self.points)
     }
 
     pub(super) fn errors(&self, sites: &[Site], model: Model, first: usize) -> Result<Errors, EncodeError> {
@@ -81,15 +91,16 @@ impl<'t, 'f, 'r> Scene<'t, 'f, 'r> {
 
     /// The same for lobes of any width.
     pub(super) fn unclamped(&self, sites: &[&Site], model: Model, first: usize) -> Result<Errors, EncodeError> {
-        let encoding = Encoding::of(self.trial.settings, 3);
-        let wide = self.read(&self.sizes, first, encoding, &self.trial.fold.lobe_rows(model != Model::None))?;
+        let encoding = Encoding::of(self.candidates.settings, 3);
+        let wide =
+            self.read(&self.sizes, first, encoding, &self.candidates.roughening.lobe_rows(model != Model::None))?;
         let lobe = |i: usize| {
             let [uu, uv, vv, _] = wide[i];
             let a = SquaredAlpha(Symmetric2::new(uu, uv, vv));
             let a = if model == Model::Isotropic { SquaredAlpha::isotropic(a.closest_isotropic()) } else { a };
             let normals = self.normals.iter().filter_map(|n| n.get(i));
             normals
-                .map(|n| Lobe::new(self.trial.settings.family, *n, [a.0.uu, a.0.uv, a.0.vv].map(f64::from)))
+                .map(|n| Lobe::new(self.candidates.settings.family, *n, [a.0.uu, a.0.uv, a.0.vv].map(f64::from)))
                 .collect()
         };
         Ok(worst(sites, (0..sites.len()).map(lobe).collect()))
@@ -97,14 +108,14 @@ impl<'t, 'f, 'r> Scene<'t, 'f, 'r> {
 
     /// The lobes of each profile that is written, site by site.
     pub(super) fn lobes(&self, model: Model, first: usize) -> Result<Vec<Vec<Lobe>>, EncodeError> {
-        let mut lobes: Vec<Vec<Lobe>> = self.places.iter().map(|_| Vec::new()).collect();
+        let mut lobes: Vec<Vec<Lobe>> = self.points.iter().map(|_| Vec::new()).collect();
         let shapes = [
-            if self.trial.normals.is_some() { self.portable(model, first)? } else { Vec::new() },
+            if self.candidates.normals.is_some() { self.portable(model, first)? } else { Vec::new() },
             self.pyramid(model, first)?,
         ];
         for (normals, shapes) in self.normals.iter().zip(shapes) {
             for ((lobes, normal), a) in lobes.iter_mut().zip(normals).zip(shapes) {
-                lobes.push(Lobe::new(self.trial.settings.family, *normal, a));
+                lobes.push(Lobe::new(self.candidates.settings.family, *normal, a));
             }
         }
         Ok(lobes)
@@ -112,14 +123,14 @@ impl<'t, 'f, 'r> Scene<'t, 'f, 'r> {
 
     /// Squared alphas that glTF's textures hold.
     fn portable(&self, model: Model, first: usize) -> Result<Vec<[f64; 3]>, EncodeError> {
-        let fold = self.trial.fold;
+        let roughening = self.candidates.roughening;
         if model == Model::None {
             return self.own();
         }
-        let encoding = Encoding::of(self.trial.settings, 3);
-        let roughness = self.read(&self.sizes, first, encoding.of_surface(), &fold.roughness_rows(model))?;
+        let encoding = Encoding::of(self.candidates.settings, 3);
+        let roughness = self.read(&self.sizes, first, encoding.of_surface(), &roughening.roughness_rows(model))?;
         let axes = match model {
-            Model::Anisotropic => Some(self.read(&self.sizes, first, encoding, &fold.anisotropy_rows())?),
+            Model::Anisotropic => Some(self.read(&self.sizes, first, encoding, &roughening.anisotropy_rows())?),
             _ => None,
         };
         let lobe =
@@ -129,19 +140,19 @@ impl<'t, 'f, 'r> Scene<'t, 'f, 'r> {
 
     /// Squared alphas that a plugin makes of D or lambda_1: A + 2 c K.
     fn pyramid(&self, model: Model, first: usize) -> Result<Vec<[f64; 3]>, EncodeError> {
-        let Some((moments, correction)) = self.trial.pyramid else { return Ok(Vec::new()) };
+        let Some((moments, correction)) = self.candidates.pyramid else { return Ok(Vec::new()) };
         let own = self.own()?;
         let quantity = match model {
             Model::Isotropic => Quantity::Lambda1,
             Model::Anisotropic => Quantity::Factor,
             _ => return Ok(own),
         };
-        let scale = self.trial.fold.lobes().slope_scale();
-        let encoding = Encoding::of(self.trial.settings, quantity.channels() as u32).starting_at(first);
+        let scale = self.candidates.roughening.lobes().slope_scale();
+        let encoding = Encoding::of(self.candidates.settings, quantity.channels() as u32).starting_at(first);
         let range = range_of(moments, quantity, encoding);
         let texels = self.read(&moments.sizes(), first, encoding, &quantity_rows(moments, quantity, &range))?;
         let weight = 2.0 * f64::from(correction * scale * scale);
-        let folded = |([uu, uv, vv], texel): ([f64; 3], [f32; 4])| {
+        let roughened = |([uu, uv, vv], texel): ([f64; 3], [f32; 4])| {
             let d = range.values::<3>(texel).map(f64::from);
             let [ku, kv, kw] = match quantity {
                 Quantity::Factor => [d[0] * d[0] + d[1] * d[1], d[1] * d[2], d[2] * d[2]],
@@ -149,14 +160,14 @@ impl<'t, 'f, 'r> Scene<'t, 'f, 'r> {
             };
             [uu + weight * ku, uv + weight * kv, vv + weight * kw]
         };
-        Ok(own.into_iter().zip(texels).map(folded).collect())
+        Ok(own.into_iter().zip(texels).map(roughened).collect())
     }
 
     /// Squared alphas of the material's own lobe, which no bake encodes.
     fn own(&self) -> Result<Vec<[f64; 3]>, EncodeError> {
-        let rows = self.trial.fold.lobe_rows(false);
-        let own = Sampled { sizes: &self.sizes, first: 0, encoding: None, row: &rows, wrap: self.trial.wrap };
-        Ok(own.at(&self.sizes, &self.places)?.into_iter().map(|[uu, uv, vv, _]| [uu, uv, vv].map(f64::from)).collect())
+        let rows = self.candidates.roughening.lobe_rows(false);
+        let own = Sampled { sizes: &self.sizes, first: 0, encoding: None, row: &rows, wrap: self.candidates.wrap };
+        Ok(own.at(&self.sizes, &self.points)?.into_iter().map(|[uu, uv, vv, _]| [uu, uv, vv].map(f64::from)).collect())
     }
 }
 

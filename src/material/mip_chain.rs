@@ -11,7 +11,7 @@ use crate::settings::{Form, Settings};
 
 /// A texture with all its levels encoded.
 #[derive(Clone)]
-pub struct Chain {
+pub struct MipChain {
     /// How texels are stored.
     pub format: Format,
     /// Levels of the pyramid that are finer than level 0.
@@ -133,7 +133,7 @@ fn is_whole(format: Format, width: u32, height: u32) -> bool {
 pub type LevelRow<'a> = dyn Fn(usize, u32, &mut [[f32; 4]]) + Sync + 'a;
 
 /// Encodes the levels of `sizes` that `encoding` asks for.
-pub fn encode_chain(sizes: &[(u32, u32)], encoding: Encoding, row: &LevelRow<'_>) -> Result<Chain, EncodeError> {
+pub fn encode_mip_chain(sizes: &[(u32, u32)], encoding: Encoding, row: &LevelRow<'_>) -> Result<MipChain, EncodeError> {
     let first = encoding.first(sizes);
     let kept = &sizes[first..];
     let (width, height) = kept[0];
@@ -144,7 +144,7 @@ pub fn encode_chain(sizes: &[(u32, u32)], encoding: Encoding, row: &LevelRow<'_>
     };
     let (levels, fallback) = rayon::join(|| encode_levels(kept, encoding, BAND_BYTES, &row), png);
     let (levels, fallback) = (levels?, fallback?);
-    Ok(Chain { format: encoding.format, trimmed: first, width, height, levels, fallback })
+    Ok(MipChain { format: encoding.format, trimmed: first, width, height, levels, fallback })
 }
 
 /// Encoded bytes of a band of a level: as many as wait at most for compression, which has one thread. Level 0 of 4096^2 is four bands.
@@ -198,7 +198,7 @@ fn encode_band(texels: &Texels<'_>, encoding: Encoding) -> Result<Vec<u8>, Encod
     Ok(blocks)
 }
 
-impl Chain {
+impl MipChain {
     /// The KTX2 file of the chain.
     ///
     /// # Errors

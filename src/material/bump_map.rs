@@ -1,13 +1,13 @@
 //! The bumps of a material: a normal map or a height map, read as rows of moments.
 
 use crate::bump::{FrameTransform, HeightMap, HeightOffsets, Moments, NormalMap, NormalOffsets, Offset, Outliers};
-use crate::gltf::turn::TurnMap;
+use crate::gltf::rotation_map::RotationMap;
 use crate::math::symmetric::Symmetric2;
 use crate::mip::{Rows, Wrap};
 use crate::simd::map_row;
 
 /// A decoded normal or height map.
-pub enum Relief {
+pub enum BumpMap {
     /// Tangent-space normals.
     Normals(NormalMap),
     /// Heights.
@@ -21,7 +21,7 @@ pub enum Relief {
     },
 }
 
-impl Relief {
+impl BumpMap {
     /// The sampler's mode, across and down, as far as the relief knows it.
     pub fn wrap(&self) -> [Wrap; 2] {
         match self {
@@ -80,7 +80,7 @@ impl Relief {
     }
 }
 
-impl Rows for Relief {
+impl Rows for BumpMap {
     type Texel = Moments;
 
     fn width(&self) -> u32 {
@@ -111,13 +111,13 @@ pub enum Reading {
     /// The same everywhere.
     Uniform(FrameTransform),
     /// Texel by texel, on the grid of the map.
-    PerTexel(TurnMap),
+    PerTexel(RotationMap),
 }
 
 /// A relief in another frame.
 pub struct Framed<'a> {
     /// In the tangent frame.
-    pub relief: &'a Relief,
+    pub bump_map: &'a BumpMap,
     /// To the other.
     pub reading: &'a Reading,
 }
@@ -126,15 +126,15 @@ impl Rows for Framed<'_> {
     type Texel = Moments;
 
     fn width(&self) -> u32 {
-        self.relief.width()
+        self.bump_map.width()
     }
 
     fn height(&self) -> u32 {
-        self.relief.height()
+        self.bump_map.height()
     }
 
     fn row(&self, y: u32, out: &mut [Moments]) {
-        self.relief.row(y, out);
+        self.bump_map.row(y, out);
         match self.reading {
             Reading::Uniform(transform) => out.iter_mut().for_each(|m| *m = transform.apply(*m)),
             Reading::PerTexel(turns) => {

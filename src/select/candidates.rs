@@ -10,10 +10,10 @@ use crate::lobe::OrientedLobe;
 use crate::material::Encoding;
 use crate::metric::{Lobe, Precision, Reference, Site, is_two_peaked, oracle, survey};
 use crate::report::{Candidate, Choice, Evidence, Miss};
-use crate::select::case::{Errors, Trial};
+use crate::select::candidates::scene::Scene;
+use crate::select::case::{Candidates, Errors};
 use crate::select::choose;
-use crate::select::sampled::Place;
-use crate::select::trial::scene::Scene;
+use crate::select::sampled::SamplePoint;
 use crate::settings::{Model, Settings};
 
 /// Texels of a level for which the best lobe is sought where the bound is missed.
@@ -21,16 +21,16 @@ const WITNESSES: usize = 8;
 /// Half-vectors for each of them.
 const WITNESS_SAMPLES: usize = 256;
 
-impl Trial<'_, '_, '_> {
+impl Candidates<'_, '_, '_> {
     /// Judges what the settings allow and chooses. Under a fixed model all models are judged in full size, so that the
     /// report tells what they would have done.
     pub fn run(&self) -> Result<Choice, EncodeError> {
-        let sizes = self.fold.sizes();
+        let sizes = self.roughening.sizes();
         let finest = self.finest.min(sizes.len() - 1);
-        let lobes = self.fold.lobes();
+        let lobes = self.roughening.lobes();
         let row = |y, out: &mut [OrientedLobe]| lobes.row(0, y, out);
         let sites = survey(&sizes, finest..sizes.len(), self.settings.family, Precision::QUICK, &row);
-        let scene = Scene::new(self, sites.iter().map(place).collect(), true)?;
+        let scene = Scene::new(self, sites.iter().map(point).collect(), true)?;
         let (mut candidates, mut by_site) = (Vec::new(), Vec::new());
         for model in [Model::None, Model::Isotropic, Model::Anisotropic] {
             if !self.offers(model) {
@@ -69,7 +69,9 @@ impl Trial<'_, '_, '_> {
         match model {
             // A lobe that is elliptical already stays so, unless a circle is asked for.
             Model::Isotropic => {
-                !self.fold.is_elliptical() || self.widest == Model::Isotropic || self.settings.model == Model::Isotropic
+                !self.roughening.is_anisotropic()
+                    || self.widest == Model::Isotropic
+                    || self.settings.model == Model::Isotropic
             }
             model => model <= self.widest,
         }
@@ -81,7 +83,7 @@ impl Trial<'_, '_, '_> {
         let fits = |first: usize| {
             first == self.first || first < sizes.len() && encoding.starting_at(first).first(sizes) == first
         };
-        let may_shrink = model != Model::None && self.settings.model == Model::Auto && self.fold.is_plain();
+        let may_shrink = model != Model::None && self.settings.model == Model::Auto && self.roughening.is_plain();
         let last = self.first + if may_shrink { 2 } else { 0 };
         (self.first..=last).rev().filter(|first| fits(*first)).collect()
     }
@@ -117,11 +119,11 @@ impl Trial<'_, '_, '_> {
         let is_missed = |site: &Site| missed.iter().any(|(level, _)| *level == site.level);
         let (of_missed, seen): (Vec<&Site>, Vec<f64>) =
             sites.iter().zip(seen).filter(|(site, _)| is_missed(site)).unzip();
-        let ideal = Scene::new(self, of_missed.iter().map(|s| place(s)).collect(), false)?;
+        let ideal = Scene::new(self, of_missed.iter().map(|s| point(s)).collect(), false)?;
         let (model, first) = (chosen.model, chosen.first);
         let unencoded = ideal.errors_of(&of_missed, model, first)?;
         let unclamped = ideal.unclamped(&of_missed, model, first)?;
-        let ellipse = (model == Model::Isotropic && self.widest == Model::Isotropic)
+        let anisotropic = (model == Model::Isotropic && self.widest == Model::Isotropic)
             .then(|| ideal.errors_of(&of_missed, Model::Anisotropic, first))
             .transpose()?;
         let lobes = ideal.lobes(model, first)?;
@@ -143,7 +145,7 @@ impl Trial<'_, '_, '_> {
             let evidence = Evidence {
                 unencoded: mean(&of, &|i| unencoded[i]),
                 unclamped: mean(&of, &|i| unclamped[i]),
-                ellipse: ellipse.as_ref().map(|errors| mean(&of, &|i| errors[i])),
+                anisotropic: anisotropic.as_ref().map(|errors| mean(&of, &|i| errors[i])),
                 oracle: best,
                 two_peaked: mean(witnesses, &|i| f64::from(u8::from(is_two_peaked(family, &of_missed[i].footprint)))),
                 steep: mean(&of, &|i| steep_share(of_missed[i])),
@@ -161,7 +163,7 @@ fn best_error(site: &Site, starts: &[Lobe]) -> f64 {
     starts.iter().chain([&best]).map(|lobe| site.reference.error(lobe)).fold(f64::INFINITY, f64::min)
 }
 
-fn place(site: &Site) -> Place {
+fn point(site: &Site) -> SamplePoint {
     (site.level, site.texel.0, site.texel.1)
 }
 

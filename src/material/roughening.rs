@@ -6,29 +6,29 @@ use crate::codec::EncodeError;
 use crate::lobe::{Anisotropy, Roughness, SquaredAlpha, isotropic_distance};
 use crate::material::base::{Base, BaseTexel};
 use crate::material::bumps::Bumps;
-use crate::material::chain::{Chain, Encoding, encode_chain};
-use crate::material::lobes::{Lobes, own_lobe};
+use crate::material::lobes::{Lobes, base_lobe};
+use crate::material::mip_chain::{Encoding, MipChain, encode_mip_chain};
 use crate::math::symmetric::Symmetric2;
 use crate::settings::{Model, Settings};
 use crate::simd::map_row;
 
 /// Axis ratio from which on a direction is worth keeping: a circle in the ellipse's place is off by 0.13.
-const CLEARLY_ELLIPTICAL: f32 = 1.5;
+const CLEARLY_ANISOTROPIC: f32 = 1.5;
 
 /// A material's lobe roughened by its bumps.
-pub struct Fold<'a> {
+pub struct Roughening<'a> {
     base: Base<'a>,
     lobes: Lobes<'a>,
     /// Whether the material's own lobe is anisotropic.
-    is_elliptical: bool,
+    is_anisotropic: bool,
 }
 
 /// Textures that hold a folded lobe.
-pub struct Folded {
+pub struct RoughenedTextures {
     /// Roughness in green; red and blue as in the material's own texture, averaged.
-    pub roughness: Chain,
+    pub roughness: MipChain,
     /// Direction in red and green, strength in blue; only for the anisotropic model.
-    pub anisotropy: Option<Chain>,
+    pub anisotropy: Option<MipChain>,
 }
 
 /// Rows of a level that notes are made from: all of a small one. They tell of what many texels do. Their number is odd, so that
@@ -38,12 +38,12 @@ fn looked_at(height: u32) -> impl IndexedParallelIterator<Item = u32> {
     (0..count).into_par_iter().map(move |i| (u64::from(i) * u64::from(height) / u64::from(count)) as u32)
 }
 
-impl<'a> Fold<'a> {
+impl<'a> Roughening<'a> {
     /// Joins `base` with `bumps` on the same grid. `slope_scale` multiplies offsets (`normalTexture.scale`).
     pub fn new<'b: 'a>(base: Base<'a>, bumps: &Bumps<'b>, slope_scale: f32, settings: &Settings) -> Self {
-        let is_elliptical = base.finest().is_elliptical();
+        let is_anisotropic = base.finest().is_anisotropic();
         let lobes = Lobes::new(&base, bumps, slope_scale, settings);
-        Self { base, lobes, is_elliptical }
+        Self { base, lobes, is_anisotropic }
     }
 
     /// Gives its memory back on two threads: the system takes it page by page, which takes 30 ms after 4096 x 4096.
@@ -57,8 +57,8 @@ impl<'a> Fold<'a> {
     }
 
     /// The material's own lobe, averaged over its map.
-    pub fn own_lobe(&self) -> SquaredAlpha {
-        own_lobe(&self.base.whole())
+    pub fn base_lobe(&self) -> SquaredAlpha {
+        base_lobe(&self.base.whole())
     }
 
     /// Sizes of all levels, level 0 first.
@@ -67,15 +67,15 @@ impl<'a> Fold<'a> {
     }
 
     /// Whether the material is anisotropic by itself.
-    pub fn is_elliptical(&self) -> bool {
-        self.is_elliptical
+    pub fn is_anisotropic(&self) -> bool {
+        self.is_anisotropic
     }
 
     /// About how many texels over all levels have a lobe under `model` that is wider than an engine can show.
     pub fn texels_above_one(&self, model: Model) -> u64 {
         let is_too_wide = |lobe: SquaredAlpha| match model {
             Model::Anisotropic => lobe.exceeds_one(),
-            _ => lobe.circle_exceeds_one(),
+            _ => lobe.isotropic_exceeds_one(),
         };
         let levels = self.sizes().into_iter().enumerate();
         let in_level = |(level, (width, height)): (usize, (u32, u32))| -> u64 {
@@ -93,7 +93,7 @@ impl<'a> Fold<'a> {
         let Some(&(width, height)) = self.sizes().get(1) else { return 0.0 };
         let noise = noise.scaled([self.lobes.slope_scale(); 2]);
         let moved = |full: SquaredAlpha| {
-            let noisier = full.fold(noise);
+            let noisier = full.roughen(noise);
             f64::from(isotropic_distance(full.closest_isotropic(), noisier.closest_isotropic()))
         };
         let in_row = |y| self.alphas(1, y, width as usize).into_iter().map(moved).sum::<f64>();
@@ -105,7 +105,7 @@ impl<'a> Fold<'a> {
     /// right or below, where both lobes are clearly elliptical: filtering between them loses the direction.
     pub fn opposed_share(&self) -> f32 {
         let reference = self.reference();
-        let direction = |full: SquaredAlpha| match full.axis_ratio() > CLEARLY_ELLIPTICAL {
+        let direction = |full: SquaredAlpha| match full.axis_ratio() > CLEARLY_ANISOTROPIC {
             true => Anisotropy::of(full, reference).direction,
             false => [0.0; 2],
         };
@@ -141,25 +141,26 @@ impl<'a> Fold<'a> {
 
     /// The textures under `model`, which is [`Model::Isotropic`] or [`Model::Anisotropic`]; anything else counts as
     /// isotropic.
-    pub fn bake(&self, model: Model, encoding: Encoding) -> Result<Folded, EncodeError> {
+    pub fn bake(&self, model: Model, encoding: Encoding) -> Result<RoughenedTextures, EncodeError> {
         let sizes = self.sizes();
-        let roughness = encode_chain(&sizes, encoding.of_surface(), &self.roughness_rows(model))?;
+        let roughness = encode_mip_chain(&sizes, encoding.of_surface(), &self.roughness_rows(model))?;
         let anisotropy = (model == Model::Anisotropic)
-            .then(|| encode_chain(&sizes, encoding, &self.anisotropy_rows()))
+            .then(|| encode_mip_chain(&sizes, encoding, &self.anisotropy_rows()))
             .transpose()?;
-        Ok(Folded { roughness, anisotropy })
+        Ok(RoughenedTextures { roughness, anisotropy })
     }
 
     /// Rows of the roughness texture under `model`.
     pub fn roughness_rows(&self, model: Model) -> impl Fn(usize, u32, &mut [[f32; 4]]) + Sync {
         let axis = self.reference();
         move |level, y, out| {
-            if self.lobes.are_own(level) && !self.is_elliptical {
-                return self.base.finest().round_row(y, out);
+            if self.lobes.are_base(level) && !self.is_anisotropic {
+                return self.base.finest().isotropic_row(y, out);
             }
-            let (mut sides, full) = (vec![[0.0; 2]; out.len()], self.alphas(level, y, out.len()));
-            self.base.sides(level, y, &mut sides);
-            let texels = sides.iter().zip(&full).map(|([red, blue], SquaredAlpha(a))| [*red, *blue, a.uu, a.uv, a.vv]);
+            let (mut red_blue, full) = (vec![[0.0; 2]; out.len()], self.alphas(level, y, out.len()));
+            self.base.red_blue(level, y, &mut red_blue);
+            let texels =
+                red_blue.iter().zip(&full).map(|([red, blue], SquaredAlpha(a))| [*red, *blue, a.uu, a.uv, a.vv]);
             let lobe = |uu, uv, vv| SquaredAlpha(Symmetric2::new(uu, uv, vv));
             let store = |texel: &mut [f32; 4], [red, green, blue]: [f32; 3]| *texel = [red, green, blue, 1.0];
             // Roots side by side: one by one they take as long as all the rest.
@@ -194,9 +195,10 @@ impl<'a> Fold<'a> {
     }
 
     /// Rows of squared alphas, uu, uv, vv: of the material's own lobe, or, with the bumps `folded` in, of any size.
-    pub fn lobe_rows(&self, folded: bool) -> impl Fn(usize, u32, &mut [[f32; 4]]) + Sync {
+    pub fn lobe_rows(&self, roughened: bool) -> impl Fn(usize, u32, &mut [[f32; 4]]) + Sync {
         move |level, y, out| {
-            let lobes = if folded { self.alphas(level, y, out.len()) } else { self.own_alphas(level, y, out.len()) };
+            let lobes =
+                if roughened { self.alphas(level, y, out.len()) } else { self.base_alphas(level, y, out.len()) };
             out.iter_mut().zip(lobes).for_each(|(texel, SquaredAlpha(a))| *texel = [a.uu, a.uv, a.vv, 0.0]);
         }
     }
@@ -209,8 +211,8 @@ impl<'a> Fold<'a> {
 
     /// The folded lobes of a row.
     fn alphas(&self, level: usize, y: u32, width: usize) -> Vec<SquaredAlpha> {
-        if self.lobes.are_own(level) {
-            return self.own_alphas(level, y, width);
+        if self.lobes.are_base(level) {
+            return self.base_alphas(level, y, width);
         }
         let mut alphas = vec![SquaredAlpha::default(); width];
         self.lobes.squared_alphas(level, y, &mut alphas);
@@ -218,10 +220,10 @@ impl<'a> Fold<'a> {
     }
 
     /// The material's own lobes of a row.
-    fn own_alphas(&self, level: usize, y: u32, width: usize) -> Vec<SquaredAlpha> {
+    fn base_alphas(&self, level: usize, y: u32, width: usize) -> Vec<SquaredAlpha> {
         let mut own = vec![BaseTexel::default(); width];
         self.base.row(level, y, &mut own);
-        own.iter().map(own_lobe).collect()
+        own.iter().map(base_lobe).collect()
     }
 }
 

@@ -8,7 +8,7 @@ use crate::bump::FrameTransform;
 
 /// A transform for each texel of a map.
 #[derive(Clone, Debug, PartialEq)]
-pub struct TurnMap {
+pub struct RotationMap {
     /// Columns.
     pub width: u32,
     /// From slopes along (T, B) to slopes along (e1, e2); rows top to bottom.
@@ -26,14 +26,14 @@ const GUTTER: u32 = 16;
 
 /// The turn map of `width` x `height` texels for material `material`; `main_direction` is m in mesh space. `None` when no
 /// triangle can be read, or when they repeat the map so often that it cannot have one turn per texel.
-pub fn turn_map<'a>(
+pub fn rotation_map<'a>(
     meshes: &Meshes<'_>,
     material: usize,
     mapping: &Mapping,
     main_direction: [f32; 3],
     buffer: &dyn Fn(usize) -> Option<&'a [u8]>,
     [width, height]: [u32; 2],
-) -> Option<TurnMap> {
+) -> Option<RotationMap> {
     let mut raster = Raster {
         width: i64::from(width),
         height: i64::from(height),
@@ -99,7 +99,7 @@ impl Raster {
         }
     }
 
-    fn finish(mut self) -> TurnMap {
+    fn finish(mut self) -> RotationMap {
         let covered = self.sums.iter().filter(|s| s.count > 0.0);
         let (mut squares, mut count) = (0.0, 0.0);
         for sum in covered {
@@ -115,7 +115,7 @@ impl Raster {
             }
         }
         let transforms = self.sums.iter().map(|sum| nearest_frame(sum.frame)).collect();
-        TurnMap { width: self.width as u32, transforms, conflict }
+        RotationMap { width: self.width as u32, transforms, conflict }
     }
 
     /// Texels without a frame take the mean of their neighbours'; whether there was one left.
@@ -229,9 +229,9 @@ mod tests {
         (root, bytes)
     }
 
-    fn turns(mirrored: bool) -> TurnMap {
+    fn turns(mirrored: bool) -> RotationMap {
         let (root, bytes) = document(mirrored);
-        turn_map(&Meshes::of(&root), 0, &Mapping::default(), [0.0, 1.0, 0.0], &|_| Some(&bytes), [8, 4]).unwrap()
+        rotation_map(&Meshes::of(&root), 0, &Mapping::default(), [0.0, 1.0, 0.0], &|_| Some(&bytes), [8, 4]).unwrap()
     }
 
     #[test]
@@ -258,7 +258,7 @@ mod tests {
         let transform = json!({ "scale": [2.0, 1.0] });
         root["meshes"][0]["primitives"][0]["material"] = json!(3);
         let mapping = Mapping { tex_coord: 0, transform: Some(transform) };
-        let map = turn_map(&Meshes::of(&root), 3, &mapping, [0.0, 1.0, 0.0], &|_| Some(&bytes), [8, 4]).unwrap();
+        let map = rotation_map(&Meshes::of(&root), 3, &mapping, [0.0, 1.0, 0.0], &|_| Some(&bytes), [8, 4]).unwrap();
         assert!(map.conflict > 0.5, "{}", map.conflict);
     }
 
@@ -267,10 +267,13 @@ mod tests {
         let (root, bytes) = document(false);
         for scale in [1e9, f64::MAX] {
             let mapping = Mapping { tex_coord: 0, transform: Some(json!({ "scale": [scale, scale] })) };
-            assert_eq!(turn_map(&Meshes::of(&root), 0, &mapping, [0.0, 1.0, 0.0], &|_| Some(&bytes), [64, 64]), None);
+            assert_eq!(
+                rotation_map(&Meshes::of(&root), 0, &mapping, [0.0, 1.0, 0.0], &|_| Some(&bytes), [64, 64]),
+                None
+            );
         }
         assert_eq!(
-            turn_map(&Meshes::of(&root), 1, &Mapping::default(), [0.0, 1.0, 0.0], &|_| Some(&bytes), [8, 4]),
+            rotation_map(&Meshes::of(&root), 1, &Mapping::default(), [0.0, 1.0, 0.0], &|_| Some(&bytes), [8, 4]),
             None
         );
     }

@@ -12,7 +12,7 @@ use crate::run::job::{Job, JobInput};
 
 /// What jobs that are baked at a time may take together. It bounds memory on machines with many cores, where a job per thread
 /// would take more than there is; threads without a job of their own help with those of others.
-pub struct Room {
+pub struct MemoryBudget {
     total: u64,
     free: Mutex<u64>,
     left: Condvar,
@@ -24,7 +24,7 @@ const LEAST: u64 = 1 << 30;
 /// Bytes for each thread: a map of 2048^2 takes 105 MB.
 const PER_THREAD: u64 = 128 << 20;
 
-impl Room {
+impl MemoryBudget {
     /// For jobs on `threads` threads.
     pub fn new(threads: usize) -> Self {
         let total = LEAST.max(PER_THREAD * threads as u64);
@@ -33,20 +33,20 @@ impl Room {
 
     /// Waits until there is room for `job`; one that is larger than all of it is alone. The calling thread must be none that
     /// jobs need to get on.
-    pub fn enter(&self, job: &Job) -> Seat<'_> {
+    pub fn acquire(&self, job: &Job) -> Permit<'_> {
         self.take(memory(job))
     }
 
     /// Waits until no other job is baked.
-    pub fn enter_alone(&self) -> Seat<'_> {
+    pub fn acquire_all(&self) -> Permit<'_> {
         self.take(self.total)
     }
 
-    fn take(&self, bytes: u64) -> Seat<'_> {
+    fn take(&self, bytes: u64) -> Permit<'_> {
         let bytes = bytes.min(self.total);
         let is_full = |free: &mut u64| *free < bytes;
         *self.left.wait_while(self.free(), is_full).unwrap_or_else(PoisonError::into_inner) -= bytes;
-        Seat { room: self, bytes }
+        Permit { budget: self, bytes }
     }
 
     fn free(&self) -> MutexGuard<'_, u64> {
@@ -55,22 +55,22 @@ impl Room {
 }
 
 /// A job's part of a room, until this is dropped.
-pub struct Seat<'r> {
-    room: &'r Room,
+pub struct Permit<'r> {
+    budget: &'r MemoryBudget,
     bytes: u64,
 }
 
-impl Seat<'_> {
+impl Permit<'_> {
     /// Whether no other job is baked meanwhile.
     pub fn is_alone(&self) -> bool {
-        self.bytes == self.room.total
+        self.bytes == self.budget.total
     }
 }
 
-impl Drop for Seat<'_> {
+impl Drop for Permit<'_> {
     fn drop(&mut self) {
-        *self.room.free() += self.bytes;
-        self.room.left.notify_all();
+        *self.budget.free() += self.bytes;
+        self.budget.left.notify_all();
     }
 }
 
@@ -106,14 +106,14 @@ mod tests {
 
     #[test]
     fn what_is_taken_at_a_time_is_bounded() {
-        let room = Room { total: 100, free: Mutex::new(100), left: Condvar::new() };
+        let budget = MemoryBudget { total: 100, free: Mutex::new(100), left: Condvar::new() };
         let (taken, most) = (AtomicU64::new(0), AtomicU64::new(0));
         thread::scope(|scope| {
             for job in 0..40 {
-                let (room, taken, most) = (&room, &taken, &most);
+                let (budget, taken, most) = (&budget, &taken, &most);
                 scope.spawn(move || {
                     let bytes = [10, 40, 60, 1000][job % 4];
-                    let _seat = room.take(bytes);
+                    let _seat = budget.take(bytes);
                     let now = taken.fetch_add(bytes.min(100), Ordering::SeqCst) + bytes.min(100);
                     most.fetch_max(now, Ordering::SeqCst);
                     thread::yield_now();
@@ -122,7 +122,7 @@ mod tests {
             }
         });
         assert!(most.into_inner() <= 100);
-        assert_eq!(*room.free(), 100);
+        assert_eq!(*budget.free(), 100);
     }
 
     #[test]

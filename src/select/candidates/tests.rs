@@ -1,15 +1,15 @@
-use crate::bake::{BareBake, OwnRoughness, bake_map};
+use crate::bake::{BakedMap, BaseRoughness, bake_map};
 use crate::bump::{NormalLayout, NormalMap};
 use crate::codec::Target;
 use crate::image::{Image, Samples};
 use crate::ktx2::Ktx2;
 use crate::lobe::{Alpha, Family, Roughness, SquaredAlpha};
-use crate::material::{Base, BaseRows, Bumps, Relief};
-use crate::material::{Fold, Normals};
+use crate::material::{Base, BaseRows, BumpMap, Bumps};
+use crate::material::{Normals, Roughening};
 use crate::metric::{Decoded, Surface, mean_errors, sample_texels};
 use crate::mip::Wrap;
 use crate::report::{Content, Reason};
-use crate::select::trial::*;
+use crate::select::candidates::*;
 use crate::settings::Profile;
 
 /// A normal map of `side` x `side` texels with these slopes.
@@ -44,13 +44,13 @@ fn brushed(x: u32, y: u32) -> [f32; 2] {
     [0.02 * noise(x, y, 1), 0.6 * noise(0, y, 2)]
 }
 
-fn bake(image: &Image, roughness: f32, settings: &Settings) -> BareBake {
-    bake_with(image, OwnRoughness { image: None, factor: roughness }, settings)
+fn bake(image: &Image, roughness: f32, settings: &Settings) -> BakedMap {
+    bake_with(image, BaseRoughness { image: None, factor: roughness }, settings)
 }
 
-fn bake_with(image: &Image, own: OwnRoughness, settings: &Settings) -> BareBake {
+fn bake_with(image: &Image, own: BaseRoughness, settings: &Settings) -> BakedMap {
     let map = NormalMap::new(image.clone(), NormalLayout::Xyz, false).unwrap();
-    bake_map(&Relief::Normals(map), Some(&own), settings).unwrap()
+    bake_map(&BumpMap::Normals(map), Some(&own), settings).unwrap()
 }
 
 fn choice(image: &Image, roughness: f32, settings: &Settings) -> Choice {
@@ -127,10 +127,10 @@ fn the_taken_size_is_baked() {
     let (model, first) = taken(judged);
     assert!(model == Model::Isotropic && first > 0, "{judged:#?}");
     let roughness = baked.textures.iter().find(|t| t.content == Content::Roughness).unwrap();
-    assert_eq!((roughness.chain.width, roughness.chain.trimmed), (64 >> first, first));
+    assert_eq!((roughness.mip_chain.width, roughness.mip_chain.trimmed), (64 >> first, first));
     // With a fixed model nothing is saved.
     let fixed = bake(&image, 0.4, &Settings { model: Model::Isotropic, ..settings(0.13) });
-    assert_eq!(fixed.textures[1].chain.width, 64);
+    assert_eq!(fixed.textures[1].mip_chain.width, 64);
 }
 
 /// Metallic and occlusion in the same texture would lose a level too.
@@ -138,7 +138,7 @@ fn the_taken_size_is_baked() {
 fn textures_with_other_data_keep_their_size() {
     let own = |blue: &dyn Fn(u32) -> u8| {
         let samples = (0..64 * 64).flat_map(|i| [255, 80, blue(i)]).collect();
-        OwnRoughness {
+        BaseRoughness {
             image: Some(Image { width: 64, height: 64, channels: 3, samples: Samples::U8(samples) }),
             factor: 1.0,
         }
@@ -168,8 +168,8 @@ fn errors_are_those_of_the_baked_files() {
         for (level, found) in judged.taken().unwrap().errors.iter().enumerate() {
             let size = (64 >> level, 64 >> level);
             let of = |content| {
-                let chain = &baked.textures.iter().find(|t| t.content == content).unwrap().chain;
-                Ktx2::parse(&chain.to_ktx2(&[]).unwrap()).unwrap().decode_level(level as u32).unwrap()
+                let mip_chain = &baked.textures.iter().find(|t| t.content == content).unwrap().mip_chain;
+                Ktx2::parse(&mip_chain.to_ktx2(&[]).unwrap()).unwrap().decode_level(level as u32).unwrap()
             };
             let decoded = Decoded {
                 normal: of(Content::Normal),
@@ -227,14 +227,14 @@ fn two_peaks_are_told_from_too_small_a_model() {
 fn levels_that_cannot_be_sampled_do_not_count() {
     let image = normals(64, brushed);
     let map = NormalMap::new(image, NormalLayout::Xyz, false).unwrap();
-    let relief = Relief::Normals(map);
-    let bumps = Bumps::new(&relief, (64, 64));
+    let bump_map = BumpMap::Normals(map);
+    let bumps = Bumps::new(&bump_map, (64, 64));
     let base = Base::new(BaseRows::new(64, 64, None, 0.4, None, [Wrap::Repeat; 2]));
     let settings = settings(0.1);
-    let fold = Fold::new(base, &bumps, 1.0, &settings);
-    let normals = Normals::of_lobes(&bumps, fold.lobes());
-    let trial = |finest| Trial {
-        fold: &fold,
+    let roughening = Roughening::new(base, &bumps, 1.0, &settings);
+    let normals = Normals::of_lobes(&bumps, roughening.lobes());
+    let candidates = |finest| Candidates {
+        roughening: &roughening,
         settings: &settings,
         normals: Some(&normals),
         pyramid: None,
@@ -243,7 +243,7 @@ fn levels_that_cannot_be_sampled_do_not_count() {
         finest,
         first: 0,
     };
-    let [all, coarse] = [0, 3].map(|finest| trial(finest).run().unwrap());
+    let [all, coarse] = [0, 3].map(|finest| candidates(finest).run().unwrap());
     assert_eq!((all.finest, coarse.finest), (0, 3));
     for candidate in &coarse.candidates {
         let same = all.candidates.iter().find(|c| (c.model, c.first) == (candidate.model, candidate.first)).unwrap();
@@ -251,5 +251,5 @@ fn levels_that_cannot_be_sampled_do_not_count() {
     }
     // A quarter of the size lacks nothing that is sampled.
     assert_eq!(taken(&coarse).1, 2);
-    assert_eq!(trial(99).run().unwrap().finest, 6, "there is always one level");
+    assert_eq!(candidates(99).run().unwrap().finest, 6, "there is always one level");
 }

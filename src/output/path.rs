@@ -10,11 +10,11 @@ use crate::digest::Digest;
 
 /// A path that may be written. [`super::Guard`] makes one after it has checked the path.
 #[derive(Debug)]
-pub struct Place {
+pub struct OutputPath {
     path: PathBuf,
 }
 
-impl Place {
+impl OutputPath {
     /// Only the guard of this module says so.
     pub(super) fn new(path: &Path) -> Self {
         Self { path: path.to_owned() }
