@@ -1,7 +1,7 @@
-//! From a normal map to its pyramid, beside a copy of as many bytes, and zstd of UASTC blocks:
-//! `cargo bench --bench kernels`.
+//! Times the kernels from a normal map to its pyramid, copies of as many bytes, and zstd of UASTC blocks: `cargo bench
+//! --bench kernels`.
 //!
-//! Items are texels of level 0. The copies read and write as much as the kernels do, with the same threads.
+//! Items are texels of level 0. The copies read and write as many bytes as the kernels do, on the same threads.
 
 use divan::counter::{BytesCount, ItemsCount};
 use divan::{Bencher, black_box};
@@ -13,7 +13,7 @@ use roughcast::decode::decode;
 use roughcast::image::{DecodeOptions, Image, Samples};
 use roughcast::ktx2::StoredLevel;
 use roughcast::lobe::{Alpha, OrientedLobe, SquaredAlpha};
-use roughcast::mip::{Level, Rows, build, level_sizes};
+use roughcast::mip::{Level, TexelRows, build, level_sizes};
 
 mod common;
 
@@ -25,8 +25,8 @@ fn texels() -> usize {
     common::size() * common::size()
 }
 
-/// Texels of all levels but the first.
-fn coarser() -> usize {
+/// Returns the number of texels of all levels but level 0.
+fn mip_tail_texels() -> usize {
     let size = common::size() as u32;
     level_sizes(size, size)[1..].iter().map(|(width, height)| (width * height) as usize).sum()
 }
@@ -40,12 +40,12 @@ fn normals() -> NormalMap {
 
 #[divan::bench(sample_count = 20)]
 fn copy_of_mean_and_covariance(bencher: Bencher) {
-    common::bench_copy(bencher, 3 * texels(), coarser() * size_of::<Moments>());
+    common::bench_copy(bencher, 3 * texels(), mip_tail_texels() * size_of::<Moments>());
 }
 
 #[divan::bench(sample_count = 20)]
 fn copy_of_shape(bencher: Bencher) {
-    common::bench_copy(bencher, 3 * texels(), coarser() * size_of::<ShapedMoments>());
+    common::bench_copy(bencher, 3 * texels(), mip_tail_texels() * size_of::<ShapedMoments>());
 }
 
 #[divan::bench(sample_count = 5)]
@@ -81,7 +81,7 @@ fn shape(bencher: Bencher) {
     bencher.counter(ItemsCount::new(texels())).bench(|| build(&Shaped(NormalOffsets::new(black_box(&map)))));
 }
 
-/// GGX lobes of alpha 0.2 merged by likelihood.
+/// Merges GGX lobes of alpha 0.2 by likelihood.
 #[divan::bench(sample_count = 5)]
 fn lobes(bencher: Bencher) {
     let map = normals();
@@ -91,8 +91,8 @@ fn lobes(bencher: Bencher) {
     let mut texels = Vec::new();
     for y in 0..height {
         rows.row(y, &mut offsets);
-        let own = SquaredAlpha::isotropic(Alpha(0.2));
-        texels.extend(offsets.iter().map(|m| OrientedLobe::new(m.mean, own)));
+        let base = SquaredAlpha::isotropic(Alpha(0.2));
+        texels.extend(offsets.iter().map(|m| OrientedLobe::new(m.mean, base)));
     }
     let level = Level { width, height, texels };
     bencher.counter(ItemsCount::new(level.texels.len())).bench(|| build(black_box(&level)));

@@ -1,5 +1,7 @@
-//! A document with one normal and one roughness map, baked in memory, beside decoding its images and a copy of as many bytes:
-//! `cargo bench --bench whole`. Items are texels of level 0 of one map.
+//! Times a bake in memory of a document with one normal map and one roughness map, the decoding of its images, and a
+//! copy of as many bytes: `cargo bench --bench whole`.
+//!
+//! Items are texels of level 0 of one map.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -7,7 +9,7 @@ use std::path::PathBuf;
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use roughcast::bake::{Source, bake};
+use roughcast::bake::{Source, bake_asset};
 use roughcast::decode::decode;
 use roughcast::gltf::document::Document;
 use roughcast::image::DecodeOptions;
@@ -19,7 +21,7 @@ fn main() {
     divan::main();
 }
 
-/// The files of the asset.
+/// Writes the asset and returns its files.
 fn files() -> BTreeMap<PathBuf, Vec<u8>> {
     let folder = tempfile::tempdir().expect("a temporary folder");
     common::asset::write(folder.path(), common::size(), 1).expect("a folder that takes files");
@@ -32,19 +34,20 @@ fn whole(bencher: Bencher, form: Form, model: Model) {
     let document = Document::parse(&files[&PathBuf::from("asset.gltf")]).expect("a document");
     let read = |path: &std::path::Path| Ok(files[path].clone());
     let source = Source { document: &document, stem: "asset", files: &read };
-    let settings = Settings { form, model, ..Settings::default() };
+    let settings = Settings::default().with_form(form).with_model(model);
     let texels = common::size() * common::size();
-    bencher.counter(ItemsCount::new(texels)).bench(|| bake(black_box(&source), &settings, &|_| ()).map(drop));
+    bencher.counter(ItemsCount::new(texels)).bench(|| bake_asset(black_box(&source), &settings, &|_| ()).map(drop));
 }
 
-/// Two RGB images read, two textures with all levels written, of a byte a texel before zstd.
+/// Copies as many bytes as a bake reads and writes: two RGB images, and two textures with all levels of one byte a
+/// texel before zstd.
 #[divan::bench(sample_count = 20)]
 fn copy(bencher: Bencher) {
     let texels = common::size() * common::size();
     common::bench_copy(bencher, 6 * texels, 2 * texels / 3 * 4);
 }
 
-/// The two PNGs, one after the other.
+/// Decodes the two PNGs, one after the other.
 #[divan::bench(sample_count = 5)]
 fn decoding_alone(bencher: Bencher) {
     let files = files();
@@ -55,13 +58,13 @@ fn decoding_alone(bencher: Bencher) {
     });
 }
 
-/// Two textures of full size, without PNGs.
+/// Bakes two textures of full size, without PNGs.
 #[divan::bench(sample_count = 5)]
 fn two_textures(bencher: Bencher) {
     whole(bencher, Form::Strict, Model::Isotropic);
 }
 
-/// As by default: the smallest model within the error bound, with PNGs.
+/// Bakes with default settings: the smallest model within the error bound, and PNGs.
 #[divan::bench(sample_count = 5)]
 fn by_default(bencher: Bencher) {
     whole(bencher, Form::Fallback, Model::Auto);

@@ -1,4 +1,4 @@
-//! What a fuzzer found, tried again, and where it starts from, cut off.
+//! Runs the entry points of the fuzzer on inputs that once broke them, and on every truncation of their seeds.
 
 use std::fs;
 use std::path::Path;
@@ -6,7 +6,7 @@ use std::path::Path;
 #[path = "fuzz/entries.rs"]
 mod entries;
 
-/// Runs `entry` on the files in `found` that once broke it, and on every piece of `start`.
+/// Runs `entry` on the files in `found`, which once broke it, and on every truncation of `start`.
 fn replay(name: &str, entry: fn(&[u8]), start: &[u8]) {
     let found = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fuzz/found").join(name);
     for file in fs::read_dir(found).into_iter().flatten() {
@@ -31,7 +31,7 @@ fn textures() {
 
 #[test]
 fn configurations() {
-    replay("configuration", entries::configuration, include_bytes!("../src/project/template.toml"));
+    replay("configuration", entries::configuration, include_bytes!("../crates/pipeline/src/project/template.toml"));
 }
 
 #[test]

@@ -1,4 +1,5 @@
-//! The layers of docs/architecture.md hold: a module imports from lower layers only, and no files import each other in a circle.
+//! Tests the layers of docs/architecture.md: a module imports from lower layers only, and no files import each other in
+//! a circle.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -10,6 +11,10 @@ use walkdir::WalkDir;
 /// The path of a module below the crate's root, such as `["gltf", "json"]`.
 type ModulePath = Vec<String>;
 
+/// The folders of the crates whose modules the table lists. Lower crates are imported with the names that they have
+/// there.
+const CRATES: [&str; 3] = ["crates/core/src", "crates/pipeline/src", "src"];
+
 /// What one source file imports and re-exports.
 #[derive(Default)]
 struct Imports {
@@ -17,17 +22,29 @@ struct Imports {
     paths: BTreeSet<ModulePath>,
     /// Names that the file re-exports, with the absolute paths that they stand for.
     re_exports: BTreeMap<String, ModulePath>,
+    /// Modules of the standard library that reach outside the process.
+    outside: BTreeSet<String>,
 }
 
 /// Collects the imports of one file. Tests may import from anywhere and are left out.
 struct Collector<'m> {
-    /// The module that is being read, inline modules included.
+    /// The module that is read, with its inline modules.
     module: ModulePath,
     modules: &'m BTreeSet<ModulePath>,
     imports: Imports,
 }
 
 impl Collector<'_> {
+    /// Records modules of the standard library that reach outside the process.
+    fn note_outside(&mut self, segments: &[String]) {
+        if let [root, module, ..] = segments
+            && root == "std"
+            && ["env", "fs", "net", "process"].contains(&module.as_str())
+        {
+            self.imports.outside.insert(module.clone());
+        }
+    }
+
     /// Makes a path absolute: `crate::`, `super::` and `self::` are resolved, and so are the module's own children.
     fn absolute(&self, segments: &[String]) -> Option<ModulePath> {
         let (first, rest) = segments.split_first()?;
@@ -76,11 +93,12 @@ impl<'ast> Visit<'ast> for Collector<'_> {
         let mut leaves = Vec::new();
         Self::leaves(&item.tree, &[], &mut leaves);
         for (segments, name) in leaves {
+            self.note_outside(&segments);
             let Some(path) = self.absolute(&segments) else { continue };
             let is_own_child = path.starts_with(&self.module) && path.len() > self.module.len();
             if !matches!(item.vis, syn::Visibility::Inherited) {
                 self.imports.re_exports.insert(name, path.clone());
-                // A module that shows what its files hold does not depend on them.
+                // A module that re-exports names of its files does not depend on them.
                 if is_own_child {
                     continue;
                 }
@@ -91,6 +109,7 @@ impl<'ast> Visit<'ast> for Collector<'_> {
 
     fn visit_path(&mut self, path: &'ast syn::Path) {
         let segments: Vec<String> = path.segments.iter().map(|segment| segment.ident.to_string()).collect();
+        self.note_outside(&segments);
         if segments.len() > 1
             && let Some(path) = self.absolute(&segments)
         {
@@ -120,11 +139,14 @@ impl<'ast> Visit<'ast> for Collector<'_> {
     }
 }
 
-/// The imports of every source file that is no test, by module.
+/// Returns the imports of every source file except tests, by module.
 fn imports() -> BTreeMap<ModulePath, Imports> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let mut files = BTreeMap::new();
-    for entry in WalkDir::new(&root) {
+    let entries = CRATES.iter().flat_map(|folder| {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
+        WalkDir::new(&root).into_iter().map(move |entry| (root.clone(), entry))
+    });
+    for (root, entry) in entries {
         let entry = entry.expect("an entry of src");
         let path = entry.path();
         if path.extension().is_none_or(|extension| extension != "rs") {
@@ -132,11 +154,11 @@ fn imports() -> BTreeMap<ModulePath, Imports> {
         }
         let below = path.strip_prefix(&root).expect("a path below src").with_extension("");
         let mut module: ModulePath = below.iter().map(|part| part.to_string_lossy().into_owned()).collect();
-        let is_test = |part: &String| part == "tests" || part.ends_with("_tests") || part == "test_files";
-        if module.iter().any(is_test) || module == ["main"] {
+        let is_test = |part: &String| part == "tests" || part == "test_files";
+        if module.iter().any(is_test) || ["main", "lib"].iter().any(|root| module == [*root]) {
             continue;
         }
-        if module.last().is_some_and(|last| last == "mod" || last == "lib") {
+        if module.last().is_some_and(|last| last == "mod") {
             module.pop();
         }
         files.insert(module, fs::read_to_string(path).expect("a source file"));
@@ -161,7 +183,7 @@ fn defining(files: &BTreeMap<ModulePath, Imports>, path: &[String], depth: usize
     }
 }
 
-/// Which file imports what which other files define.
+/// Returns, for each file, the files that define what it imports.
 fn edges() -> BTreeMap<ModulePath, BTreeSet<ModulePath>> {
     let files = imports();
     let targets = |module: &ModulePath, imports: &Imports| {
@@ -171,7 +193,7 @@ fn edges() -> BTreeMap<ModulePath, BTreeSet<ModulePath>> {
     files.iter().map(|(module, imports)| (module.clone(), targets(module, imports))).collect()
 }
 
-/// The layer of each module, from the table of docs/architecture.md.
+/// Reads the layer of each module from the table of docs/architecture.md.
 fn layers() -> BTreeMap<String, u32> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/architecture.md");
     let text = fs::read_to_string(path).expect("docs/architecture.md");
@@ -207,6 +229,27 @@ fn modules_import_from_lower_layers_only() {
     assert!(wrong.is_empty(), "{} imports break the table of docs/architecture.md:\n{}", wrong.len(), wrong.join("\n"));
 }
 
+/// Returns the modules of the crate that is built without the feature `cli`.
+fn core_modules() -> BTreeSet<String> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("crates/core/src/lib.rs");
+    let root = syn::parse_file(&fs::read_to_string(path).expect("lib.rs")).expect("Rust");
+    let modules =
+        root.items.into_iter().filter_map(|item| if let syn::Item::Mod(item) = item { Some(item) } else { None });
+    let is_core = |item: &syn::ItemMod| !item.attrs.iter().any(|attribute| attribute.path().is_ident("cfg"));
+    modules.filter(is_core).map(|item| item.ident.to_string()).collect()
+}
+
+#[test]
+fn the_core_touches_no_file_system() {
+    let core = core_modules();
+    assert!(core.contains("bake") && !core.contains("output"), "{core:?}");
+    let is_core = |module: &ModulePath| module.first().is_some_and(|top| core.contains(top));
+    let outside = imports().into_iter().filter(|(module, imports)| is_core(module) && !imports.outside.is_empty());
+    let outside: Vec<String> =
+        outside.map(|(module, imports)| format!("{} uses {:?}", module.join("::"), imports.outside)).collect();
+    assert!(outside.is_empty(), "modules without the feature `cli` reach outside the process:\n{}", outside.join("\n"));
+}
+
 #[test]
 fn every_module_of_the_table_exists() {
     let tops: BTreeSet<String> = edges().into_keys().filter_map(|module| module.first().cloned()).collect();
@@ -214,7 +257,7 @@ fn every_module_of_the_table_exists() {
     assert_eq!(table, tops);
 }
 
-/// Returns all that is reached from `start` by one import or more.
+/// Returns the modules that `start` reaches by one or more imports.
 fn reached<'e>(
     edges: &'e BTreeMap<ModulePath, BTreeSet<ModulePath>>,
     start: &'e ModulePath,

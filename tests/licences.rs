@@ -1,4 +1,5 @@
-//! Every dependency's licence is one that deny.toml allows, and none comes from elsewhere than the registry.
+//! Tests that the licence of every dependency is allowed by deny.toml, and that every dependency comes from the
+//! registry.
 
 use std::path::Path;
 use std::process::Command;
@@ -21,7 +22,7 @@ fn licences_are_allowed() {
 
     let mut metadata = Command::new(env!("CARGO"));
     metadata.current_dir(root).args(["metadata", "--format-version=1", "--locked", "--offline", "--all-features"]);
-    // Those that were fetched: dependencies of other systems are not there.
+    // Only fetched packages are listed. Dependencies of other systems are missing.
     metadata.args(["--filter-platform", "x86_64-unknown-linux-gnu"]);
     let output = metadata.output().expect("cargo");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));

@@ -1,4 +1,4 @@
-//! Decoded levels of a bake against a slow oracle in f64 that shares nothing with it but the table of corrections.
+//! Compares decoded levels of bakes with a slow f64 oracle, which shares only the table of corrections with the bake.
 
 use std::path::Path;
 
@@ -15,7 +15,11 @@ use roughcast::math::symmetric::Symmetric2;
 use roughcast::report::Content;
 use roughcast::settings::{Model, Settings};
 
-/// Brushed metal with a few dents: 128 x 128, all in integers so that no library decides on it.
+#[path = "common/skip.rs"]
+mod skip;
+
+/// Returns 128 x 128 texels of brushed metal with a few dents. All arithmetic is on integers, so that every machine
+/// gives equal texels.
 fn synthetic() -> Image {
     let mut state = 1u32;
     let mut random = || {
@@ -34,20 +38,20 @@ fn synthetic() -> Image {
     Image { width: 128, height: 128, channels: 3, samples: Samples::U8(samples) }
 }
 
-/// `name` of `../shared/data/FlightHelmet`, when it is there.
+/// Returns the image `name` of `../shared/data/FlightHelmet`, if it exists.
 fn real(name: &str) -> Option<Image> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/FlightHelmet");
     let file = std::fs::read(folder.join(format!("FlightHelmet_Materials_{name}.png"))).ok()?;
     Some(decode(&file, &DecodeOptions::default()).unwrap())
 }
 
-/// What a texel of a level should hold: unit normal, then A' (uu, uv, vv).
+/// Expected values of a texel: unit normal, then A' (uu, uv, vv).
 struct Expected {
     normal: [f64; 3],
     squared_alpha: [f64; 3],
 }
 
-/// Straight from the level-0 texels under the texel, for maps whose sides are powers of two.
+/// Computes a texel directly from its level-0 texels. The sides of the map are powers of two.
 fn oracle(normals: &Image, roughness: Option<&Image>, factor: f64, level: u32, x: u32, y: u32) -> Expected {
     let side = 1 << level;
     let texels: Vec<(u32, u32)> = (0..side * side).map(|i| (x * side + i % side, y * side + i / side)).collect();
@@ -59,15 +63,15 @@ fn oracle(normals: &Image, roughness: Option<&Image>, factor: f64, level: u32, x
     let slopes: Vec<[f64; 2]> = texels.iter().map(slope).collect();
     let mean = [0, 1].map(|i| slopes.iter().map(|s| s[i]).sum::<f64>() / n);
     let k = |i: usize, j: usize| slopes.iter().map(|s| (s[i] - mean[i]) * (s[j] - mean[j])).sum::<f64>() / n;
-    let own = |&(x, y): &(u32, u32)| {
+    let base_of = |&(x, y): &(u32, u32)| {
         let green = roughness.map_or(1.0, |r| f64::from(r.sample(x, y, 1).unwrap()));
         (factor * green).powi(4)
     };
-    let base = texels.iter().map(own).sum::<f64>() / n;
+    let base = texels.iter().map(base_of).sum::<f64>() / n;
     let covariance = Symmetric2::new(k(0, 0) as f32, k(0, 1) as f32, k(1, 1) as f32);
-    let own = SquaredAlpha(Symmetric2::diagonal(base as f32, base as f32));
+    let base_lobe = SquaredAlpha(Symmetric2::diagonal(base as f32, base as f32));
     let moments = ShapedMoments::normal(Moments { mean: Offset::default(), covariance });
-    let roughened = own.roughen(Distribution::Normal.correct(&moments, own, Family::Ggx).covariance).0;
+    let roughened = base_lobe.roughen(Distribution::Normal.correct(&moments, base_lobe, Family::Ggx).covariance).0;
     let length = (mean[0] * mean[0] + mean[1] * mean[1] + 1.0).sqrt();
     Expected {
         normal: [-mean[0] / length, -mean[1] / length, 1.0 / length],
@@ -83,14 +87,14 @@ struct Errors {
     alpha: f64,
 }
 
-/// Compares levels 0 to 6: mean angle between normals in degrees, mean difference of the two alphas (of A' projected on
-/// the baked axes).
+/// Compares levels 0 to 6. The bounds are the mean angle between normals in degrees and the mean difference of the two
+/// alphas, which are A' projected on the baked axes.
 fn compare(normals: Image, roughness: Option<Image>, factor: f32, target: Target, bounds: (f64, f64)) {
     let bump_map = BumpMap::Normals(NormalMap::new(normals.clone(), NormalLayout::Xyz, false).unwrap());
     let settings =
-        Settings { model: Model::Anisotropic, distribution: Distribution::Normal, target, ..Settings::default() };
-    let own = BaseRoughness { image: roughness.clone(), factor };
-    let baked = bake_map(&bump_map, Some(&own), &settings).unwrap();
+        Settings::default().with_model(Model::Anisotropic).with_distribution(Distribution::Normal).with_target(target);
+    let base = BaseRoughness { image: roughness.clone(), factor };
+    let baked = bake_map(&bump_map, Some(&base), &settings).unwrap();
     assert_eq!(bump_map.outliers(), Outliers::default());
     let contents: Vec<Content> = baked.textures.iter().map(|t| t.content).collect();
     assert_eq!(contents, [Content::Normal, Content::Roughness, Content::Anisotropy]);
@@ -122,7 +126,7 @@ fn compare(normals: Image, roughness: Option<Image>, factor: f32, target: Target
     }
 }
 
-/// Half floats keep ten bits: nothing is left to blame but the mathematics.
+/// Half floats keep ten bits, so that the bounds are those of the mathematics.
 #[test]
 fn levels_match_the_oracle_in_floats() {
     compare(synthetic(), None, 0.4, Target::Float, (0.05, 5e-4));
@@ -138,8 +142,7 @@ fn levels_of_a_real_material_match_the_oracle() {
     let (Some(normals), Some(roughness)) =
         (real("GlassPlasticMat_Normal"), real("GlassPlasticMat_OcclusionRoughMetal"))
     else {
-        println!("skipped: ../shared/data/FlightHelmet is not there");
-        return;
+        return skip::skip("../shared/data/FlightHelmet does not exist");
     };
     compare(normals.clone(), Some(roughness.clone()), 1.0, Target::Float, (0.05, 1e-3));
     compare(normals, Some(roughness), 1.0, Target::Basis, (0.9, 0.025));

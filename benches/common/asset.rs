@@ -1,4 +1,4 @@
-//! glTF assets of any number of materials, each with a normal and a roughness map of its own.
+//! glTF assets of any number of materials, each with its own normal map and roughness map.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use super::gltf::{Buffer, text};
 use super::maps::{normals, surface};
 use super::mesh::square;
 
-/// An RGB PNG as tools write it: zlib's default level, the filter chosen row by row.
+/// Encodes an RGB PNG as tools write it: zlib's default level, and the filter chosen row by row.
 pub fn png(texels: &[u8], size: usize) -> Vec<u8> {
     let mut file = Vec::new();
     PngEncoder::new_with_quality(&mut file, CompressionType::Default, FilterType::Adaptive)

@@ -1,12 +1,12 @@
-//! What memory lets any kernel reach.
+//! Copies, which bound what any kernel can reach with the bandwidth of memory.
 
 use rayon::prelude::*;
 
 /// Bytes that a thread copies at a time.
 const CHUNK: usize = 1 << 20;
 
-/// `target` filled with `source`, as far as they go, and the rest of it with a constant: every byte is read once and written
-/// once, by all threads.
+/// Fills `target` from `source`, and a longer target with a constant behind the source. All threads together read and
+/// write every byte once.
 pub fn copied(source: &[u8], mut target: Vec<u8>) -> Vec<u8> {
     let common = source.len().min(target.len());
     let (copy, rest) = target.split_at_mut(common);

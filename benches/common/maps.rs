@@ -1,14 +1,15 @@
-//! Maps of any size, like those of materials: bumps of three scales under a grain that no compressor removes.
+//! Maps of any size that resemble those of materials: bumps of three scales under a grain that no compressor removes.
 
 use rayon::prelude::*;
 
 use super::noise::{Random, ValueNoise};
 use super::picture::{normal, unorm8};
 
-/// Rows made at once: two more are computed for slopes.
+/// Rows of a band, which one thread makes. Slopes need the heights of two rows more.
 const BAND: usize = 64;
 
-/// A normal map of `size` x `size` texels, RGB, that repeats at its borders. Slopes spread by about 0.25.
+/// Makes an RGB normal map of `size` x `size` texels that repeats at its borders. The standard deviation of slopes is
+/// about 0.25.
 pub fn normals(size: usize) -> Vec<u8> {
     let mut random = Random(0x5104_E5D0);
     let octaves =
@@ -37,7 +38,7 @@ pub fn normals(size: usize) -> Vec<u8> {
     texels
 }
 
-/// Occlusion 1, roughness about 0.45, metal 0: RGB.
+/// Makes an RGB map of occlusion 1, roughness of about 0.45 and metal 0.
 pub fn surface(size: usize) -> Vec<u8> {
     let mut random = Random(0x0005_0FF1);
     let smudges = ValueNoise::new(&mut random, size / 32);

@@ -1,10 +1,11 @@
-"""What was promised, and whether the figures keep it."""
+"""The promised figures, and whether the measured figures keep them."""
 
 from statistics import mean
 
 
 def bars(results):
-    """Rows of the promise, its bound, what was measured, and the verdict; parts that were not measured in full have none."""
+    """Rows of a promise, its bound, the measured figure and the verdict. Parts that were not fully measured have no
+    rows."""
     rows = []
     for name, of in PARTS.items():
         rows += of(results[name]) if name in results and not results[name]["quick"] else []
@@ -12,33 +13,35 @@ def bars(results):
 
 
 def at_most(promise, bound, measured, form="{:.2f}"):
-    """A row that is met by figures up to `bound`."""
+    """A row that figures up to `bound` meet."""
     return (promise, "at most " + form.format(bound), *verdict(measured, lambda: measured <= bound, form))
 
 
 def at_least(promise, bound, measured, form="{:.2f}"):
-    """A row that is met by figures from `bound` on."""
+    """A row that figures from `bound` on meet."""
     return (promise, "at least " + form.format(bound), *verdict(measured, lambda: measured >= bound, form))
 
 
 def verdict(measured, is_met, form):
-    """The figure and what it says; `None` where a run failed."""
+    """The figure and its text; `None` where a run failed."""
     if measured is None:
         return "-", "not measured"
     return form.format(measured), "met" if is_met() else "not met"
 
 
 def ratio(times, one, other):
-    """Time of one beside that of the other; `None` where either failed."""
+    """Ratio of two times; `None` where either run failed."""
     runs = times.get(one, {}), times.get(other, {})
     return runs[0]["wall"] / runs[1]["wall"] if all("wall" in run for run in runs) else None
 
 
 def encoders(part):
     times, quality = part["times"], {name: row for name, row in part["quality"].items() if name != "failed"}
-    # Maps that both keep exactly (99 dB) would weigh as much as any difference.
-    is_told = lambda row, a, b, key: key in row.get(a, {}) and min(row[a][key], row[b][key]) < 99
-    gap = lambda a, b, key: {name: row[a][key] - row[b][key] for name, row in quality.items() if is_told(row, a, b, key)}
+    # Maps that both tools keep exactly (99 dB) would otherwise weigh as much as any difference.
+    is_measured = lambda row, a, b, key: key in row.get(a, {}) and min(row[a][key], row[b][key]) < 99
+    gap = lambda a, b, key: {
+        name: row[a][key] - row[b][key] for name, row in quality.items() if is_measured(row, a, b, key)
+    }
     worst = lambda gaps: min(gaps.items(), key=lambda gap: gap[1], default=("none", None))
     average = lambda values: mean(values) if values else None
     rows = []
@@ -48,27 +51,47 @@ def encoders(part):
         for name, mine, other in [("fast", fast, "level 0"), ("best", best, "level 2")]:
             place, least = worst(gap(mine, other, key))
             rows.append(at_least(f"`{name}` {what} less {other}, {kind} on the worst map ({place}), dB", 0, least))
-        rows.append(at_least(f"`fast` {what} less level 1, mean {kind}, dB", -1, average(list(gap(fast, "level 1", key).values()))))
+        rows.append(
+            at_least(
+                f"`fast` {what} less level 1, mean {kind}, dB", -1, average(list(gap(fast, "level 1", key).values()))
+            )
+        )
     directions = [row for row in quality.values() if "degrees" in row["fast"]]
-    turned = [average([row[encoder]["degrees"] for row in directions]) for encoder in ("fast", "level 1")]
+    angles = [average([row[encoder]["degrees"] for row in directions]) for encoder in ("fast", "level 1")]
     return rows + [
-        at_most("UASTC `fast` by direction beside level 0, time", 1 / 5, ratio(times, "fast", "level 0")),
-        at_most("the same beside level 0 with statistics (what the C interface does)", 1 / 5, ratio(times, "fast", "level 0 with statistics")),
-        at_most("`fast` by colour beside level 0, time", 1 / 5, ratio(times, "fast rgb", "level 0")),
-        at_most("`fast` by roughness beside level 0, time", 1 / 5, ratio(times, "fast surface, roughness", "level 0, roughness")),
-        at_most("`fast` by direction beside level 1, mean angle of normals", 1, turned[0] and turned[0] / turned[1]),
-        at_most("`best` by direction beside level 1, time", 1 / 4, ratio(times, "best", "level 1")),
-        at_most("`best` by colour beside level 1, time", 1 / 4, ratio(times, "best rgb", "level 1")),
-        at_most("`best` by roughness beside level 1, time", 1 / 4, ratio(times, "best surface, roughness", "level 1, roughness")),
+        at_most("UASTC `fast` by direction over level 0, time", 1 / 5, ratio(times, "fast", "level 0")),
+        at_most(
+            "UASTC `fast` by direction over level 0 with statistics (the C interface), time",
+            1 / 5,
+            ratio(times, "fast", "level 0 with statistics"),
+        ),
+        at_most("`fast` by colour over level 0, time", 1 / 5, ratio(times, "fast rgb", "level 0")),
+        at_most(
+            "`fast` by roughness over level 0, time",
+            1 / 5,
+            ratio(times, "fast surface, roughness", "level 0, roughness"),
+        ),
+        at_most("`fast` by direction over level 1, mean angle of normals", 1, angles[0] and angles[0] / angles[1]),
+        at_most("`best` by direction over level 1, time", 1 / 4, ratio(times, "best", "level 1")),
+        at_most("`best` by colour over level 1, time", 1 / 4, ratio(times, "best rgb", "level 1")),
+        at_most(
+            "`best` by roughness over level 1, time",
+            1 / 4,
+            ratio(times, "best surface, roughness", "level 1, roughness"),
+        ),
     ]
 
 
 def kernels(part):
     times = part["times"]
     return [
-        at_most("mean and K of all levels beside a copy of the same bytes", 4, ratio(times, "moments", "copy of moments")),
-        at_most("the same beside a copy to where something was before", 4, ratio(times, "moments", "copy in place")),
-        at_most("with moments of shape beside a copy of the same bytes", 8, ratio(times, "shape", "copy of shape")),
+        at_most(
+            "mean and K of all levels over a copy of as many bytes, time", 4, ratio(times, "moments", "copy of moments")
+        ),
+        at_most("mean and K of all levels over a copy in place, time", 4, ratio(times, "moments", "copy in place")),
+        at_most(
+            "mean, K and moments of shape over a copy of as many bytes, time", 8, ratio(times, "shape", "copy of shape")
+        ),
     ]
 
 
@@ -76,11 +99,23 @@ def whole(part):
     times = part["times"]
     ktx = "`ktx create`" if part["ktx"] else "the stand-in for `ktx create`"
     return [
-        at_most("bake to two textures beside decoding its images in turn", 6, ratio(times, "two textures", "decoding in turn")),
-        at_most("the same beside decoding them side by side", 6, ratio(times, "two textures", "decoding side by side")),
-        at_least("`maketx --bumpslopes` beside the bake to two textures", 4, ratio(times, "maketx", "two textures")),
-        at_least(f"{ktx} of one map beside the bake of two", 6, ratio(times, "pack", "two textures")),
-        at_least(f"{ktx} of both maps beside the bake of them", 6, ratio(times, "pack both", "two textures")),
+        at_most(
+            "bake to two textures over decoding its images in turn, time",
+            6,
+            ratio(times, "two textures", "decoding in turn"),
+        ),
+        at_most(
+            "bake to two textures over decoding its images side by side, time",
+            6,
+            ratio(times, "two textures", "decoding side by side"),
+        ),
+        at_least(
+            "`maketx --bumpslopes` over the bake to two textures, time", 4, ratio(times, "maketx", "two textures")
+        ),
+        at_least(f"{ktx} of one map over the bake to two textures, time", 6, ratio(times, "pack", "two textures")),
+        at_least(
+            f"{ktx} of both maps over the bake to two textures, time", 6, ratio(times, "pack both", "two textures")
+        ),
     ]
 
 
@@ -107,7 +142,7 @@ def memory(part):
 
 
 def share(run):
-    """Of two cores, in percent; `None` where the run failed."""
+    """Use of two cores, in percent; `None` where the run failed."""
     return 100 * run["cpu"] / (2 * run["wall"]) if "cpu" in run else None
 
 

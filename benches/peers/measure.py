@@ -1,4 +1,4 @@
-"""Runs of commands that alternate: wall time, processor seconds and peak memory of each."""
+"""Runs commands in turn: wall time, processor seconds and peak memory of each."""
 
 import json
 import os
@@ -10,7 +10,7 @@ import threading
 import time
 from dataclasses import dataclass
 
-# Seconds after which a run is given up.
+# Seconds after which a run is killed.
 LIMIT = 900
 
 
@@ -20,14 +20,14 @@ class Failed(Exception):
 
 @dataclass
 class Contender:
-    """A command beside others."""
+    """A command that is compared with others."""
 
     argv: list
-    # Removed before each run.
+    # Output folder, emptied before each run.
     out: str | None = None
-    # Whether the command prints the times of what counts, as JSON; else the whole process counts.
-    tells: bool = False
-    # In which rounds it takes part: all, or so many first ones where one run takes long.
+    # Whether the command prints its own times as JSON. Otherwise the whole process is timed.
+    times_itself: bool = False
+    # Number of first rounds that the command takes part in; all by default. Slow commands take part in few.
     rounds: int | None = None
 
 
@@ -44,7 +44,7 @@ def once(contender):
             raise Failed(f"{contender.argv[0]}: {error.strerror}") from error
         timer = threading.Timer(LIMIT, process.kill)
         timer.start()
-        # `wait4` and not `wait`: it tells what this child used, not all of them together.
+        # `wait4` and not `wait`, since `wait4` returns the resources of this child alone.
         _, status, usage = os.wait4(process.pid, 0)
         wall = time.perf_counter() - start
         timer.cancel()
@@ -53,12 +53,12 @@ def once(contender):
         err.seek(0)
         if process.returncode != 0:
             lines = err.read().decode(errors="replace").split("\n")
-            said = next((line.strip() for line in reversed(lines) if line.strip()), "no message")
-            raise Failed(f"ended with {process.returncode}: {said[:160]}")
+            message = next((line.strip() for line in reversed(lines) if line.strip()), "no message")
+            raise Failed(f"ended with {process.returncode}: {message[:160]}")
         files = [os.path.join(folder, name) for folder, _, names in os.walk(contender.out or "") for name in names]
         written = sum(map(os.path.getsize, files)) / 1048576
         run = {"wall": wall, "cpu": usage.ru_utime + usage.ru_stime, "peak": usage.ru_maxrss / 1024, "written": written}
-        if contender.tells:
+        if contender.times_itself:
             run |= json.loads(out.read())
         return run
 
@@ -81,7 +81,7 @@ def alternate(contenders, rounds, note=print):
 
 
 def summary(runs):
-    """Of several runs of one contender."""
+    """Summary of several runs of one contender."""
     walls = [run["wall"] for run in runs]
     return {
         "wall": statistics.median(walls),

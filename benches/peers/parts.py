@@ -1,4 +1,4 @@
-"""What is measured. Each part returns data; `page.py` makes tables of it, `bars.py` verdicts."""
+"""The measurements. Each part returns data; `page.py` makes tables of the data, and `bars.py` verdicts."""
 
 import json
 import os
@@ -8,13 +8,13 @@ from pathlib import Path
 from measure import Contender, Failed, alternate, once
 from prepare import inputs
 
-# The two forms of a bake: the fewest textures, and what `roughcast bake` does when told nothing.
+# The two forms of a bake: the fewest textures, and the default of `roughcast bake`.
 TWO = ["--gltf", "strict", "--model", "isotropic"]
 DEFAULT = []
 
 
 class Bench:
-    """What parts share."""
+    """State that parts share."""
 
     def __init__(self, tools, data, quick):
         self.tools, self.data, self.quick = tools, data, quick
@@ -29,7 +29,7 @@ class Bench:
         return [256, 512, 1024, 2048] + ([] if self.quick else [4096, 8192, 16384])
 
     def folder(self, size=None, count=None):
-        """Assets with maps of `size`: as many as any part wants of that size."""
+        """The folder of assets with maps of `size`, as many as any part needs."""
         size = size or self.size
         most = {512: 100 if self.quick else 1000, self.size: 10}
         return inputs(self.tools, self.maps, size, most.get(size, 1))
@@ -41,14 +41,24 @@ class Bench:
         return str(self.folder() / "maps" / "surface.png")
 
     def bake(self, size, count, form):
-        """Roughcast on `count` assets."""
+        """Runs Roughcast on `count` assets."""
         assets = [str(self.folder(size) / f"{index:04}.gltf") for index in range(count)]
         argv = [self.tools.roughcast, "bake", *assets, "-o", self.out, "--threads", "2", "--quiet", *form]
         return Contender(argv, out=self.out)
 
     def map(self, size, form):
-        """Roughcast on a normal map by itself."""
-        argv = [self.tools.roughcast, "map", self.normal(size), "-o", f"{self.out}/normal.ktx2", "--roughness-factor", "0.4", "--quiet", *form]
+        """Runs Roughcast on one normal map."""
+        argv = [
+            self.tools.roughcast,
+            "map",
+            self.normal(size),
+            "-o",
+            f"{self.out}/normal.ktx2",
+            "--roughness-factor",
+            "0.4",
+            "--quiet",
+            *form,
+        ]
         return Contender(argv, out=self.out)
 
     def maketx(self, size=None):
@@ -56,7 +66,7 @@ class Bench:
         return Contender([*argv, self.normal(size), "-o", f"{self.out}/slopes.exr"], out=self.out)
 
     def packed(self, image, target):
-        """The command line of `ktx create` where there is one, else of our stand-in."""
+        """The command line of `ktx create` where it is installed, else of our stand-in."""
         if self.tools.ktx:
             argv = [self.tools.ktx, "create", "--format", "R8G8B8_UNORM", "--assign-tf", "linear", "--generate-mipmap"]
             argv += ["--encode", "uastc", "--uastc-quality", "0", "--zstd", "5", "--threads", "2"]
@@ -67,17 +77,17 @@ class Bench:
         return Contender(self.packed(self.normal(size), f"{self.out}/packed.ktx2"), out=self.out)
 
     def pack_both(self):
-        """Both maps, one after the other: as many textures as a bake makes."""
+        """Packs both maps, one after the other: as many textures as a bake makes."""
         normal = shlex.join(self.packed(self.normal(), f"{self.out}/normal.ktx2"))
         surface = shlex.join(self.packed(self.surface(), f"{self.out}/surface.ktx2"))
         return Contender(["sh", "-c", f"{normal} && {surface}"], out=self.out)
 
     def inner(self, *argv, rounds=None):
-        """A subcommand of our crate that times itself."""
-        return Contender([self.tools.peers, *argv], tells=True, rounds=rounds)
+        """A subcommand of this folder's crate, which times itself."""
+        return Contender([self.tools.peers, *argv], times_itself=True, rounds=rounds)
 
     def real(self, *names):
-        """Files of the data whose names hold one of `names`; our own inputs where there is no data."""
+        """Files of the data whose names hold one of `names`, or our own inputs where there is no data."""
         if not self.data:
             return [self.normal()]
         files = sorted(path for path in self.data.rglob("*") if path.suffix in (".png", ".jpg"))
@@ -85,9 +95,18 @@ class Bench:
 
 
 def encoders(bench):
-    """UASTC, one level: time, then what is left of real maps."""
-    names = ["fast", "level 0", "level 0 with statistics", "best", "level 1", "level 1 with statistics", "fast rgb", "best rgb"]
-    # The slowest is shown, and no bar names it.
+    """UASTC: time of one level, then quality on real maps."""
+    names = [
+        "fast",
+        "level 0",
+        "level 0 with statistics",
+        "best",
+        "level 1",
+        "level 1 with statistics",
+        "fast rgb",
+        "best rgb",
+    ]
+    # The slowest encoder is shown, and no bar uses it.
     rounds = {"level 1 with statistics": 1}
     contenders = {name: bench.inner("encode", name, bench.normal(), rounds=rounds.get(name)) for name in names}
     surfaces = ["fast surface", "level 0", "best surface", "level 1"]
@@ -107,7 +126,7 @@ def encoders(bench):
 
 
 def printed(bench, *argv):
-    """What a subcommand prints, or why it does not."""
+    """What a subcommand prints, or why it failed."""
     try:
         run = once(bench.inner(*argv))
     except Failed as reason:
@@ -116,7 +135,7 @@ def printed(bench, *argv):
 
 
 def kernels(bench):
-    """The pyramid's kernel beside copies."""
+    """The pyramid's kernel and copies."""
     names = ["copy in place", "copy of moments", "moments", "copy of shape", "shape"]
     contenders = {name: bench.inner("kernel", name, bench.normal()) for name in names}
     return {"size": bench.size, "times": alternate(contenders, bench.rounds if bench.quick else 9)}
@@ -126,20 +145,24 @@ def decoders(bench):
     """PNG and JPEG decoders."""
     jpeg = f"{bench.tools.work}/normal-{bench.size}.jpg"
     os.path.exists(jpeg) or once(bench.inner("inputs", "jpeg", bench.normal(), jpeg))
-    contenders = {f"PNG, {name}": bench.inner("decode", name, bench.normal()) for name in ["png", "zune-png", "roughcast"]}
-    contenders |= {f"JPEG, {name}": bench.inner("decode", name, jpeg) for name in ["zune-jpeg", "jpeg-decoder", "roughcast"]}
+    contenders = {
+        f"PNG, {name}": bench.inner("decode", name, bench.normal()) for name in ["png", "zune-png", "roughcast"]
+    }
+    contenders |= {
+        f"JPEG, {name}": bench.inner("decode", name, jpeg) for name in ["zune-jpeg", "jpeg-decoder", "roughcast"]
+    }
     return {"size": bench.size, "times": alternate(contenders, bench.rounds)}
 
 
 def whole(bench):
-    """One material from files to files."""
+    """A whole bake of one material, from files to files."""
     both = [bench.normal(), bench.surface()]
-    told = [*DEFAULT, "--report", str(bench.report)]
+    with_report = [*DEFAULT, "--report", str(bench.report)]
     contenders = {
         "decoding in turn": bench.inner("images", "in turn", *both),
         "decoding side by side": bench.inner("images", "side by side", *both),
         "two textures": bench.bake(bench.size, 1, TWO),
-        "default": bench.bake(bench.size, 1, told),
+        "default": bench.bake(bench.size, 1, with_report),
         "maketx": bench.maketx(),
         "pack": bench.pack(),
         "pack both": bench.pack_both(),
@@ -149,8 +172,8 @@ def whole(bench):
 
 
 def errors(bench):
-    """Lobe errors by level, as decoded from blocks, of each model in full size and of what a bake takes (`default`), as the default
-    bake judged them before it chose; or nothing."""
+    """Lobe errors by level, decoded from blocks, of each model in full size and of the chosen model (`default`), and
+    the errors that the default bake had estimated before its choice. Nothing where the run failed."""
     if not bench.report.exists():
         return {}
     choice = json.loads(bench.report.read_text())["assets"][0]["layers"][0]["choice"]
@@ -168,17 +191,17 @@ def growth(bench):
     for size in bench.sizes():
         print(f"  {size} x {size}")
         rounds = 1 if bench.quick or size > 4096 else 3 if size > 2048 else 5
-        told = [*DEFAULT, "--report", str(bench.report)]
-        contenders = {"two textures": bench.bake(size, 1, TWO), "default": bench.bake(size, 1, told)}
+        with_report = [*DEFAULT, "--report", str(bench.report)]
+        contenders = {"two textures": bench.bake(size, 1, TWO), "default": bench.bake(size, 1, with_report)}
         if size <= 8192:
             contenders |= {"maketx": bench.maketx(size), "pack": bench.pack(size)}
         result["sizes"][str(size)] = alternate(contenders, rounds, lambda _: None) | {"errors": errors(bench)}
     for count in counts:
         print(f"  {count} materials")
-        # Of 200 the cores' share is promised; the others are points of a curve.
+        # The promise about cores is for 200 materials; the other points are for the curve.
         rounds = 1 if bench.quick else {1: 5, 10: 5, 200: 3}.get(count, 1)
         forms = {"two textures": bench.bake(512, count, TWO)}
-        # A curve of the other form needs no point that takes minutes.
+        # The curve of the other form leaves out points that take minutes.
         forms |= {"default": bench.bake(512, count, DEFAULT)} if count <= 200 else {}
         result["counts"][str(count)] = alternate(forms, rounds, lambda _: None)
     print("  ten maps at a time")
@@ -188,10 +211,20 @@ def growth(bench):
 
 
 def memory(bench):
-    """What the largest normal map takes by itself."""
+    """Time and memory of the largest normal map."""
     size = max(bench.sizes())
-    forms = {"two textures": bench.map(size, ["--model", "isotropic"]), "three textures": bench.map(size, ["--model", "anisotropic"])}
+    forms = {
+        "two textures": bench.map(size, ["--model", "isotropic"]),
+        "three textures": bench.map(size, ["--model", "anisotropic"]),
+    }
     return {"size": size, "runs": alternate(forms, 1, lambda _: None)}
 
 
-PARTS = {"encoders": encoders, "kernels": kernels, "decoders": decoders, "whole": whole, "growth": growth, "memory": memory}
+PARTS = {
+    "encoders": encoders,
+    "kernels": kernels,
+    "decoders": decoders,
+    "whole": whole,
+    "growth": growth,
+    "memory": memory,
+}

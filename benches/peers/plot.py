@@ -6,12 +6,28 @@ WIDTH, HEIGHT = 380, 300
 LEFT, TOP, RIGHT, BOTTOM = 56, 56, 16, 44
 GAP = 16
 COLOURS = {
-    "light": {"ink": "#1c2430", "soft": "#6b7480", "grid": "#e3e6ea", "paper": "#ffffff",
-              "two": "#0060a8", "default": "#4a9bd9", "maketx": "#b34700", "pack": "#7a5195"},
-    "dark": {"ink": "#e8ebef", "soft": "#9aa3ae", "grid": "#333a44", "paper": "#14181d",
-             "two": "#6cbcf2", "default": "#3f7fb0", "maketx": "#f0a35e", "pack": "#c49be0"},
+    "light": {
+        "ink": "#1c2430",
+        "soft": "#6b7480",
+        "grid": "#e3e6ea",
+        "paper": "#ffffff",
+        "two": "#0060a8",
+        "default": "#4a9bd9",
+        "maketx": "#b34700",
+        "pack": "#7a5195",
+    },
+    "dark": {
+        "ink": "#e8ebef",
+        "soft": "#9aa3ae",
+        "grid": "#333a44",
+        "paper": "#14181d",
+        "two": "#6cbcf2",
+        "default": "#3f7fb0",
+        "maketx": "#f0a35e",
+        "pack": "#c49be0",
+    },
 }
-# The name of each line in the results, and its class.
+# Name of each line in the results, and its class.
 LINES = {"two textures": "two", "default": "default", "maketx": "maketx", "pack": "pack"}
 
 
@@ -23,7 +39,9 @@ def growth(results):
     ]
     names = {"pack": "ktx create" if results["ktx"] else "ktx stand-in"}
     width = 2 * WIDTH + GAP
-    parts = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {HEIGHT}" width="{width}" height="{HEIGHT}">']
+    parts = [
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {HEIGHT}" width="{width}" height="{HEIGHT}">'
+    ]
     parts += [f"<style>{style()}</style>", '<rect class="paper" width="100%" height="100%"/>']
     for index, (title, unit, points) in enumerate(charts):
         parts.append(f'<g transform="translate({index * (WIDTH + GAP)} 0)">{chart(title, unit, points, names)}</g>')
@@ -31,9 +49,11 @@ def growth(results):
 
 
 def style():
-    """Colours of both schemes, and what has them."""
+    """Colours of both schemes, and the classes that have them."""
     names = lambda scheme: ";".join(f"--{name}:{value}" for name, value in COLOURS[scheme].items())
-    lines = "".join(f".{c}{{stroke:var(--{c});stroke-width:1.8}}text.{c}{{fill:var(--{c});stroke:none}}" for c in LINES.values())
+    lines = "".join(
+        f".{c}{{stroke:var(--{c});stroke-width:1.8}}text.{c}{{fill:var(--{c});stroke:none}}" for c in LINES.values()
+    )
     return (
         f"svg{{{names('light')}}}@media(prefers-color-scheme:dark){{svg{{{names('dark')}}}}}"
         "text{font:11px system-ui,sans-serif;fill:var(--ink)}.title{font-weight:600;font-size:13px}"
@@ -42,7 +62,8 @@ def style():
 
 
 def chart(title, unit, points, names):
-    """One chart; `points` are summaries by name, by size or number. Lines have their own name unless `names` has another."""
+    """One chart. `points` are summaries by name, then by size or number. Lines have their own names unless `names`
+    has another."""
     xs = sorted(int(x) for x in points)
     series = []
     for name, kind in LINES.items():
@@ -66,7 +87,7 @@ def chart(title, unit, points, names):
     free = HEIGHT
     for kind, label, known in sorted(series, key=lambda s: at_y(s[2][-1][1]), reverse=True):
         line = "L".join(f"{at_x(x):.1f} {at_y(wall):.1f}" for x, wall in known)
-        # Labels from below beside the chart, none over another nor over a line.
+        # Labels go beside the chart from below, and cover neither each other nor a line.
         free = min(at_y(known[-1][1]) + 4, free - 13)
         parts.append(f'<path class="{kind}" d="M{line}"/>')
         parts.append(f'<text class="{kind}" x="{end + 6}" y="{free:.1f}">{label}</text>')

@@ -1,4 +1,4 @@
-"""What the measurements need: other people's tools, our builds, the inputs, and what machine this is."""
+"""Prepares the measurements: other people's tools, our builds, the inputs, and a description of the machine."""
 
 import os
 import platform
@@ -9,7 +9,7 @@ import venv
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-# Versions are pinned: figures of one run can be compared with those of another.
+# Versions are pinned, so that figures of different runs compare.
 WHEELS = ["OpenImageIO==3.2.2.0", "libclang==18.1.1"]
 
 
@@ -27,7 +27,8 @@ class Tools:
 
 
 def pin_to_two_cores():
-    """All that runs from here on sees two cores: basis_universal takes as many threads as there are. Their number."""
+    """Limits everything that runs from here on to two cores, since basis_universal takes as many threads as there are
+    cores. Returns their number."""
     if hasattr(os, "sched_setaffinity"):
         os.sched_setaffinity(0, sorted(os.sched_getaffinity(0))[:2])
         cores = len(os.sched_getaffinity(0))
@@ -38,7 +39,8 @@ def pin_to_two_cores():
 
 
 def install(tools):
-    """OpenImageIO, and libclang for the bindings of basis_universal, from PyPI into a scratch environment. Why it failed, or nothing."""
+    """Installs OpenImageIO, and libclang for the bindings of basis_universal, from PyPI into a scratch environment.
+    Returns why that failed, or nothing."""
     if not (tools.environment / "bin" / "python").exists():
         venv.create(tools.environment, with_pip=True)
     pip = [str(tools.environment / "bin" / "pip"), "install", "-q", "--disable-pip-version-check", *WHEELS]
@@ -47,10 +49,12 @@ def install(tools):
 
 
 def build(tools):
-    """Roughcast as it is shipped, and this folder's crate."""
+    """Builds Roughcast as it is shipped, and this folder's crate."""
     target = str(Path(tools.roughcast).parents[1])
     manifest = str(ROOT / "benches" / "peers" / "Cargo.toml")
-    run(["cargo", "build", "--release", "--locked", "--manifest-path", str(ROOT / "Cargo.toml"), "--target-dir", target])
+    run(
+        ["cargo", "build", "--release", "--locked", "--manifest-path", str(ROOT / "Cargo.toml"), "--target-dir", target]
+    )
     environment = os.environ | {"CXXFLAGS": cxx_flags()}
     clang = next(tools.environment.glob("lib/python*/site-packages/clang/native"), None)
     if clang and "LIBCLANG_PATH" not in os.environ:
@@ -59,7 +63,7 @@ def build(tools):
 
 
 def cxx_flags():
-    """As basis_universal's own CMakeLists.txt has them, which its crate does not: without assertions, with SSE 4.1."""
+    """Flags of basis_universal's own CMakeLists.txt, which its crate leaves out: no assertions, and SSE 4.1."""
     sse = ["-DBASISU_SUPPORT_SSE=1", "-msse4.1"] if is_x86() else []
     return " ".join(["-DNDEBUG", *sse])
 
@@ -70,7 +74,7 @@ def is_x86():
 
 
 def inputs(tools, data, size, count):
-    """The folder of `count` assets with maps of `size` texels a side; made unless it is there."""
+    """The folder of `count` assets with maps of `size` texels a side, made when it is missing."""
     folder = tools.work / "inputs" / f"{size}{'' if data else '-synthetic'}"
     done = folder / f"{count}.done"
     if not done.exists():
@@ -81,13 +85,13 @@ def inputs(tools, data, size, count):
 
 
 def run(argv, environment=None):
-    """A step that must not fail."""
+    """Runs a step that must not fail."""
     if subprocess.run(argv, env=environment, stdout=subprocess.DEVNULL).returncode != 0:
         sys.exit(f"error: {' '.join(argv[:3])} failed")
 
 
 def machine(tools, cores, load):
-    """What the figures depend on, in words; `load` is what else the machine did."""
+    """Describes the machine, on which figures depend. `load` is what else the machine did."""
     text = lambda argv: subprocess.run(argv, capture_output=True, text=True).stdout.strip()
     facts = {"cores": f"{cores} of {os.cpu_count()} ({processor()})"}
     facts["memory"] = f"{os.sysconf('SC_PAGE_SIZE') * os.sysconf('SC_PHYS_PAGES') / 2**30:.0f} GiB"
@@ -102,13 +106,13 @@ def machine(tools, cores, load):
 
 
 def commit():
-    """What is measured."""
+    """Describes what is measured."""
     argv = ["git", "-C", str(ROOT), "describe", "--always", "--dirty"]
     return subprocess.run(argv, capture_output=True, text=True).stdout.strip() or "unknown"
 
 
 def processor():
-    """Its name."""
+    """Name of the processor."""
     try:
         lines = Path("/proc/cpuinfo").read_text().split("\n")
     except OSError:

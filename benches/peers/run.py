@@ -18,15 +18,19 @@ from prepare import ROOT, Tools, build, commit, install, machine, pin_to_two_cor
 
 def main():
     parser = argparse.ArgumentParser(description="Measures Roughcast beside its peers and writes docs/performance.md.")
-    parser.add_argument("--only", nargs="+", choices=PARTS, metavar="PART", help=f"measure only these: {', '.join(PARTS)}")
+    parser.add_argument(
+        "--only", nargs="+", choices=PARTS, metavar="PART", help=f"measure only these: {', '.join(PARTS)}"
+    )
     parser.add_argument("--quick", action="store_true", help="small maps, one run each: shows that it works")
-    parser.add_argument("--data", type=Path, default=ROOT.parent / "shared" / "data", help="real materials, used where present")
+    parser.add_argument(
+        "--data", type=Path, default=ROOT.parent / "shared" / "data", help="real materials, used where present"
+    )
     options = parser.parse_args()
     start = time.monotonic()
     step = lambda text: print(f"== {text} ({time.monotonic() - start:.0f} s)", flush=True)
 
     tools = Tools(Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")))
-    # Of other work: before ours begins.
+    # Load by other work, before this script begins.
     load = " ".join(f"{load:.1f}" for load in os.getloadavg())
     step("OpenImageIO")
     missing = install(tools)
@@ -48,8 +52,8 @@ def main():
         results[name] = PARTS[name](bench) | {"quick": options.quick, "machine": facts | {"commit": commit()}}
         stored.write_text(json.dumps(results, indent=1))
         print(page.SECTIONS[name](results[name]), flush=True)
-    # Where parts were measured elsewhere, a page without them would lose what docs/performance.md says of them; and figures of
-    # small maps are none.
+    # docs/performance.md is written from complete measurements only. A page without parts that were measured elsewhere
+    # would lose their figures, and figures of small maps do not count.
     lacking = [name for name in PARTS if results.get(name, {"quick": True})["quick"]]
     docs = tools.work if lacking else ROOT / "docs"
     (docs / "performance.md").write_text(page.page(results))

@@ -12,7 +12,7 @@
 #SBATCH --output=reports/%a.log
 set -u
 cache=${ROUGHCAST_CACHE:-.cache/roughcast}
-# Exit code 4 is worth another try. The number of parts is that of the array.
+# Exit code 4 is retried. `--shard /8` takes its index from the array, which has as many tasks as there are parts.
 for pause in 5 30 120; do
     roughcast bake --plan plan.json --shard /8 --report "reports/$SLURM_ARRAY_TASK_ID.json" \
         --cache "$cache" --threads "${SLURM_CPUS_PER_TASK:-0}" --quiet

@@ -1,27 +1,30 @@
 //! `roughcast bake`.
 
-use std::fmt::Display;
 use std::fs::File;
 use std::io::{self, Write};
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::time::SystemTime;
 
 use super::cached::CacheOptions;
-use super::depfile;
-use super::jobs::{self, JobOptions, Planned};
+use super::jobs::{JobOptions, JobsError};
 use super::outcome::Outcome;
-use super::remote::RemoteOptions;
-use super::report::{Asset, Report, Status};
-use super::selection::Selection;
+use super::remote::{RemoteOptionError, RemoteOptions};
+use super::selection::{SelectionOptions, print_problems};
+use super::summary::summary;
 use super::work::{Work, Worked};
-use crate::output::PublishError;
+use crate::cache::CacheError;
 use crate::output::lock::{Kind, OutputLock};
+use crate::output::{OutputPath, PublishError};
+use crate::project::{InputError, NamedServer, Selected, SelectionError};
+use crate::report::{AssetOutcome, RunReport, Status};
+use crate::run::{DepfileError, PlannedAsset, guard, plan_assets, split_depfile};
 use crate::settings::Settings;
 use crate::text::printable;
 
 /// Bake glTF assets: KTX2 textures with the lost roughness in their mips, and a glTF that refers to them.
 ///
-/// Reads .gltf and .glb files and folders of them; writes to another folder and never touches a source.
+/// Reads .gltf and .glb files and folders of them. Writes to another folder and never changes a source.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example:\n  roughcast bake assets/helmet.gltf -o baked --engine bevy")]
 pub struct Args {
@@ -31,16 +34,19 @@ pub struct Args {
     /// Write what was done, chosen and skipped to a JSON file.
     #[arg(long, value_name = "FILE")]
     report: Option<PathBuf>,
-    /// Write which files each output was made from, as a Makefile for Make and Ninja. An asset whose files
-    /// have names that these cannot read fails.
+    /// Write which files each output was made from, as a Makefile for Make and Ninja. An asset fails if a
+    /// file of it has a name that they cannot read.
     #[arg(long, value_name = "FILE")]
     depfile: Option<PathBuf>,
-    /// Print that report instead of a summary.
+    /// Print the report instead of a summary.
     #[arg(long)]
     json: bool,
     /// Print errors only.
     #[arg(short, long, conflicts_with = "json")]
     quiet: bool,
+    /// Print all notes, not only those that ask for something. The report always has them all.
+    #[arg(short, long, conflicts_with_all = ["quiet", "json"])]
+    verbose: bool,
     /// Print the settings of each asset and where each comes from, and bake nothing.
     #[arg(long, conflicts_with_all = ["json", "plan"])]
     print_config: bool,
@@ -49,122 +55,183 @@ pub struct Args {
     #[command(flatten)]
     jobs: JobOptions,
     #[command(flatten)]
-    selection: Selection,
+    selection: SelectionOptions,
     #[command(flatten)]
     remote: RemoteOptions,
 }
 
-/// Bakes what `args` name.
+/// Why nothing is baked.
+#[derive(Debug, thiserror::Error)]
+enum BakeCommandError {
+    /// Standard output or standard error cannot be written to.
+    #[error(transparent)]
+    Io(#[from] io::Error),
+    #[error(transparent)]
+    Cache(#[from] CacheError),
+    #[error(transparent)]
+    Jobs(#[from] JobsError),
+    #[error(transparent)]
+    Selection(#[from] SelectionError),
+    #[error(transparent)]
+    Publish(#[from] PublishError),
+    #[error(transparent)]
+    Remote(#[from] RemoteOptionError),
+}
+
+/// What is to be baked.
+#[derive(Default)]
+struct Order {
+    planned: Vec<PlannedAsset>,
+    /// Inputs that cannot be used.
+    errors: Vec<InputError>,
+    settings: Settings,
+    configs: Vec<PathBuf>,
+    server: Option<NamedServer>,
+    /// The output folder; `None` for a plan, whose jobs name their own.
+    output: Option<PathBuf>,
+    /// PartialFile until all outputs are written. A plan takes none: other parts of the plan write to the same folders.
+    _lock: Option<OutputLock>,
+    /// The outcome so far.
+    outcome: Outcome,
+}
+
+/// Assets whose dependencies a depfile cannot name.
+type Refused = Vec<(PlannedAsset, DepfileError)>;
+
+/// Runs the command.
 ///
 /// # Errors
 /// When `out` or `err` cannot be written to.
 pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<Outcome> {
-    let usage = |err: &mut dyn Write, reason: &dyn Display| -> io::Result<Outcome> {
-        writeln!(err, "error: {reason}")?;
-        Ok(Outcome::Usage)
-    };
-    let cache = match args.cache.open() {
-        Ok(cache) => cache,
-        Err(reason) => return usage(err, &reason),
-    };
-    let mut outcome = Outcome::Done;
-    // Held until all outputs are written. Jobs of a plan take none: other parts of the plan write to their folders, too.
-    let mut _lock = None;
-    let planned = args.jobs.planned(args.selection.output.as_deref());
-    let (planned, failed, settings, configs, server, output) = match planned {
-        Some(Err(reason)) => return usage(err, &reason),
-        Some(Ok(planned)) => (planned, Vec::new(), Settings::default(), Vec::new(), None, None),
-        None => {
-            let selected = match args.selection.find(&args.inputs) {
-                Ok(selected) => selected,
-                Err(reason) => return usage(err, &reason),
-            };
-            let (is_safe, so_far) = selected.complain(args.quiet, err)?;
-            if args.print_config {
-                for (input, resolved) in &selected.assets {
-                    writeln!(out, "# {}\n{resolved}", printable(&input.path.display().to_string()))?;
-                }
-            }
-            if args.print_config || !is_safe {
-                return Ok(so_far);
-            }
-            outcome = so_far;
-            if !selected.assets.is_empty() {
-                let kind = if args.jobs.are_parts() { Kind::Parts } else { Kind::Alone };
-                _lock = OutputLock::take(&selected.output, kind, &mut |message| {
-                    message.map_or(Ok(()), |message| writeln!(err, "note: {message}")).map(|()| true)
-                })?;
-            }
-            let output = Some(selected.output);
-            let planned = jobs::plan(&selected.assets);
-            (planned, selected.errors, selected.settings, selected.configs, selected.remote, output)
-        }
-    };
-    let mut guard = jobs::guard(&planned, output.as_deref(), configs.iter().chain(args.jobs.plan_file()));
-    let mut place = |path: &Option<PathBuf>| path.as_ref().map(|path| guard.place(path)).transpose();
-    let places = (|| Ok::<_, PublishError>([place(&args.report)?, place(&args.depfile)?]))();
-    let [report_place, depfile_place] = match places {
-        Ok(places) => places,
-        Err(reason) => return usage(err, &reason),
-    };
-    let mut planned = match args.jobs.choose(planned) {
-        Ok(planned) => planned,
-        Err(reason) => return usage(err, &reason),
-    };
-    let (dependencies, refused) = match args.depfile {
-        Some(_) => depfile::split(&mut planned, &configs),
-        None => Default::default(),
-    };
-    for (planned, error) in &refused {
-        outcome = outcome.and(Outcome::Failed);
-        writeln!(err, "error: {}: {error}", planned.name)?;
-    }
-    let remote = match args.remote.options(server.as_ref()) {
-        Ok(remote) => remote,
-        Err(reason) => return usage(err, &reason),
-    };
-    let work = Work {
-        cache: cache.as_ref(),
-        settings: &settings,
-        remote,
-        check: &|job| args.jobs.check(job),
-        is_quiet: args.quiet,
-    };
-    let Worked { assets, outcome: ended, remote } = work.run(planned, &mut guard, err, &mut |asset, _| {
-        if args.quiet || args.json { Ok(()) } else { out.write_all(asset.summary().as_bytes()) }
-    })?;
-    outcome = outcome.and(ended);
-    if args.depfile.is_some() {
-        for output in assets.iter().filter(|a| a.status == Status::Cached).filter_map(|a| a.output.as_ref()) {
-            // Make takes what is older than an input for stale, and would ask again and again.
-            let _ = File::open(output).and_then(|file| file.set_modified(SystemTime::now()));
+    match args.bake(out, err) {
+        Ok(outcome) => Ok(outcome),
+        Err(BakeCommandError::Io(error)) => Err(error),
+        Err(reason) => {
+            writeln!(err, "error: {reason}")?;
+            Ok(Outcome::Usage)
         }
     }
-    let failed = failed.iter().map(|e| Asset::failed(e.path().display().to_string(), None, 0.0, e.to_string(), false));
-    let refused = refused.into_iter().map(|(Planned { name, job }, error)| {
-        Asset::failed(name, job.ok().map(|job| job.id), 0.0, error.to_string(), false)
+}
+
+impl Args {
+    fn bake(&self, out: &mut dyn Write, err: &mut dyn Write) -> Result<Outcome, BakeCommandError> {
+        let cache = self.cache.open()?;
+        let mut order = match self.order(out, err)? {
+            ControlFlow::Continue(order) => order,
+            ControlFlow::Break(outcome) => return Ok(outcome),
+        };
+        let others = order.configs.iter().chain(self.jobs.plan_file());
+        let mut guard = guard(&order.planned, order.output.as_deref(), others);
+        let mut place = |path: &Option<PathBuf>| path.as_ref().map(|path| guard.reserve_file(path)).transpose();
+        let (report_path, depfile_path) = (place(&self.report)?, place(&self.depfile)?);
+        self.jobs.choose(&mut order.planned)?;
+        let (dependencies, refused) = self.dependencies(&mut order, err)?;
+        let work = Work {
+            cache: cache.as_ref(),
+            settings: &order.settings,
+            remote: self.remote.options(order.server.as_ref())?,
+            check: &|job| self.jobs.check(job),
+            is_quiet: self.quiet,
+        };
+        let worked = work.run(&order.planned, &mut guard, err, &mut |asset, _| {
+            if self.quiet || self.json { Ok(()) } else { out.write_all(summary(asset, self.verbose).as_bytes()) }
+        })?;
+        order.outcome = order.outcome.and(worked.outcome);
+        if self.depfile.is_some() {
+            touch_cached(&worked.assets);
+        }
+        let mut outcome = order.outcome;
+        let json = if self.json || self.report.is_some() { report(order, refused, worked)? } else { String::new() };
+        outcome = outcome.and(write_files([(report_path, &json), (depfile_path, &dependencies)], err)?);
+        if self.json {
+            out.write_all(json.as_bytes())?;
+        }
+        Ok(outcome)
+    }
+
+    /// Returns what is to be baked: the jobs of a plan, or the assets that are selected. Breaks where nothing is to be
+    /// baked.
+    fn order(&self, out: &mut dyn Write, err: &mut dyn Write) -> Result<ControlFlow<Outcome, Order>, BakeCommandError> {
+        let output = self.selection.output.as_deref();
+        if let Some(planned) = self.jobs.planned(output)? {
+            return Ok(ControlFlow::Continue(Order { planned, ..Order::default() }));
+        }
+        let selected = self.selection.selection().find(&self.inputs)?;
+        let (is_safe, outcome) = print_problems(&selected, self.quiet, err)?;
+        if self.print_config {
+            for (input, resolved) in &selected.assets {
+                writeln!(out, "# {}\n{resolved}", printable(&input.path.display().to_string()))?;
+            }
+        }
+        if self.print_config || !is_safe {
+            return Ok(ControlFlow::Break(outcome));
+        }
+        let _lock = self.lock(&selected, err)?;
+        let planned = plan_assets(&selected.assets);
+        let Selected { output, errors, settings, configs, remote: server, .. } = selected;
+        let output = Some(output);
+        Ok(ControlFlow::Continue(Order { planned, errors, settings, configs, server, output, _lock, outcome }))
+    }
+
+    /// Locks the output folder, and says so when that takes long.
+    fn lock(&self, selected: &Selected, err: &mut dyn Write) -> io::Result<Option<OutputLock>> {
+        if selected.assets.is_empty() {
+            return Ok(None);
+        }
+        let kind = if self.jobs.are_parts() { Kind::Parts } else { Kind::Alone };
+        OutputLock::take(&selected.output, kind, &mut |message| {
+            message.map_or(Ok(()), |message| writeln!(err, "note: {message}")).map(|()| true)
+        })
+    }
+
+    /// Returns the text of the depfile. Assets that a depfile cannot name are removed from `order`, printed and
+    /// returned.
+    fn dependencies(&self, order: &mut Order, err: &mut dyn Write) -> io::Result<(String, Refused)> {
+        if self.depfile.is_none() {
+            return Ok(Default::default());
+        }
+        let (dependencies, refused) = split_depfile(&mut order.planned, &order.configs);
+        for (planned, error) in &refused {
+            order.outcome = order.outcome.and(Outcome::Failed);
+            writeln!(err, "error: {}: {error}", planned.name)?;
+        }
+        Ok((dependencies, refused))
+    }
+}
+
+/// Sets the times of outputs from the cache to now. Make takes outputs that are older than an input for out of date,
+/// and would run the command in every build.
+fn touch_cached(assets: &[AssetOutcome]) {
+    let cached = assets.iter().filter(|asset| asset.status == Status::Cached);
+    for output in cached.filter_map(|asset| asset.output.as_ref()) {
+        let _ = File::open(output).and_then(|file| file.set_modified(SystemTime::now()));
+    }
+}
+
+/// Returns the report of the run as JSON.
+fn report(order: Order, refused: Refused, worked: Worked) -> io::Result<String> {
+    let errors = order
+        .errors
+        .iter()
+        .map(|error| AssetOutcome::failed(error.path().display().to_string(), None, 0.0, error.to_string(), false));
+    let refused = refused.into_iter().map(|(PlannedAsset { name, job }, error)| {
+        AssetOutcome::failed(name, job.ok().map(|job| job.id), 0.0, error.to_string(), false)
     });
-    let report = Report {
-        version: env!("CARGO_PKG_VERSION"),
-        settings: settings.to_json(settings.model),
-        assets: failed.chain(refused).chain(assets).collect(),
-        remote,
-    };
-    let json = if args.json || args.report.is_some() {
-        serde_json::to_string_pretty(&report).map_err(io::Error::other)? + "\n"
-    } else {
-        String::new()
-    };
-    for (place, text) in [(report_place, &json), (depfile_place, &dependencies)] {
-        if let Some(place) = place
-            && let Err(error) = place.write(text.as_bytes())
+    let assets = errors.chain(refused).chain(worked.assets).collect();
+    let report = RunReport::new(order.settings.to_json(order.settings.model), assets, worked.remote);
+    Ok(serde_json::to_string_pretty(&report).map_err(io::Error::other)? + "\n")
+}
+
+/// Writes files of the run itself, and prints those that cannot be written.
+fn write_files(files: [(Option<OutputPath>, &String); 2], err: &mut dyn Write) -> io::Result<Outcome> {
+    let mut outcome = Outcome::Done;
+    for (path, text) in files {
+        if let Some(path) = path
+            && let Err(error) = path.write(text.as_bytes())
         {
             writeln!(err, "error: {error}")?;
-            outcome = outcome.and(Outcome::Failed);
+            outcome = Outcome::Failed;
         }
-    }
-    if args.json {
-        out.write_all(json.as_bytes())?;
     }
     Ok(outcome)
 }

@@ -1,26 +1,28 @@
-//! Options of commands that keep what they bake.
+//! Options of commands with a cache.
 
 use std::path::{Path, PathBuf};
 
 use crate::cache::{Cache, CacheError};
 
-/// Where what was baked is kept.
+/// Where baked outputs are kept.
 #[derive(Debug, clap::Args)]
 pub struct CacheOptions {
-    /// Keep outputs in this folder, and take from it what was baked before; several runs may share it. A URL names a store
-    /// that machines share: s3://bucket/prefix, gs://, az:// or file://. Given both, the folder is in front of the store.
+    /// Keep outputs in this folder, and take outputs from it that were baked before; several runs may share it. A URL
+    /// names an object store that machines share: s3://bucket/prefix, gs://, az:// or file://. With both, the folder is
+    /// looked up first.
     #[arg(long, value_name = "DIR|URL")]
     cache: Vec<PathBuf>,
-    /// Largest size of that folder; what was not used for longest goes first. K, M, G and T are powers of 1024.
+    /// Largest size of that folder; the outputs that were not used for longest are removed first. K, M, G and T are
+    /// powers of 1024.
     #[arg(long, value_name = "SIZE", value_parser = size, default_value = "10G")]
     cache_size: u64,
 }
 
 impl CacheOptions {
-    /// The cache, if one is named.
+    /// Opens the cache, if the user names one.
     ///
     /// # Errors
-    /// [`CacheError`] where what is named cannot be one.
+    /// [`CacheError`] where the name is no cache.
     pub fn open(&self) -> Result<Option<Cache>, CacheError> {
         let (urls, folders): (Vec<&PathBuf>, Vec<&PathBuf>) = self.cache.iter().partition(|path| is_url(path));
         for named in [&urls, &folders] {
@@ -36,7 +38,7 @@ impl CacheOptions {
         Cache::new(self.folder(), url, self.cache_size).map(Some)
     }
 
-    /// The folder, if one is named.
+    /// Returns the folder, if the user names one.
     pub fn folder(&self) -> Option<&Path> {
         self.cache.iter().find(|path| !is_url(path)).map(PathBuf::as_path)
     }
@@ -46,7 +48,7 @@ fn is_url(path: &Path) -> bool {
     path.to_str().is_some_and(|text| text.contains("://"))
 }
 
-/// A number of bytes, with K, M, G or T for powers of 1024.
+/// Parses a number of bytes, with K, M, G or T for powers of 1024.
 fn size(text: &str) -> Result<u64, String> {
     let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
     let power = match text[digits.len()..].to_ascii_uppercase().as_str() {

@@ -7,21 +7,21 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use serde_json::Value;
 
-use super::files::Folder;
 use super::outcome::Outcome;
-use super::sources::protect;
-use crate::bake::{SourceError, output_stem, read_file};
-use crate::check::Referred;
+use crate::bake::{SourceError, output_stem_of};
+use crate::check::{Folder, ReferencedFiles};
 use crate::gltf::document::{Document, DocumentError};
 use crate::gltf::texture::ImageLocation;
+use crate::input_file::read_file;
 use crate::inspect::{
     DocumentFacts, ExtractError, TextureFacts, document_text, extract, inspect_document, inspect_texture, texture_text,
 };
 use crate::ktx2::ReadError;
 use crate::output::{Guard, PublishError};
+use crate::project::protect;
 use crate::text::printable;
 
-/// Tell what is in a KTX2 or glTF file: levels, formats, ranges, where it comes from.
+/// Print the content of a KTX2 or glTF file: levels, formats, ranges, provenance.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example:\n  roughcast inspect baked/helmet.gltf --extract levels")]
 pub struct Args {
@@ -30,7 +30,7 @@ pub struct Args {
     /// Print JSON (schemas/inspect.schema.json).
     #[arg(long)]
     json: bool,
-    /// Write every level of every KTX2 texture as PNG, or EXR where it holds floats: <name>.level0.png and so on.
+    /// Write every level of every KTX2 texture as PNG, or EXR where it holds floats: NAME.level0.png and so on.
     #[arg(long, value_name = "DIR")]
     extract: Option<PathBuf>,
 }
@@ -38,7 +38,7 @@ pub struct Args {
 /// Why a file cannot be inspected.
 #[derive(Debug, thiserror::Error)]
 enum InspectError {
-    #[error("expected a readable file, found: {0}")]
+    #[error("expected a readable file, found: {0}; check the path")]
     Read(#[from] io::Error),
     #[error(transparent)]
     Ktx2(#[from] ReadError),
@@ -52,7 +52,19 @@ enum InspectError {
     Publish(#[from] PublishError),
 }
 
-/// What a file is.
+/// The format version of the JSON.
+const INSPECT_FORMAT: u32 = 1;
+
+/// The content of a file, as JSON.
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+struct FactsFile<'f> {
+    format_version: u32,
+    #[serde(flatten)]
+    facts: &'f Facts,
+}
+
+/// The content of a file.
 #[derive(Serialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 enum Facts {
@@ -60,7 +72,7 @@ enum Facts {
     Gltf(DocumentFacts),
 }
 
-/// Inspects the file that `args` name.
+/// Inspects the file and prints its content.
 ///
 /// # Errors
 /// When `out` or `err` cannot be written to.
@@ -74,7 +86,8 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
         Ok((facts, written)) => {
             let name = args.file.display().to_string();
             if args.json {
-                writeln!(out, "{}", serde_json::to_string_pretty(&facts).map_err(io::Error::other)?)?;
+                let file = FactsFile { format_version: INSPECT_FORMAT, facts: &facts };
+                writeln!(out, "{}", serde_json::to_string_pretty(&file).map_err(io::Error::other)?)?;
             } else {
                 let text = match &facts {
                     Facts::Ktx2(facts) => texture_text(&name, facts),
@@ -97,7 +110,7 @@ fn inspect(args: &Args) -> Result<(Facts, Vec<PathBuf>), InspectError> {
     if bytes.starts_with(&ktx2::MAGIC) || args.file.extension().is_some_and(|e| e.eq_ignore_ascii_case("ktx2")) {
         let facts = inspect_texture(&bytes)?;
         let written = match &args.extract {
-            Some(folder) => write_levels(&stem(&args.file), &bytes, folder, &mut guard)?,
+            Some(folder) => write_levels(&output_stem_of(&args.file), &bytes, folder, &mut guard)?,
             None => Vec::new(),
         };
         return Ok((Facts::Ktx2(Box::new(facts)), written));
@@ -106,7 +119,7 @@ fn inspect(args: &Args) -> Result<(Facts, Vec<PathBuf>), InspectError> {
     let root: Value = document.json().value("").map_err(DocumentError::from)?.unwrap_or_default();
     let folder = args.file.parent().unwrap_or(Path::new(""));
     let files = Folder(folder.to_owned());
-    let referred = Referred::new(&document, &root, &files, true);
+    let referred = ReferencedFiles::new(&document, &root, &files, true);
     let facts = inspect_document(&root, &referred)?;
     let mut written = Vec::new();
     if let Some(output) = &args.extract {
@@ -117,8 +130,8 @@ fn inspect(args: &Args) -> Result<(Facts, Vec<PathBuf>), InspectError> {
             let held =
                 referred.image(&location).map_err(|error| InspectError::Source { image: image.clone(), error })?;
             if held.is_ktx2() {
-                let stem = stem(Path::new(&image));
-                // Case-insensitive file systems see one file where names differ by case only.
+                let stem = output_stem_of(Path::new(&image));
+                // On case-insensitive file systems, names that differ in case only are one file.
                 let numbered = |n: u32| if n == 1 { stem.clone() } else { format!("{stem}-{n}") };
                 let unique = (1..).map(numbered).find(|name| taken.insert(name.to_lowercase())).unwrap_or_default();
                 written.extend(write_levels(&unique, held.as_ktx2(), output, &mut guard)?);
@@ -128,7 +141,7 @@ fn inspect(args: &Args) -> Result<(Facts, Vec<PathBuf>), InspectError> {
     Ok((Facts::Gltf(facts), written))
 }
 
-/// The images of a document, each with a name: its path, or `image<index>`.
+/// Returns the images of a document, each with a name: its path, or `image<index>`.
 fn images(root: &Value) -> Vec<(String, ImageLocation)> {
     let list = root.get("images").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
     let image = |(index, image): (usize, &Value)| {
@@ -146,13 +159,9 @@ fn write_levels(stem: &str, bytes: &[u8], folder: &Path, guard: &mut Guard) -> R
     let pictures = extract(bytes).map_err(|error| InspectError::Extract { image: stem.to_owned(), error })?;
     let mut written = Vec::with_capacity(pictures.len());
     for picture in pictures {
-        let place = guard.place(&folder.join(format!("{stem}.level{}.{}", picture.level, picture.extension)))?;
-        place.write(&picture.bytes)?;
-        written.push(place.path().to_owned());
+        let path = guard.reserve_file(&folder.join(format!("{stem}.level{}.{}", picture.level, picture.extension)))?;
+        path.write(&picture.bytes)?;
+        written.push(path.path().to_owned());
     }
     Ok(written)
-}
-
-fn stem(path: &Path) -> String {
-    output_stem(&path.file_stem().unwrap_or_default().to_string_lossy())
 }

@@ -14,7 +14,7 @@ use crate::text::printable;
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example:\n  roughcast man ~/.local/share/man/man1")]
 pub struct Args {
-    /// The folder, which is made if it is not there.
+    /// The folder, which is made if it does not exist.
     #[arg(value_name = "DIR")]
     folder: PathBuf,
 }
@@ -25,12 +25,12 @@ pub struct Args {
 /// When `out` or `err` cannot be written to.
 pub fn run(args: &Args, command: Command, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<Outcome> {
     let mut pages = Vec::new();
-    // Subcommands have pages of their own; `help` tells what they say.
+    // Subcommands have pages of their own, so `help` needs none.
     let mut command = command.disable_help_subcommand(true);
     command.build();
     add_pages(command, &mut pages)?;
     let mut guard = Guard::default();
-    let written = pages.iter().try_for_each(|(name, page)| guard.place(&args.folder.join(name))?.write(page));
+    let written = pages.iter().try_for_each(|(name, page)| guard.reserve_file(&args.folder.join(name))?.write(page));
     match written {
         Ok(()) => {
             writeln!(out, "wrote {}", printable(&args.folder.display().to_string()))?;

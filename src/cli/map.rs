@@ -6,24 +6,27 @@ use std::path::{Path, PathBuf};
 use clap::ValueEnum;
 use serde_json::json;
 
-use super::options::{LobeName, TextureOptions, finite, unit_interval};
+use super::notes::asks_for_action;
+use super::options::{TextureOptions, finite, unit_interval};
 use super::outcome::Outcome;
-use crate::bake::{BakeMapError, BakedMap, BaseRoughness, MapTexture, bake_map, output_stem, read_file};
+use crate::bake::{BakeError, BakedMap, BakedTexture, BaseRoughness, bake_map, output_stem_of};
 use crate::bump::{HeightMap, NormalLayout, NormalMap};
 use crate::decode::{DecodeError, decode, decode_colours};
 use crate::digest::digest;
 use crate::image::{DecodeOptions, Image, MapError};
+use crate::input_file::read_file;
 use crate::ktx2::{Key, Provenance, SourceDigest};
+use crate::lobe::Family;
 use crate::material::{BumpMap, notes};
 use crate::mip::Wrap;
 use crate::output::{Guard, PublishError};
-use crate::report::{Choice, Content};
+use crate::report::Content;
 use crate::settings::Settings;
 use crate::text::printable;
 
-/// Bake one bare normal or height map into KTX2 files.
+/// Bake one standalone normal or height map into KTX2 files.
 ///
-/// OUT is the bump map: normals, or offsets with --profile pyramid. What belongs to it is written beside it, as
+/// OUT is the bump map: normals, or offsets with --profile pyramid. Its other textures are written beside OUT, as
 /// OUT.roughness.ktx2 and so on.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  roughcast map wool_normal.png -o wool.ktx2 --roughness wool_rough.png\n  \
@@ -37,25 +40,25 @@ pub struct Args {
     /// The image holds heights, not normals.
     #[arg(long)]
     height: bool,
-    /// BumpMap between heights 0 and 1, in widths of the map.
+    /// Distance between heights 0 and 1, in widths of the map.
     #[arg(long, value_parser = finite, default_value_t = 0.05, value_name = "S", allow_hyphen_values = true)]
     height_scale: f32,
-    /// What lies beyond the border of a height map, across and down: one mode, or two with a comma.
+    /// How a height map continues beyond its border, across and down: one mode, or two with a comma.
     #[arg(long, value_parser = wrap_modes, default_value = "repeat", value_name = "MODE")]
     wrap: [Wrap; 2],
-    /// Which channels hold the normal; auto takes two where the third is missing or empty.
-    #[arg(long, value_enum, default_value_t = Channels::Auto)]
-    channels: Channels,
+    /// The channels that hold the normal; auto takes two where the third is missing or empty.
+    #[arg(long, value_enum, default_value_t = NormalLayout::Auto)]
+    channels: NormalLayout,
     /// Green points down the image (DirectX convention).
     #[arg(long)]
     green_down: bool,
-    /// EXR: which layer, or which channel as layer.channel.
+    /// EXR: the layer, or the channel as layer.channel.
     #[arg(long, value_name = "NAME")]
     layer: Option<String>,
-    /// The surface's own roughness map (green, or grey), to fold the lost bumps into.
+    /// The roughness map of the base lobe (green channel, or grey), which is roughened by the lost bumps.
     #[arg(long, value_name = "IMAGE")]
     roughness: Option<PathBuf>,
-    /// The surface's own roughness, 0 to 1; multiplies --roughness.
+    /// The roughness of the base lobe, 0 to 1; multiplies --roughness.
     #[arg(long, value_parser = unit_interval, allow_negative_numbers = true, value_name = "R")]
     roughness_factor: Option<f32>,
     /// Print what was written as JSON.
@@ -64,46 +67,42 @@ pub struct Args {
     /// Print errors only.
     #[arg(short, long, conflicts_with = "json")]
     quiet: bool,
-    /// What the engine shades with.
-    #[arg(long, value_enum, default_value_t = LobeName::Ggx)]
-    lobe: LobeName,
+    /// Print all notes, not only those that ask for something.
+    #[arg(short, long, conflicts_with_all = ["quiet", "json"])]
+    verbose: bool,
+    /// The lobe that the engine shades with.
+    #[arg(long, value_enum, default_value_t = Family::Ggx)]
+    lobe: Family,
     #[command(flatten)]
     texture: TextureOptions,
 }
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Channels {
-    /// x and y where a third channel is missing or empty, else x, y, z
-    Auto,
-    /// x, y, z
-    Xyz,
-    /// x and y
-    Xy,
-}
-
-/// Why a map is not baked.
+/// Why the map is not baked.
 #[derive(Debug, thiserror::Error)]
 enum MapCommandError {
-    #[error("{}: expected a readable file, found: {error}", path.display())]
+    #[error("{}: expected a readable file, found: {error}; check the path", path.display())]
     Read { path: PathBuf, error: io::Error },
     #[error("{}: {error}", path.display())]
     Decode { path: PathBuf, error: DecodeError },
     #[error("{}: {error}", path.display())]
     Map { path: PathBuf, error: MapError },
     #[error(transparent)]
-    Bake(#[from] BakeMapError),
+    Bake(#[from] BakeError),
     #[error(transparent)]
     Publish(#[from] PublishError),
-    #[error("-o {}: expected the name of a .ktx2 file, found another extension; name it {}", path.display(), path.with_extension("ktx2").display())]
+    #[error(
+        "-o {}: expected the name of a .ktx2 file, found another extension; name it {}",
+        path.display(), path.with_extension("ktx2").display()
+    )]
     NotKtx2 { path: PathBuf },
 }
 
-/// Bakes the map that `args` name.
+/// Bakes the map and prints what was written.
 ///
 /// # Errors
 /// When `out` or `err` cannot be written to.
 pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<Outcome> {
-    let settings = Settings { family: args.lobe.into(), ..args.texture.settings() };
+    let settings = args.texture.settings().with_family(args.lobe);
     if let Err(reason) = settings.target.check_available() {
         writeln!(err, "error: {reason}")?;
         return Ok(Outcome::Usage);
@@ -117,7 +116,7 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
             if args.json {
                 writeln!(out, "{}", serde_json::to_string_pretty(&written.json()).map_err(io::Error::other)?)?;
             } else if !args.quiet {
-                write!(out, "{}", written.summary())?;
+                write!(out, "{}", written.summary(args.verbose))?;
             }
             Ok(Outcome::Done)
         }
@@ -150,7 +149,9 @@ impl Written {
         })
     }
 
-    fn summary(&self) -> String {
+    /// Returns a line for each file, the model, and the notes. Without `is_verbose`, notes that ask for nothing are
+    /// left out.
+    fn summary(&self, is_verbose: bool) -> String {
         let mut text = String::new();
         for (texture, (path, bytes)) in self.baked.textures.iter().zip(&self.files) {
             let mip_chain = &texture.mip_chain;
@@ -167,7 +168,8 @@ impl Written {
         if let Some(choice) = &self.baked.choice {
             text += &format!("model {}{}\n", self.baked.model.name(), choice.summary());
         }
-        for note in &self.baked.notes {
+        let is_shown = |note: &&String| is_verbose || asks_for_action(note, self.baked.choice.as_ref());
+        for note in self.baked.notes.iter().filter(is_shown) {
             text += &format!("note: {}\n", printable(note));
         }
         text
@@ -177,7 +179,7 @@ impl Written {
 fn bake(args: &Args, settings: &Settings) -> Result<Written, MapCommandError> {
     let mut guard = Guard::default();
     [Some(&args.image), args.roughness.as_ref()].into_iter().flatten().for_each(|input| guard.add_source(input));
-    let first = guard.place(&args.output)?;
+    let first = guard.reserve_file(&args.output)?;
     if !args.output.extension().is_some_and(|e| e.eq_ignore_ascii_case("ktx2")) {
         return Err(MapCommandError::NotKtx2 { path: args.output.clone() });
     }
@@ -191,14 +193,9 @@ fn bake(args: &Args, settings: &Settings) -> Result<Written, MapCommandError> {
         let slope = args.height_scale * image.width as f32;
         BumpMap::Heights { map: HeightMap::new(image).map_err(failed)?, slope_per_step: [slope; 2], wrap: args.wrap }
     } else {
-        let layout = match args.channels {
-            Channels::Auto => NormalLayout::Auto,
-            Channels::Xyz => NormalLayout::Xyz,
-            Channels::Xy => NormalLayout::Xy,
-        };
-        BumpMap::Normals(NormalMap::new(image, layout, args.green_down).map_err(failed)?)
+        BumpMap::Normals(NormalMap::new(image, args.channels, args.green_down).map_err(failed)?)
     };
-    let own = match (&args.roughness, args.roughness_factor) {
+    let base = match (&args.roughness, args.roughness_factor) {
         (None, None) => None,
         (image, factor) => {
             let mut load = |path: &PathBuf| {
@@ -212,29 +209,29 @@ fn bake(args: &Args, settings: &Settings) -> Result<Written, MapCommandError> {
             Some(BaseRoughness { image: image.as_ref().map(&mut load).transpose()?, factor: factor.unwrap_or(1.0) })
         }
     };
-    let mut baked = bake_map(&bump_map, own.as_ref(), settings)?;
-    // What is decoded is no longer needed: as much as the baked levels, and more.
-    drop((bump_map, own));
+    let mut baked = bake_map(&bump_map, base.as_ref(), settings)?;
+    // The decoded images take more memory than the baked levels and are not needed any more.
+    drop((bump_map, base));
     if is_jpeg {
         baked.notes.push(notes::JPEG.to_owned());
     }
-    let mut places = vec![first];
+    let mut outputs = vec![first];
     for texture in baked.textures.iter().skip(1) {
-        places.push(guard.place(&beside(&args.output, texture.content))?);
+        outputs.push(guard.reserve_file(&beside(&args.output, texture.content))?);
     }
     let keys: Vec<_> =
         baked.textures.iter().map(|texture| texture_keys(texture, args, &baked, &sources, settings)).collect();
     let mut written = Vec::new();
-    for (texture, (place, keys)) in baked.textures.iter_mut().zip(places.into_iter().zip(keys)) {
-        let bytes = texture.mip_chain.take_ktx2(&keys).map_err(|error| BakeMapError::Encode(error.into()))?;
-        place.write(&bytes)?;
-        written.push((place.path().to_owned(), bytes.len() as u64));
+    for (texture, (output, keys)) in baked.textures.iter_mut().zip(outputs.into_iter().zip(keys)) {
+        let bytes = texture.mip_chain.take_ktx2(&keys).map_err(|error| BakeError::Encode(error.into()))?;
+        output.write(&bytes)?;
+        written.push((output.path().to_owned(), bytes.len() as u64));
     }
     Ok(Written { baked, files: written })
 }
 
 impl Args {
-    /// How the images are read, for the provenance.
+    /// Returns how the images are read, for the provenance.
     fn reading(&self) -> serde_json::Value {
         let mut reading = if self.height {
             json!({ "height": true, "heightScale": self.height_scale, "wrap": self.wrap })
@@ -269,7 +266,7 @@ fn source_digest(path: &Path, bytes: &[u8]) -> SourceDigest {
 }
 
 fn texture_keys(
-    texture: &MapTexture,
+    texture: &BakedTexture,
     args: &Args,
     baked: &BakedMap,
     sources: &[SourceDigest],
@@ -283,10 +280,7 @@ fn texture_keys(
             version: env!("CARGO_PKG_VERSION").to_owned(),
             content: texture.content.name().to_owned(),
             settings: recorded,
-            lobe_errors: match texture.content {
-                Content::Normal | Content::Offset => Vec::new(),
-                _ => baked.choice.as_ref().and_then(Choice::taken).map(|c| c.errors.clone()).unwrap_or_default(),
-            },
+            lobe_errors: texture.lobe_errors.clone(),
             sources: sources.to_vec(),
         }
         .keys()
@@ -295,18 +289,16 @@ fn texture_keys(
     }
 }
 
-/// `wool.ktx2` -> `wool.roughness.ktx2`.
+/// Returns the path of another texture beside `output`: `wool.ktx2` becomes `wool.roughness.ktx2`.
 fn beside(output: &Path, content: Content) -> PathBuf {
-    let stem = output_stem(&output.file_stem().unwrap_or_default().to_string_lossy());
+    let stem = output_stem_of(output);
     output.with_file_name(format!("{stem}.{}.ktx2", content.name()))
 }
 
 fn wrap_modes(text: &str) -> Result<[Wrap; 2], String> {
-    let mode = |name: &str| match name.trim() {
-        "repeat" => Ok(Wrap::Repeat),
-        "mirror" => Ok(Wrap::Mirror),
-        "clamp" => Ok(Wrap::Clamp),
-        other => Err(format!("expected repeat, mirror or clamp, found {other:?}")),
+    let mode = |name: &str| {
+        let name = name.trim();
+        Wrap::from_str(name, false).map_err(|_| format!("expected repeat, mirror or clamp, found {name:?}"))
     };
     match text.split_once(',') {
         None => mode(text).map(|m| [m; 2]),

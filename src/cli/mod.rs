@@ -5,27 +5,23 @@ mod cached;
 mod check;
 mod compare;
 mod completions;
-mod depfile;
-mod files;
 mod init;
 mod inspect;
 mod jobs;
 mod man;
 mod map;
 mod merge;
+mod notes;
 mod options;
 mod outcome;
-mod part;
 mod plan;
 mod progress;
 mod remote;
 mod render;
-mod report;
 mod selection;
-mod sources;
 mod streams;
+mod summary;
 mod threads;
-mod trusted;
 mod view;
 mod watch;
 mod work;
@@ -67,21 +63,21 @@ enum Command {
     Man(man::Args),
 }
 
-/// Runs a command line. Results go to `out`, complaints and progress to `err`.
+/// Runs a command line. Prints results to `out`, and errors, warnings and progress to `err`.
 ///
-/// What becomes of `err` changes nothing. When results cannot be printed, the work is done all the same, and the outcome is
-/// [`Outcome::Retry`] unless it is worse; a reader of `out` that has gone is no failure.
+/// Errors of `err` change nothing. If results cannot be printed, the work is done all the same, and the outcome is
+/// [`Outcome::Retry`] or worse. A reader that closes `out` is no failure.
 pub fn run(cli: Cli, out: &mut dyn Write, err: &mut dyn Write) -> Outcome {
     let (mut results, mut messages) = (Results::new(out), Messages(err));
-    let complain = |messages: &mut Messages<'_>, error: &io::Error| {
+    let report_print_error = |messages: &mut Messages<'_>, error: &io::Error| {
         let _ = writeln!(messages, "error: expected to print the results, found: {error}; free space and run it again");
         Outcome::Retry
     };
     let outcome = run_command(cli, &mut results, &mut messages);
-    let outcome = outcome.unwrap_or_else(|error| complain(&mut messages, &error));
+    let outcome = outcome.unwrap_or_else(|error| report_print_error(&mut messages, &error));
     match results.finish() {
         Ok(()) => outcome,
-        Err(error) => outcome.and(complain(&mut messages, &error)),
+        Err(error) => outcome.and(report_print_error(&mut messages, &error)),
     }
 }
 

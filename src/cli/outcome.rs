@@ -1,22 +1,23 @@
-//! How a command ends, and the exit code that says so.
+//! How a command ends, and its exit code.
 
 /// How a command ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Outcome {
-    /// Everything asked for is done.
+    /// Everything that was asked for is done.
+    #[default]
     Done,
-    /// Some inputs failed, and will fail again.
+    /// Some inputs failed and will fail again.
     Failed,
-    /// Arguments that make no sense together.
+    /// The arguments contradict each other or name something that cannot be used.
     Usage,
     /// `check` found something.
     Findings,
-    /// Some inputs failed, and may not fail again.
+    /// Some inputs failed and may succeed at another try.
     Retry,
 }
 
 impl Outcome {
-    /// The exit code.
+    /// Returns the exit code.
     pub fn code(self) -> u8 {
         match self {
             Self::Done => 0,
@@ -27,7 +28,7 @@ impl Outcome {
         }
     }
 
-    /// The outcome of two parts: what fails for good outweighs what may be tried again.
+    /// Combines the outcomes of two parts. A failure for good outweighs one that may be tried again.
     pub fn and(self, other: Self) -> Self {
         let weight = |o: Self| match o {
             Self::Done => 0,

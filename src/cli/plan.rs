@@ -3,17 +3,16 @@
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use super::jobs::plan;
 use super::merge;
 use super::outcome::Outcome;
-use super::selection::Selection;
-use crate::run::Plan;
+use super::selection::{SelectionOptions, print_problems};
+use crate::run::{Job, Plan, PlannedAsset, plan_assets};
 use crate::text::printable;
 
 /// Print the jobs that a bake would run, and run none.
 ///
-/// A job is one asset, named by all that decides on its outputs. Run a plan with `bake --plan FILE`, in parts with
-/// `--shard I/N`, on any machine that has the files at the same relative paths.
+/// A job bakes one asset, and its id covers everything that decides on its outputs. Run a plan with `bake --plan FILE`,
+/// or a part of it with `--shard I/N`, on any machine that has the files at the same relative paths.
 #[derive(Debug, clap::Args)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true, disable_help_subcommand = true)]
 #[command(after_help = "Example:\n  roughcast plan assets -o baked --json > plan.json\n  \
@@ -29,12 +28,18 @@ pub struct Args {
     #[arg(long)]
     json: bool,
     #[command(flatten)]
-    selection: Selection,
+    selection: SelectionOptions,
 }
 
 #[derive(Debug, clap::Subcommand)]
 enum Command {
     Merge(merge::Args),
+}
+
+/// Why an asset has no place in a plan.
+struct Unplanned {
+    reason: String,
+    outcome: Outcome,
 }
 
 /// Prints the plan.
@@ -45,64 +50,61 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
     if let Some(Command::Merge(args)) = &args.command {
         return merge::run(args, out, err);
     }
-    let selected = match args.selection.find(&args.inputs) {
+    let selected = match args.selection.selection().find(&args.inputs) {
         Ok(selected) => selected,
         Err(reason) => {
             writeln!(err, "error: {reason}")?;
             return Ok(Outcome::Usage);
         }
     };
-    let (is_safe, mut outcome) = selected.complain(false, err)?;
+    let (is_safe, mut outcome) = print_problems(&selected, false, err)?;
     if !is_safe {
         return Ok(outcome);
     }
     let mut jobs = Vec::new();
-    for planned in plan(&selected.assets) {
-        let failed = match planned.job {
-            // The plan is for other machines too.
-            Ok(job) if job.source.is_absolute() || job.output.is_absolute() => {
-                writeln!(
-                    err,
-                    "error: {}: expected paths relative to the working folder, found an absolute one",
-                    planned.name
-                )?;
-                return Ok(Outcome::Usage);
+    for PlannedAsset { name, job } in plan_assets(&selected.assets) {
+        let job = job.map_err(|error| {
+            let outcome = if error.is_passing() { Outcome::Retry } else { Outcome::Failed };
+            Unplanned { reason: error.to_string(), outcome }
+        });
+        match job.and_then(checked) {
+            Ok(job) => jobs.push(job),
+            Err(Unplanned { reason, outcome: ended }) => {
+                writeln!(err, "error: {name}: {reason}")?;
+                outcome = outcome.and(ended);
             }
-            Ok(job) => {
-                let missing = job.inputs.iter().find(|input| input.blake3.is_none());
-                let missing = missing.map(|input| {
-                    format!("expected a readable file at {}; the document refers to it", input.path.display())
-                });
-                let Some(reason) = missing.or_else(|| job.check_names().err().map(|error| error.to_string())) else {
-                    jobs.push(job);
-                    continue;
-                };
-                outcome = outcome.and(Outcome::Failed);
-                reason
-            }
-            Err(error) => {
-                outcome = outcome.and(if error.is_passing() { Outcome::Retry } else { Outcome::Failed });
-                error.to_string()
-            }
-        };
-        writeln!(err, "error: {}: {failed}", planned.name)?;
-    }
-    if args.json {
-        let plan = Plan { version: env!("CARGO_PKG_VERSION").to_owned(), jobs };
-        writeln!(out, "{}", serde_json::to_string_pretty(&plan).map_err(io::Error::other)?)?;
-    } else {
-        for job in &jobs {
-            let (from, to) = (job.source.display().to_string(), job.output.display().to_string());
-            writeln!(
-                out,
-                "{:.12}  {} -> {}, {} inputs, {:.1} MB",
-                job.id,
-                printable(&from),
-                printable(&to),
-                job.inputs.len(),
-                job.cost as f64 / 1e6
-            )?;
+        }
+        if outcome == Outcome::Usage {
+            return Ok(outcome);
         }
     }
+    if args.json {
+        writeln!(out, "{}", serde_json::to_string_pretty(&Plan::new(jobs)).map_err(io::Error::other)?)?;
+    } else {
+        jobs.iter().try_for_each(|job| print_job(job, out))?;
+    }
     Ok(outcome)
+}
+
+/// Checks that other machines can run `job`, too.
+fn checked(job: Job) -> Result<Job, Unplanned> {
+    if job.source.is_absolute() || job.output.is_absolute() {
+        let reason = "expected paths relative to the working folder, found an absolute one; other machines have other \
+                      folders, so name relative paths";
+        return Err(Unplanned { reason: reason.to_owned(), outcome: Outcome::Usage });
+    }
+    let missing = job.inputs.iter().find(|input| input.blake3.is_none());
+    let missing =
+        missing.map(|input| format!("expected a readable file at {}; the document refers to it", input.path.display()));
+    match missing.or_else(|| job.check_names().err().map(|error| error.to_string())) {
+        Some(reason) => Err(Unplanned { reason, outcome: Outcome::Failed }),
+        None => Ok(job),
+    }
+}
+
+fn print_job(job: &Job, out: &mut dyn Write) -> io::Result<()> {
+    let (from, to) = (job.source.display().to_string(), job.output.display().to_string());
+    let (from, to) = (printable(&from), printable(&to));
+    let (inputs, megabytes) = (job.inputs.len(), job.cost as f64 / 1e6);
+    writeln!(out, "{:.12}  {from} -> {to}, {inputs} inputs, {megabytes:.1} MB", job.id)
 }

@@ -1,4 +1,4 @@
-//! Options of commands that have a server bake.
+//! Options of baking on a server.
 
 use std::collections::BTreeMap;
 use std::env;
@@ -7,64 +7,67 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use super::trusted::{NamedServer, is_harmless};
+use crate::project::{NamedServer, is_harmless};
 use crate::remote::{Header, Options, Tls};
 
-/// The variable that headers are taken from, a line for each.
+/// The variable with headers, one in each line.
 const HEADERS: &str = "ROUGHCAST_REMOTE_HEADER";
 
-/// The most actions at a time: each has a thread, which waits.
+/// The most actions at a time. Each action has a thread, which waits.
 const MOST_JOBS: u32 = 4096;
 
 /// Where jobs are run.
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Remote options")]
 pub struct RemoteOptions {
-    /// Have workers of this server of the Remote Execution API v2 bake: grpc://HOST:PORT, or grpcs:// with TLS. What --cache
-    /// has is not sent. [default: `url` of [remote] in the roughcast.toml of the first input, which may say the rest, too]
+    /// Bake on workers of this server of the Remote Execution API v2: grpc://HOST:PORT, or grpcs:// with TLS. Jobs that
+    /// --cache has are not sent. [default: `url` of [remote] in the roughcast.toml of the first input, which may set
+    /// the other options, too]
     #[arg(long, value_name = "URL")]
     remote: Option<String>,
-    /// Bake here, whatever roughcast.toml says.
+    /// Bake on this machine, even if roughcast.toml names a server.
     #[arg(long, conflicts_with = "remote")]
     no_remote: bool,
     /// Instance of the server.
     #[arg(long, value_name = "NAME", requires = "remote")]
     remote_instance: Option<String>,
-    /// What workers must be, such as OSFamily=linux. May be given several times.
+    /// A property that workers must have, such as OSFamily=linux. May be given several times.
     #[arg(long, value_name = "NAME=VALUE", value_parser = pair, requires = "remote")]
     remote_platform: Vec<(String, String)>,
-    /// A header of every call, such as authorization=... May be given several times. Others see command lines: better
-    /// --remote-header-file, or the variable ROUGHCAST_REMOTE_HEADER, with a line for each header.
+    /// A header of every call, such as authorization=... May be given several times. Other users can see command lines,
+    /// so prefer --remote-header-file, or the variable ROUGHCAST_REMOTE_HEADER with one header in each line.
     #[arg(long, value_name = "NAME=VALUE", requires = "remote")]
     remote_header: Vec<Secret>,
-    /// A file with a header in each line.
+    /// A file with one header in each line.
     #[arg(long, value_name = "FILE", requires = "remote")]
     remote_header_file: Option<PathBuf>,
-    /// Certificates (PEM) that sign the server's, instead of the system's.
+    /// Certificates (PEM) that sign the certificate of the server, instead of those of the system.
     #[arg(long, value_name = "FILE", requires = "remote")]
     remote_ca: Option<PathBuf>,
-    /// Certificate (PEM) that the server knows the caller by.
+    /// Certificate (PEM) by which the server knows the caller.
     #[arg(long, value_name = "FILE", requires_all = ["remote", "remote_key"])]
     remote_cert: Option<PathBuf>,
-    /// Its key (PEM).
+    /// Key (PEM) of that certificate.
     #[arg(long, value_name = "FILE", requires_all = ["remote", "remote_cert"])]
     remote_key: Option<PathBuf>,
     /// The most actions at a time. [default: 64]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_JOBS)), requires = "remote")]
+    #[arg(long, value_name = "N", requires = "remote",
+        value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_JOBS)))]
     remote_jobs: Option<u32>,
-    /// The longest that an action may take, from its upload to its result; also what the server is asked for. [default: what
-    /// the server gives, and an hour]
+    /// The longest time of an action, from its upload to its result. The server gets it as the limit of the execution.
+    /// [default: the limit of the server, and an hour]
     #[arg(long, value_name = "SECONDS", value_parser = clap::value_parser!(u64).range(1..), requires = "remote")]
     remote_timeout: Option<u64>,
-    /// How often something that may pass is tried again, ever more slowly: 8 times take half a minute. [default: 8]
+    /// How often a call is repeated after an error that may pass, with growing pauses: 8 times take half a minute.
+    /// [default: 8]
     #[arg(long, value_name = "N", requires = "remote")]
     remote_retries: Option<u32>,
-    /// The tool that workers run: a static build of this version for their system. [default: the one that is running]
+    /// The tool that workers run: a static build of this version for their system. [default: the running tool]
     #[arg(long, value_name = "FILE", requires = "remote")]
     remote_tool: Option<PathBuf>,
 }
 
-/// Something that is not to be shown.
+/// A text that is never shown.
 #[derive(Clone)]
 struct Secret(String);
 
@@ -80,13 +83,13 @@ impl fmt::Debug for Secret {
     }
 }
 
-/// Why options make no sense.
+/// Why the options cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum RemoteOptionError {
-    /// A header that is none. What stands there may be a secret.
+    /// A line that is no header. The line may be a secret.
     #[error("{origin}: expected NAME=VALUE, found a line without a name (not shown, it may be a secret)")]
     Header {
-        /// Where it is from.
+        /// The file, variable or flag of the line.
         origin: String,
     },
     /// A file that cannot be read.
@@ -97,7 +100,7 @@ pub enum RemoteOptionError {
         /// The system's error.
         error: std::io::Error,
     },
-    /// A server that assets name, and headers that are not for it.
+    /// Headers for a server that a configuration beside the assets names.
     #[error(
         "{}: expected no server beside {HEADERS}, found url = {url:?}; the headers go only to a server that --remote, \
          --config or the roughcast.toml of the working folder names",
@@ -109,7 +112,7 @@ pub enum RemoteOptionError {
         /// The server.
         url: String,
     },
-    /// A file that is not for assets to name: it would be sent to the server.
+    /// A file that a configuration beside the assets may not name, since the file would be sent to the server.
     #[error(
         "{}: expected {key} of [remote] below the working folder and in no hidden folder, found {}; if it is meant, name \
          the configuration with --config",
@@ -129,7 +132,7 @@ pub enum RemoteOptionError {
 }
 
 impl RemoteOptions {
-    /// What is said of a server, if one is named; `named` is what holds where flags say nothing.
+    /// Returns how the server is reached, if one is named. `named` holds where there is no flag.
     ///
     /// # Errors
     /// [`RemoteOptionError`].
@@ -171,7 +174,7 @@ impl RemoteOptions {
         }))
     }
 
-    /// Headers of the variable, the file and the flags; of one name, the last holds.
+    /// Returns the headers of the variable, the file and the flags. If a name occurs again, the last header holds.
     fn headers(&self) -> Result<Vec<Header>, RemoteOptionError> {
         let mut headers = BTreeMap::new();
         let mut add = |text: &str, origin: &str| {

@@ -1,14 +1,13 @@
-//! Standard output and standard error. Whoever reads them, or has stopped to, decides neither what is baked nor the exit
-//! code.
+//! Standard output and standard error. Their readers influence neither what is baked nor the exit code.
 
 use std::fmt::Arguments;
 use std::io::{self, ErrorKind, Write};
 
 use crate::text::printable;
 
-/// Messages for a person. What cannot be written is dropped: an error that nobody sees changes no outcome.
+/// Messages for the user. Messages that cannot be written are dropped and change no outcome.
 ///
-/// Each `write!` or `writeln!` is one message on one line, whatever names from files stand in it: see [`printable`].
+/// Each `write!` or `writeln!` is one message on one line, also with hostile names from files: see [`printable`].
 pub struct Messages<'w>(pub &'w mut dyn Write);
 
 impl Write for Messages<'_> {
@@ -23,7 +22,7 @@ impl Write for Messages<'_> {
             Some(line) => format!("{}\n", printable(line)),
             None => printable(&text).into_owned(),
         };
-        // In one piece, so that lines of processes that share a log do not mix.
+        // One write for each line keeps lines of processes that share a log apart.
         self.write_all(line.as_bytes())
     }
 
@@ -33,15 +32,15 @@ impl Write for Messages<'_> {
     }
 }
 
-/// Results. When their reader has seen enough (`roughcast ... | head`) nothing more is printed and the work goes on. Any
-/// other failure is kept for [`Results::finish`], and the work goes on, too.
+/// Results. If their reader closes the pipe (`roughcast ... | head`), nothing more is printed and the work goes on. The
+/// work also goes on after any other failure, which [`Results::finish`] returns.
 pub struct Results<'w> {
     out: &'w mut dyn Write,
     failed: Option<io::Error>,
 }
 
 impl<'w> Results<'w> {
-    /// Prints to `out`.
+    /// Returns results that are printed to `out`.
     pub fn new(out: &'w mut dyn Write) -> Self {
         Self { out, failed: None }
     }
@@ -49,7 +48,7 @@ impl<'w> Results<'w> {
     /// Ends printing.
     ///
     /// # Errors
-    /// Why results could not be printed, unless their reader has gone.
+    /// Why results could not be printed, unless their reader closed the pipe.
     pub fn finish(mut self) -> io::Result<()> {
         self.flush()?;
         match self.failed {

@@ -1,4 +1,4 @@
-//! The threads that all commands work with.
+//! The threads of all commands.
 
 use std::env;
 use std::error::Error;
@@ -8,28 +8,28 @@ use std::thread;
 
 use rayon::{ThreadPoolBuildError, ThreadPoolBuilder};
 
-/// The variable that rayon goes by; `--threads` wins over it.
+/// The variable that rayon reads; `--threads` wins over it.
 const VARIABLE: &str = "RAYON_NUM_THREADS";
 
-/// The most threads for each core. More only get in each other's way: on two cores a small asset took 0.26 s with two
-/// threads, 6.5 s with 1024 and more than a minute with 4096.
+/// The most threads for each core. More threads are slower: on two cores a small asset took 0.26 s with two threads,
+/// 6.5 s with 1024 and more than a minute with 4096.
 const MOST_PER_CORE: usize = 4;
 
-/// As many threads as any machine may be asked for.
+/// The number of threads that is accepted on every machine.
 const ALWAYS_ALLOWED: usize = 64;
 
-/// The threads cannot be had.
+/// The threads cannot be started.
 #[derive(Debug, thiserror::Error)]
 #[error("expected to start {count} threads, found: {error}; ask for fewer with --threads")]
 pub struct ThreadsError {
     /// How many.
     count: usize,
-    /// What the system says.
+    /// The error of the thread pool.
     error: ThreadPoolBuildError,
 }
 
-/// Starts as many threads as `flag` asks for, or the variable where `flag` is 0, or one for each core. Warns when they are
-/// fewer than asked for.
+/// Starts the number of threads that `flag` names. If `flag` is 0, the variable names the number, else there is one
+/// thread for each core. Warns if that is fewer than the user asks for.
 ///
 /// # Errors
 /// [`ThreadsError`] when the system refuses them.
@@ -48,7 +48,7 @@ pub fn start(flag: usize, err: &mut dyn Write) -> Result<(), ThreadsError> {
     }
     let count = if asked == 0 { cores } else { asked.min(most) };
     match ThreadPoolBuilder::new().num_threads(count).build_global() {
-        // A second pool in one process is refused; the first one stays, and the bytes are the same.
+        // A second pool in one process is refused. The first pool stays, and the bytes do not depend on it.
         Err(error) if error.source().is_some() => Err(ThreadsError { count, error }),
         _ => Ok(()),
     }

@@ -1,14 +1,15 @@
-//! Options that tell how close a camera comes.
+//! Options of the camera.
 
 use clap::Args;
 
 use crate::project::Values;
+use crate::settings::limit;
 
-/// The camera. Without --nearest all levels count as seen.
+/// The camera. Without --nearest, all levels count as sampled.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "View options")]
 pub struct ViewOptions {
-    /// Least distance of the camera from a surface, in units of the scene: the report then tells the finest level that
+    /// Least distance of the camera from a surface, in units of the scene. The report then names the finest level that
     /// is sampled on each material.
     #[arg(long, value_parser = positive, allow_negative_numbers = true, value_name = "D")]
     nearest: Option<f64>,
@@ -27,7 +28,7 @@ pub struct ViewOptions {
 }
 
 impl ViewOptions {
-    /// What is said, beside `values`.
+    /// Returns `values` with the explicit values of these options.
     pub fn values(&self, values: Values) -> Values {
         Values {
             nearest: self.nearest,
@@ -43,13 +44,13 @@ impl ViewOptions {
 fn positive(text: &str) -> Result<f64, String> {
     text.parse()
         .ok()
-        .filter(|number: &f64| number.is_finite() && *number > 0.0)
-        .ok_or_else(|| format!("expected a number above 0, found {text:?}"))
+        .filter(|number| limit::NEAREST.accepts(*number))
+        .ok_or_else(|| format!("expected {}, found {text:?}", limit::NEAREST.expected))
 }
 
 fn field_of_view(text: &str) -> Result<f64, String> {
     text.parse()
         .ok()
-        .filter(|degrees| 0.0 < *degrees && *degrees < 180.0)
-        .ok_or_else(|| format!("expected degrees between 0 and 180, found {text:?}"))
+        .filter(|degrees| limit::FOV.accepts(*degrees))
+        .ok_or_else(|| format!("expected {}, found {text:?}", limit::FOV.expected))
 }

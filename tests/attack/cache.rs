@@ -1,4 +1,4 @@
-//! A cache that somebody else wrote: entries and blobs are damaged and forged, with checksums that fit.
+//! An attack by a hostile cache: entries and blobs are damaged and forged, with valid checksums.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -11,10 +11,10 @@ use walkdir::WalkDir;
 
 use super::random::Random;
 
-/// Damaged caches in a run of ordinary length.
+/// Number of damaged caches in a run.
 const ROUNDS: u64 = 40;
 
-/// Bytes of an entry before its JSON: the BLAKE3 of the JSON in hexadecimal digits.
+/// Bytes of an entry before its JSON: the BLAKE3 hash of the JSON in hexadecimal digits.
 const CHECKSUM: usize = 64;
 
 fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
@@ -32,7 +32,7 @@ fn bake(folder: &Path) -> (i32, String) {
     (run.status.code().unwrap_or(-1), String::from_utf8_lossy(&run.stderr).into_owned())
 }
 
-/// Changes a path, a digest, a length or any other member of an entry, and makes its checksum fit again.
+/// Changes a path, a digest, a length or any other member of an entry, and updates its checksum.
 fn forge(random: &mut Random, entry: &mut Vec<u8>, victim: &Path) {
     let Some(mut tree) = entry.get(CHECKSUM..).and_then(|json| serde_json::from_slice::<Value>(json).ok()) else {
         return;
@@ -65,7 +65,7 @@ fn forge(random: &mut Random, entry: &mut Vec<u8>, victim: &Path) {
     *entry = [blake3::hash(json.as_bytes()).to_hex().as_bytes(), json.as_bytes()].concat();
 }
 
-/// Pointers to everything in `tree`.
+/// Returns the JSON pointers of all values in `tree`.
 fn pointers(tree: &Value, at: &str) -> Vec<String> {
     let below = match tree {
         Value::Object(members) => members.iter().map(|(key, value)| (key.clone(), value)).collect(),
@@ -77,7 +77,7 @@ fn pointers(tree: &Value, at: &str) -> Vec<String> {
 }
 
 #[test]
-fn a_forged_cache_changes_nothing_but_the_time_of_a_bake() {
+fn a_forged_cache_does_not_change_outputs() {
     let folder = tempdir().expect("a folder");
     let folder = folder.path();
     let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures");

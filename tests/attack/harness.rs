@@ -1,4 +1,4 @@
-//! Runs an entry on many damaged inputs, each with a bound on its time.
+//! The harness: runs an entry point on many damaged inputs, with a time limit for each.
 
 use std::env;
 use std::fs;
@@ -10,19 +10,19 @@ use std::time::Duration;
 
 use super::random::Random;
 
-/// Cases of each entry in a run of ordinary length.
+/// Number of cases of each entry in a run without ROUGHCAST_ATTACK_ROUNDS.
 const CASES: u64 = 20_000;
 
-/// What takes longer than this hangs: cases take milliseconds, and a loaded machine makes them some times slower.
+/// Time limit of a case. Cases take milliseconds, and are several times slower on a loaded machine.
 const HANG: Duration = Duration::from_secs(120);
 
-/// Damages an input.
+/// A function that damages an input.
 pub type Mutate = fn(&mut Random, &mut Vec<u8>);
 
-/// Runs `entry` on the cases that broke it once, and on `seeds`, each damaged by up to four mutations.
+/// Runs `entry` on the cases that once failed, and on `seeds`, each damaged by up to four mutations.
 ///
 /// # Panics
-/// Panics when a case panics or hangs; the message names a file that holds the case.
+/// Panics if a case panics or hangs. The message names a file with the case.
 pub fn attack(name: &str, entry: fn(&[u8]), seeds: &[Vec<u8>], mutate: Mutate) {
     for (path, case) in found(name) {
         run(&format!("{}", path.display()), entry, case);
@@ -38,7 +38,7 @@ pub fn attack(name: &str, entry: fn(&[u8]), seeds: &[Vec<u8>], mutate: Mutate) {
     }
 }
 
-/// The cases in `tests/attack/found/<name>`.
+/// Reads the cases in `tests/attack/found/<name>`.
 fn found(name: &str) -> Vec<(PathBuf, Vec<u8>)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/attack/found").join(name);
     let files = fs::read_dir(folder).into_iter().flatten().map(|file| file.expect("a file").path());
@@ -48,7 +48,7 @@ fn found(name: &str) -> Vec<(PathBuf, Vec<u8>)> {
 fn run(name: &str, entry: fn(&[u8]), case: Vec<u8>) {
     let (sender, receiver) = mpsc::channel();
     let kept = case.clone();
-    // A case that hangs keeps its thread; the test fails at once all the same.
+    // A case that hangs keeps its thread, but the test fails at once.
     thread::spawn(move || sender.send(catch_unwind(AssertUnwindSafe(|| entry(&case))).is_ok()));
     let problem = match receiver.recv_timeout(HANG) {
         Ok(true) => return,

@@ -1,4 +1,4 @@
-//! Whole files, to be damaged.
+//! Valid files, which the attacks damage.
 
 use std::fs;
 use std::io::Cursor;
@@ -15,12 +15,13 @@ fn fixture(name: &str) -> Vec<u8> {
     fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures").join(name)).expect("a fixture")
 }
 
-/// Documents with materials of every kind.
+/// Returns documents with materials of every kind.
 pub fn documents() -> Vec<Vec<u8>> {
     ["brushed/brushed.gltf", "heights/heights.gltf", "knobs/knobs.gltf", "waves/waves.glb"].map(fixture).into()
 }
 
-/// A picture of 16 x 16 texels in each format. The first byte names the format, as the entry expects.
+/// Returns a picture of 16 x 16 texels in each format. The first byte of each case selects the format, as the entry
+/// expects.
 pub fn images() -> Vec<Vec<u8>> {
     let picture = RgbImage::from_fn(16, 16, |x, y| Rgb([100 + 3 * x as u8, 90 + 4 * y as u8, 240]));
     let encoded = |format| {
@@ -58,7 +59,7 @@ fn tiff(picture: &RgbImage) -> Vec<u8> {
     file.into_inner()
 }
 
-/// Textures that the tool itself bakes, of every target and with every content.
+/// Returns textures that the tool itself bakes, of several targets and with every content.
 pub fn textures() -> Vec<Vec<u8>> {
     let folder = tempfile::tempdir().expect("a folder");
     let map = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/maps/line_normal.png");

@@ -1,13 +1,13 @@
-//! Mutations: of bytes, of images, of KTX2 headers and of glTF trees.
+//! Mutations of bytes, images, KTX2 headers and glTF trees.
 
 use serde_json::{Value, json};
 
 use super::random::Random;
 
-/// Largest case: mutations that repeat bytes must not grow without end.
-const MOST_BYTES: usize = 1 << 18;
+/// Largest case, since mutations that repeat bytes could grow a case without bound.
+const MAX_BYTES: usize = 1 << 18;
 
-/// Changes some bytes, or removes, repeats or moves a piece.
+/// Changes some bytes, or removes or repeats a piece.
 pub fn bytes(random: &mut Random, case: &mut Vec<u8>) {
     if case.is_empty() {
         return case.push(random.bits() as u8);
@@ -19,7 +19,7 @@ pub fn bytes(random: &mut Random, case: &mut Vec<u8>) {
         1 => case[at] = *random.pick(&[0, 1, 0x7f, 0x80, 0xff, b'"', b'{', b'/', b'.']),
         2 => case.truncate(at),
         3 => drop(case.drain(at..at + length)),
-        4 if case.len() < MOST_BYTES => {
+        4 if case.len() < MAX_BYTES => {
             let piece = case[at..at + length].to_vec();
             let to = random.below(case.len());
             case.splice(to..to, piece);
@@ -34,19 +34,19 @@ pub fn bytes(random: &mut Random, case: &mut Vec<u8>) {
     }
 }
 
-/// Changes bytes of an image after its first byte, which names the format; the checksums of a PNG are made right again, so that
-/// the damage reaches the decoder.
+/// Changes bytes of an image after its first byte, which selects the format. The checksums of most PNGs are updated, so
+/// that the damage reaches the decoder.
 pub fn image(random: &mut Random, case: &mut Vec<u8>) {
     let mut rest = case.split_off(1.min(case.len()));
     bytes(random, &mut rest);
     if random.below(4) > 0 {
-        mend_png(&mut rest);
+        update_png_checksums(&mut rest);
     }
     case.append(&mut rest);
 }
 
-/// Writes the right CRC behind every chunk of a PNG that still has a length that fits.
-fn mend_png(file: &mut [u8]) {
+/// Writes the correct CRC after every chunk of a PNG whose length is still valid.
+fn update_png_checksums(file: &mut [u8]) {
     let mut at = 8;
     while file.starts_with(b"\x89PNG") && at + 12 <= file.len() {
         let length = u32::from_be_bytes([file[at], file[at + 1], file[at + 2], file[at + 3]]) as usize;
@@ -57,7 +57,7 @@ fn mend_png(file: &mut [u8]) {
     }
 }
 
-/// CRC-32 as PNG has it (ISO 3309), bit by bit.
+/// Returns the CRC-32 of PNG (ISO 3309).
 fn crc32(bytes: &[u8]) -> u32 {
     let step = |crc: u32, byte: &u8| {
         let bit = |crc: u32, _| if crc & 1 == 1 { crc >> 1 ^ 0xedb8_8320 } else { crc >> 1 };
@@ -66,12 +66,13 @@ fn crc32(bytes: &[u8]) -> u32 {
     !bytes.iter().fold(!0, step)
 }
 
-/// Changes a field of a KTX2 header or index to an extreme value, or any bytes.
+/// Changes a field of a KTX2 header or level index to an extreme value, or arbitrary bytes.
 pub fn texture(random: &mut Random, case: &mut Vec<u8>) {
     if random.below(3) == 0 || case.len() < 104 {
         return bytes(random, case);
     }
-    // The header has 32-bit fields from byte 12 on, the level index 64-bit ones from byte 80 on (KTX 2.0, section 3).
+    // The header has 32-bit fields from byte 12 on, and the level index 64-bit fields from byte 80 on (KTX 2.0, section
+    // 3).
     let length = case.len() as u64;
     let value =
         *random.pick(&[0, 1, 2, 3, 1 << 14, 1 << 31, u64::from(u32::MAX), 1 << 62, u64::MAX, length, length - 1]);
@@ -84,7 +85,7 @@ pub fn texture(random: &mut Random, case: &mut Vec<u8>) {
     }
 }
 
-/// Changes the tree of a glTF document, in a .glb too, or its bytes.
+/// Changes the JSON tree of a .gltf or .glb, or its bytes.
 pub fn document(random: &mut Random, case: &mut Vec<u8>) {
     if random.below(4) == 0 {
         return bytes(random, case);
@@ -117,11 +118,11 @@ pub fn document(random: &mut Random, case: &mut Vec<u8>) {
     }
 }
 
-/// Goes down a random way and changes what it ends at.
+/// Follows a random path down the tree and changes the value at its end.
 fn value(random: &mut Random, tree: &mut Value) {
-    let goes_on = random.below(8) > 0;
+    let descends = random.below(8) > 0;
     match tree {
-        Value::Object(members) if goes_on && !members.is_empty() => {
+        Value::Object(members) if descends && !members.is_empty() => {
             let key = members.keys().nth(random.below(members.len())).cloned().unwrap_or_default();
             if random.below(12) == 0 {
                 members.remove(&key);
@@ -129,7 +130,7 @@ fn value(random: &mut Random, tree: &mut Value) {
                 value(random, member);
             }
         }
-        Value::Array(items) if goes_on && !items.is_empty() => {
+        Value::Array(items) if descends && !items.is_empty() => {
             let index = random.below(items.len());
             match random.below(12) {
                 0 => drop(items.remove(index)),

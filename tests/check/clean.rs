@@ -1,4 +1,4 @@
-//! Fresh bakes: no errors, and only the warnings and notes that are expected.
+//! Tests that fresh bakes have no errors, and only the expected warnings and notes.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -6,9 +6,10 @@ use std::path::Path;
 use roughcast::cli::Outcome;
 
 use crate::fixture::{bake, findings, roughcast};
+use crate::skip::skip;
 
-/// Formats other than UASTC are not for KHR_texture_basisu (RC1101, a warning), and the dual form is off the
-/// specification by intent (RC1205, a note). Nothing else.
+/// KHR_texture_basisu does not allow formats other than UASTC (RC1101, a warning), and the dual form deviates from the
+/// specification (RC1205, a note). There are no other findings.
 #[test]
 fn every_form_profile_and_target_is_clean() {
     let targets: &[&str] = if cfg!(feature = "bc") { &["basis", "bc", "float"] } else { &["basis", "float"] };
@@ -38,21 +39,21 @@ fn glb_is_clean() {
     }
 }
 
-/// `map` bakes what no document names.
+/// `map` bakes textures that no document names.
 #[test]
-fn bare_maps_are_clean() {
+fn standalone_maps_are_clean() {
     let bake = bake(&[]);
-    let (source, output) = (bake.source.join("bumps.png"), bake.baked.join("bare.ktx2"));
+    let (source, output) = (bake.source.join("bumps.png"), bake.baked.join("standalone.ktx2"));
     let paths = [source.to_str().unwrap(), "-o", output.to_str().unwrap(), "-q"];
     assert_eq!(roughcast(&[&["map", "--profile", "both"], &paths[..]].concat()).0, Outcome::Done);
     let (outcome, report) = bake.check_source(&["--deep"]);
     assert_eq!((outcome, findings(&report)), (Outcome::Done, vec![]), "{report}");
     let files = report["files"].as_array().unwrap().len();
-    assert_eq!(files, 4, "the document and three bare maps: {report}");
+    assert_eq!(files, 4, "the document and three textures of the standalone map: {report}");
 }
 
 #[test]
-fn text_has_a_line_per_finding_and_a_summary() {
+fn text_has_a_line_for_each_finding_and_a_summary() {
     let bake = bake(&["--gltf", "dual"]);
     let (outcome, text, _) = roughcast(&["check", bake.document().to_str().unwrap()]);
     assert_eq!(outcome, Outcome::Done);
@@ -63,7 +64,7 @@ fn text_has_a_line_per_finding_and_a_summary() {
 }
 
 #[test]
-fn arguments_that_cannot_be_read_fail_without_stopping_the_others() {
+fn unreadable_arguments_do_not_stop_the_others() {
     let bake = bake(&[]);
     let (missing, document) = (bake.baked.join("missing.gltf"), bake.document());
     let (outcome, out, err) = roughcast(&["check", missing.to_str().unwrap(), document.to_str().unwrap()]);
@@ -75,14 +76,14 @@ fn arguments_that_cannot_be_read_fail_without_stopping_the_others() {
     assert_eq!(roughcast(&["check", text.to_str().unwrap()]).0, Outcome::Failed);
 }
 
-/// Textures of other writers are read, not judged.
+/// Textures of other writers are only read.
 #[test]
 fn real_assets_are_clean() {
     let data = Path::new("../shared/data");
     for asset in ["plastic_monobloc_chair", "FlightHelmet", "AnisotropyBarnLamp"] {
         let source = data.join(asset);
         if !source.is_dir() {
-            eprintln!("skipped: {} is not there", source.display());
+            skip(&format!("{} does not exist", source.display()));
             continue;
         }
         let folder = tempfile::tempdir().unwrap();
@@ -90,7 +91,7 @@ fn real_assets_are_clean() {
         assert_eq!(roughcast(&["bake", source, "-o", output, "-q"]).0, Outcome::Done);
         let (_, out, _) = roughcast(&["check", output, "--source", source, "--deep", "--format", "json"]);
         let codes: Vec<String> = findings(&serde_json::from_str(&out).unwrap()).into_iter().map(|f| f.0).collect();
-        // What the lamp keeps of its own KTX2 stands in core sources; how much depends on the models chosen.
+        // The lamp keeps some of its own KTX2 in core sources. Their number depends on the chosen models.
         let is_lamp = asset == "AnisotropyBarnLamp";
         assert!(codes.iter().all(|code| is_lamp && code == "RC1207"), "{asset}: {out}");
     }

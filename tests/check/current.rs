@@ -1,4 +1,4 @@
-//! Settings and versions that were recorded against those that hold today, and what the user takes for an error.
+//! Tests that compare recorded settings and versions with current ones, and of severities that the user sets.
 
 use std::fs;
 
@@ -7,87 +7,87 @@ use serde_json::Value;
 
 use crate::fixture::{Bake, bake, findings, roughcast};
 
-/// What is found of settings, by file.
-fn of_settings(report: &Value) -> Vec<(String, String)> {
+/// Returns file and message of each finding about settings.
+fn settings_findings(report: &Value) -> Vec<(String, String)> {
     let list = report["findings"].as_array().unwrap().iter().filter(|f| f["code"] == "RC1507");
     list.map(|f| (f["file"].as_str().unwrap().to_owned(), f["message"].as_str().unwrap().to_owned())).collect()
 }
 
-fn configured(bake: &Bake, text: &str) -> (Outcome, Value) {
+fn check_with_config(bake: &Bake, text: &str) -> (Outcome, Value) {
     fs::write(bake.source.join("roughcast.toml"), text).unwrap();
     bake.check_source(&[])
 }
 
 #[test]
-fn each_setting_is_named_with_both_values() {
+fn names_each_setting_with_both_values() {
     let bake = bake(&["--max-error", "0.3"]);
     let text = "max-error = 0.2\nquality = 'best'\nnearest = 5.0\nscreen-height = 1080\nprovenance = true";
-    let (outcome, report) = configured(&bake, text);
+    let (outcome, report) = check_with_config(&bake, text);
     assert_eq!(outcome, Outcome::Findings);
-    let found = of_settings(&report);
+    let found = settings_findings(&report);
     assert!(!found.is_empty(), "{report}");
     for (file, message) in found {
         assert!(message.starts_with("expected max-error = 0.2"), "{file}: {message}");
         let (expected, found) = message.split_once(", found ").unwrap();
-        for said in ["max-error = 0.2", "quality = \"best\"", "nearest = 5.0", "screen-height = 1080"] {
-            assert!(expected.contains(said), "{said}: {message}");
+        for part in ["max-error = 0.2", "quality = \"best\"", "nearest = 5.0", "screen-height = 1080"] {
+            assert!(expected.contains(part), "{part}: {message}");
         }
-        for said in ["max-error = 0.3", "quality = \"fast\"", "nearest unset", "screen-height unset"] {
-            assert!(found.contains(said), "{said}: {message}");
+        for part in ["max-error = 0.3", "quality = \"fast\"", "nearest unset", "screen-height unset"] {
+            assert!(found.contains(part), "{part}: {message}");
         }
         assert!(!message.contains("target") && !message.contains("model"), "{message}");
     }
 }
 
-/// Flags win over the file, as they do in `bake`; overrides hold for the asset's place.
+/// Flags have priority over the file, as in `bake`. Overrides apply by the path of the asset.
 #[test]
-fn settings_are_those_that_a_bake_would_have() {
+fn compares_with_the_settings_of_a_bake() {
     let bake = bake(&["--quality", "best", "--profile", "both"]);
     let flags = ["--quality", "best", "--profile", "both"];
     assert_eq!(bake.check_source(&flags).0, Outcome::Done);
     assert_eq!(bake.check_source(&flags[2..]).0, Outcome::Findings);
     let text = "quality = 'best'\n[[override]]\nfiles = 'ridges.gltf'\nprofile = 'both'";
-    assert_eq!(configured(&bake, text).0, Outcome::Done);
-    assert_eq!(configured(&bake, &text.replace("ridges", "other")).0, Outcome::Findings);
+    assert_eq!(check_with_config(&bake, text).0, Outcome::Done);
+    assert_eq!(check_with_config(&bake, &text.replace("ridges", "other")).0, Outcome::Findings);
     assert_eq!(bake.check_source(&flags).0, Outcome::Done);
     assert_eq!(bake.check_source(&["--no-config"]).0, Outcome::Findings);
-    // A file that says nothing says that the defaults hold.
-    assert_eq!(configured(&bake, "").0, Outcome::Findings);
+    // An empty file means that the defaults apply.
+    assert_eq!(check_with_config(&bake, "").0, Outcome::Findings);
     fs::remove_file(bake.source.join("roughcast.toml")).unwrap();
     assert_eq!(bake.check_source(&[]).0, Outcome::Done);
 }
 
-/// What was chosen is not what was asked for.
+/// The model that `auto` chooses does not count as a requested model.
 #[test]
-fn a_chosen_model_is_not_a_model_that_was_asked_for() {
+fn compares_the_requested_model_and_not_the_chosen_model() {
     let auto = bake(&[]);
-    assert_eq!(configured(&auto, "model = 'auto'").0, Outcome::Done);
+    assert_eq!(check_with_config(&auto, "model = 'auto'").0, Outcome::Done);
     for model in ["none", "isotropic", "anisotropic"] {
-        let (outcome, report) = configured(&auto, &format!("model = '{model}'"));
+        let (outcome, report) = check_with_config(&auto, &format!("model = '{model}'"));
         assert_eq!(outcome, Outcome::Findings, "{model}");
-        let (file, message) = of_settings(&report).remove(0);
+        let (file, message) = settings_findings(&report).remove(0);
         assert!(
             message.starts_with(&format!("expected model = \"{model}\", found model = \"auto\"")),
             "{file} {message}"
         );
-        let asked = bake(&["--model", model]);
-        assert_eq!(configured(&asked, &format!("model = '{model}'")).0, Outcome::Done, "{model}");
-        assert_eq!(configured(&asked, "model = 'auto'").0, Outcome::Findings, "{model}");
+        let requested = bake(&["--model", model]);
+        assert_eq!(check_with_config(&requested, &format!("model = '{model}'")).0, Outcome::Done, "{model}");
+        assert_eq!(check_with_config(&requested, "model = 'auto'").0, Outcome::Findings, "{model}");
     }
 }
 
-/// `map` reads no roughcast.toml.
+/// `map` does not read roughcast.toml.
 #[test]
-fn bare_maps_have_no_settings_in_files() {
+fn standalone_maps_are_not_compared_with_roughcast_toml() {
     let bake = bake(&[]);
-    let (source, output) = (bake.source.join("bumps.png"), bake.baked.join("bare.ktx2"));
+    let (source, output) = (bake.source.join("bumps.png"), bake.baked.join("standalone.ktx2"));
     let words = ["map", source.to_str().unwrap(), "-o", output.to_str().unwrap(), "-q", "--quality", "best"];
     assert_eq!(roughcast(&words).0, Outcome::Done);
-    assert_eq!(configured(&bake, "").0, Outcome::Done);
+    assert_eq!(check_with_config(&bake, "").0, Outcome::Done);
 }
 
 #[test]
-fn settings_need_sources_and_sense() {
+fn refuses_settings_without_sources_and_unknown_settings() {
     let bake = bake(&[]);
     let baked = bake.baked.to_str().unwrap();
     let (outcome, _, err) = roughcast(&["check", baked, "--quality", "best"]);
@@ -98,7 +98,7 @@ fn settings_need_sources_and_sense() {
 }
 
 #[test]
-fn a_minimum_version_makes_old_outputs_errors() {
+fn outputs_below_the_minimum_version_are_errors() {
     let bake = bake(&[]);
     for (version, expected) in [("0.1.0", Outcome::Done), ("0.0.9", Outcome::Done), ("0.1.1", Outcome::Findings)] {
         assert_eq!(bake.check(&["--min-version", version]).0, expected, "{version}");
@@ -107,9 +107,9 @@ fn a_minimum_version_makes_old_outputs_errors() {
     assert!(!codes.is_empty() && codes.iter().all(|code| code == "RC1508"), "{codes:?}");
 }
 
-/// RC1205 is a note, RC1101 a warning.
+/// RC1205 is a note and RC1101 a warning by default.
 #[test]
-fn severities_are_the_users() {
+fn allow_and_deny_change_severities() {
     let bake = bake(&["--gltf", "dual", "--target", "float"]);
     assert_eq!(bake.check(&[]).0, Outcome::Findings);
     let (outcome, report) = bake.check(&["--allow", "RC1101"]);
@@ -117,9 +117,9 @@ fn severities_are_the_users() {
     assert!(report["findings"].as_array().unwrap().iter().all(|f| f["severity"] == "note"), "{report}");
     let (outcome, report) = bake.check(&["--allow", "rc1101", "--deny", "RC1205"]);
     assert_eq!(outcome, Outcome::Findings);
-    let of_1205 = |f: &&Value| f["code"] == "RC1205";
+    let is_1205 = |f: &&Value| f["code"] == "RC1205";
     assert!(
-        report["findings"].as_array().unwrap().iter().filter(of_1205).all(|f| f["severity"] == "error"),
+        report["findings"].as_array().unwrap().iter().filter(is_1205).all(|f| f["severity"] == "error"),
         "{report}"
     );
 }

@@ -1,13 +1,13 @@
-//! One damaged bake for each finding about documents, the extension and provenance.
+//! Tests with one damaged bake for each finding about documents, the extension and provenance.
 
 use std::fs;
 
 use base64::Engine;
-use roughcast::bake::EXTENSION;
 use roughcast::check::Code;
 use roughcast::cli::Outcome;
 use roughcast::gltf::document::Document;
 use roughcast::gltf::json::Json;
+use roughcast::gltf::roughness_pyramid::EXTENSION;
 use roughcast::ktx2::Ktx2;
 use serde_json::{Value, json};
 
@@ -46,7 +46,7 @@ fn scale_roughness(document: &mut Value, factor: f64) {
     }
 }
 
-/// The index of the texture that the normals are in.
+/// Returns the index of the normal texture.
 fn normal_texture(document: &Value) -> usize {
     document["materials"][0]["normalTexture"]["index"].as_u64().unwrap() as usize
 }
@@ -109,7 +109,7 @@ const FIXTURES: &[Fixture] = &[
             });
         },
     ),
-    // Twice the roughness that the offsets have lost.
+    // The roughness texture has twice the lost roughness.
     Fixture {
         is_deep: true,
         ..fixture(Code::Variance, &["--profile", "pyramid", "--model", "anisotropic"], LEVEL_1, |b| {
@@ -122,7 +122,7 @@ const FIXTURES: &[Fixture] = &[
             b.edit(|d| scale_roughness(d, 2.0));
         })
     },
-    // Offsets of another mean: level 1 is that of a texture of its own.
+    // Level 1 has offsets of another mean.
     Fixture {
         is_deep: true,
         ..fixture(
@@ -133,7 +133,7 @@ const FIXTURES: &[Fixture] = &[
                 let texture = b.texture("bumps.offset.ktx2");
                 let mut bytes = fs::read(&texture).unwrap();
                 let level = Ktx2::parse(&bytes).unwrap().levels()[1];
-                // Half floats: 0 becomes 1, and whatever else 1 and a little.
+                // Every half float becomes 0x3C3C, a little more than 1.
                 bytes[level.offset as usize..][..level.length as usize].fill(0x3C);
                 fs::write(texture, bytes).unwrap();
             },
@@ -182,13 +182,13 @@ fn edit_source(bake: &Bake, edit: impl Fn(&str) -> String) {
     fs::write(&path, edit(&fs::read_to_string(&path).unwrap())).unwrap();
 }
 
-/// What documents are tested for.
+/// Returns the codes that have a fixture here.
 pub fn codes() -> Vec<Code> {
     FIXTURES.iter().map(|f| f.code).collect()
 }
 
 #[test]
-fn each_damage_is_found_at_its_place() {
+fn finds_each_damage_at_its_place() {
     for fixture in FIXTURES {
         let bake = bake(fixture.options);
         (fixture.damage)(&bake);
@@ -201,9 +201,9 @@ fn each_damage_is_found_at_its_place() {
     }
 }
 
-/// Damage to one source is told of the textures made from it only.
+/// Only the textures that were made from a changed source are stale.
 #[test]
-fn staleness_is_told_of_the_right_textures() {
+fn reports_staleness_of_the_right_textures() {
     let bake = bake(&[]);
     fs::copy(bake.source.join("bumps.png"), bake.source.join("surface.png")).unwrap();
     let (_, report) = bake.check_source(&[]);
@@ -211,9 +211,9 @@ fn staleness_is_told_of_the_right_textures() {
     assert!(!stale.is_empty() && stale.iter().all(|file| file.starts_with("surface.")), "{report}");
 }
 
-/// An asset without bumps comes back byte for byte, and nothing else will do.
+/// A bake copies an asset without bumps byte for byte, so any difference is a finding.
 #[test]
-fn documents_without_bumps_are_compared_as_they_are() {
+fn compares_documents_without_bumps_byte_for_byte() {
     let bake = bake(&[]);
     edit_source(&bake, |text| text.replace("normalTexture", "occlusionTexture"));
     let paths = [bake.source.to_str().unwrap(), bake.baked.to_str().unwrap()];
@@ -225,9 +225,9 @@ fn documents_without_bumps_are_compared_as_they_are() {
     assert_eq!(findings(&bake.check_source(&[]).1), [stale]);
 }
 
-/// What others keep in `extras` stays; where they leave no place, nothing is recorded of the document.
+/// Members of `extras` from other tools stay. If `extras` is no object, no provenance of the document is recorded.
 #[test]
-fn extras_of_others_stay() {
+fn keeps_extras_of_other_tools() {
     for (extras, is_recorded) in [(json!({ "author": "me" }), true), (json!("mine"), false)] {
         let bake = bake(&[]);
         edit_source(&bake, |text| {
@@ -250,9 +250,9 @@ fn extras_of_others_stay() {
     }
 }
 
-/// Textures inside a .glb are named by their image.
+/// The place of a texture inside a .glb is its image.
 #[test]
-fn embedded_textures_have_a_place() {
+fn names_embedded_textures_by_their_image() {
     let bake = bake(&["--glb", "--no-provenance"]);
     let (_, report) = bake.check_source(&[]);
     let places: Vec<_> = findings(&report).into_iter().filter(|f| f.0 == "RC1506").map(|f| (f.1, f.2)).collect();
@@ -261,7 +261,7 @@ fn embedded_textures_have_a_place() {
 
 /// Sources may be buffer views of a .glb, or data URIs.
 #[test]
-fn embedded_sources_are_compared() {
+fn compares_embedded_sources() {
     let folder = tempfile::tempdir().unwrap();
     let (source, baked) = (folder.path().join("source"), folder.path().join("baked"));
     write_asset(&source);
@@ -294,9 +294,9 @@ fn embedded_sources_are_compared() {
     assert!(!stale.is_empty() && stale.iter().all(|f| f.1 != "image1.normal.ktx2"), "{stale:?}");
 }
 
-/// Images in a buffer are told by their own beginnings, wherever in the file those are.
+/// The first bytes of an image in a buffer give its format, also if they are after the first 4096 bytes of the file.
 #[test]
-fn core_sources_in_buffers_are_told_from_what_is_not_read() {
+fn detects_formats_of_images_anywhere_in_a_buffer() {
     for (image, expected) in [(&b"\x89PNG\r\n"[..], false), (b"\xFF\xD8\xFF\xE0", false), (b"RIFF", true), (b"", true)]
     {
         let bake = bake(&[]);
@@ -321,9 +321,9 @@ fn core_sources_in_buffers_are_told_from_what_is_not_read() {
     }
 }
 
-/// A texel that no longer decodes is nothing to a check of headers, which does not read it.
+/// A check without `--deep` does not read levels, so it does not find a level that cannot be decoded.
 #[test]
-fn levels_are_read_only_with_deep() {
+fn reads_levels_only_with_deep() {
     let bake = bake(&["--gltf", "strict"]);
     let texture = bake.texture("bumps.normal.ktx2");
     let mut bytes = fs::read(&texture).unwrap();

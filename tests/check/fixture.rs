@@ -1,4 +1,4 @@
-//! A small asset made here, baked in-process into a temporary folder.
+//! A small generated asset that is baked in-process into a temporary folder.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,7 +8,7 @@ use roughcast::cli::{Cli, Outcome, run};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
-/// Sources and what they were baked into.
+/// The folders of sources and outputs of a bake.
 pub struct Bake {
     _folder: TempDir,
     pub source: PathBuf,
@@ -34,10 +34,10 @@ pub fn bake(options: &[&str]) -> Bake {
     Bake { _folder: folder, source, baked }
 }
 
-/// A triangle with a bumpy material: 16 x 16 normals and occlusion, roughness, metal.
+/// Writes a triangle with a bumpy material: 16 x 16 texels of normals, and of occlusion, roughness and metalness.
 pub fn write_asset(folder: &Path) {
     fs::create_dir_all(folder).unwrap();
-    // Ridges of changing steepness across: the covariance is anisotropic.
+    // The slopes of the ridges vary more along x than along y, so the covariance is anisotropic.
     let normals = image::RgbImage::from_fn(16, 16, |x, y| {
         let (u, v) = (if x % 2 == 0 { 0.6 } else { -0.5 }, if y % 4 == 0 { 0.2 } else { -0.1 });
         let length = f64::sqrt(u * u + v * v + 1.0);
@@ -77,12 +77,12 @@ pub fn write_asset(folder: &Path) {
 }
 
 impl Bake {
-    /// The baked document.
+    /// Returns the path of the baked document.
     pub fn document(&self) -> PathBuf {
         self.baked.join("ridges.gltf")
     }
 
-    /// A baked texture, such as `bumps.normal.ktx2`.
+    /// Returns the path of a baked texture, such as `bumps.normal.ktx2`.
     pub fn texture(&self, name: &str) -> PathBuf {
         self.baked.join("ridges.roughcast").join(name)
     }
@@ -94,7 +94,7 @@ impl Bake {
         fs::write(self.document(), serde_json::to_vec(&document).unwrap()).unwrap();
     }
 
-    /// What `check` finds in the output folder: outcome and report.
+    /// Checks the output folder. Returns the outcome and the report.
     pub fn check(&self, options: &[&str]) -> (Outcome, Value) {
         let folder = self.baked.to_str().unwrap();
         let (outcome, out, err) = roughcast(&[&["check", folder, "--format", "json"], options].concat());
@@ -102,14 +102,14 @@ impl Bake {
         (outcome, serde_json::from_str(&out).unwrap())
     }
 
-    /// The same with `--source`.
+    /// Checks the output folder with `--source`.
     pub fn check_source(&self, options: &[&str]) -> (Outcome, Value) {
         self.check(&[&["--source", self.source.to_str().unwrap()], options].concat())
     }
 }
 
-/// Codes, files without folders, and places of a report's findings. Without RC1510: the ridges are too steep for the
-/// default bound, which every roughness texture notes.
+/// Returns codes, file names and places of a report's findings, without RC1510: the ridges are too steep for the
+/// default `--max-error`, so every roughness texture has that note.
 pub fn findings(report: &Value) -> Vec<(String, String, String)> {
     let text = |finding: &Value, key: &str| finding[key].as_str().unwrap().to_owned();
     let file = |finding: &Value| Path::new(&text(finding, "file")).file_name().unwrap().to_str().unwrap().to_owned();

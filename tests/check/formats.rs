@@ -1,9 +1,8 @@
-//! SARIF and JUnit reports satisfy the schemas that are published for them.
+//! Tests that SARIF and JUnit reports satisfy their published schemas.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::sync::Once;
 
 use roughcast::check::{Code, Finding, Report, junit, sarif};
 use roughcast::cli::Outcome;
@@ -11,8 +10,9 @@ use serde_json::Value;
 
 use crate::fixture::{bake, roughcast};
 use crate::schemas::assert_valid;
+use crate::skip::missing_tool;
 
-/// Each code once, with texts that have to be escaped.
+/// Returns a report with each code once, and with texts that must be escaped.
 fn report() -> Report {
     let finding = |(index, code): (usize, &Code)| Finding {
         code: *code,
@@ -24,18 +24,11 @@ fn report() -> Report {
     let mut findings: Vec<Finding> = Code::ALL.iter().enumerate().map(finding).collect();
     findings.sort_by(|a, b| a.file.cmp(&b.file));
     let files = ["/baked/<a> & \"b\" 0.gltf", "clean one.ktx2"].map(str::to_owned).to_vec();
-    Report { version: "1.2.3", files, findings }
+    Report { version: "1.2.3", files, findings, ..Report::default() }
 }
 
-/// The line for a person, or the end of a test that may not be skipped. Each is written once.
-fn missing(said: &Once, what: &str) {
-    assert!(std::env::var("CI").as_deref() != Ok("true"), "{what}");
-    said.call_once(|| eprintln!("skipped: {what}"));
-}
-
-/// A file in the sources of one of the crates of `tools/report-schemas`.
-fn published(package: &str, path: &str) -> Option<PathBuf> {
-    static PRINTED: Once = Once::new();
+/// Returns the path of a file in the sources of one of the crates of `tools/report-schemas`.
+fn published_file(package: &str, path: &str) -> Option<PathBuf> {
     let manifest = Path::new(env!("CARGO_MANIFEST_DIR")).join("tools/report-schemas/Cargo.toml");
     let arguments = ["metadata", "--offline", "--locked", "--format-version", "1", "--manifest-path"];
     let output = Command::new(env!("CARGO")).args(arguments).arg(manifest).output().unwrap();
@@ -43,29 +36,28 @@ fn published(package: &str, path: &str) -> Option<PathBuf> {
     let found = metadata["packages"].as_array().and_then(|packages| packages.iter().find(|p| p["name"] == package));
     let file = found.and_then(|p| Some(Path::new(p["manifest_path"].as_str()?).with_file_name(path)));
     if file.is_none() {
-        missing(&PRINTED, "schemas of reports need `cargo fetch --manifest-path tools/report-schemas/Cargo.toml`");
+        missing_tool("schemas of reports need `cargo fetch --manifest-path tools/report-schemas/Cargo.toml`");
     }
     file
 }
 
 fn assert_is_sarif(text: &str) {
-    let Some(schema) = published("serde-sarif", "src/schema.json") else { return };
+    let Some(schema) = published_file("serde-sarif", "src/schema.json") else { return };
     let mut schema: Value = serde_json::from_slice(&fs::read(schema).unwrap()).unwrap();
-    // The published pattern of languages has a bracket too many, which JavaScript's regular expressions forgive.
+    // The published pattern of languages has an extra bracket, which only regular expressions of JavaScript accept.
     for object in ["run", "toolComponent"] {
         schema["definitions"][object]["properties"]["language"].as_object_mut().unwrap().remove("pattern");
     }
     let validator = jsonschema::validator_for(&schema).unwrap();
-    assert!(!validator.is_valid(&serde_json::json!({ "version": "2.1.0" })), "the schema asks for runs");
+    assert!(!validator.is_valid(&serde_json::json!({ "version": "2.1.0" })), "the schema requires runs");
     assert_valid(&validator, &serde_json::from_str(text).unwrap());
 }
 
 fn assert_is_junit(text: &str) {
-    static PRINTED: Once = Once::new();
-    let Some(schema) = published("junit-report", "tests/JUnit.xsd") else { return };
+    let Some(schema) = published_file("junit-report", "tests/JUnit.xsd") else { return };
     let tool = Path::new(env!("CARGO_MANIFEST_DIR")).join("tools/validate-junit");
     if !tool.join("node_modules/xmllint-wasm").is_dir() {
-        return missing(&PRINTED, "validating JUnit reports needs Node 20 and `npm ci` in tools/validate-junit");
+        return missing_tool("validating JUnit reports needs Node 20 and `npm ci` in tools/validate-junit");
     }
     let folder = tempfile::tempdir().unwrap();
     let is_valid = |text: &str| {
@@ -74,13 +66,13 @@ fn assert_is_junit(text: &str) {
         let output = Command::new("node").arg(tool.join("validate.mjs")).arg(&schema).arg(file).output().unwrap();
         (output.status.success(), String::from_utf8_lossy(&output.stderr).into_owned())
     };
-    assert!(!is_valid("<testsuites><case/></testsuites>").0, "the schema knows no such element");
+    assert!(!is_valid("<testsuites><case/></testsuites>").0, "the schema has no such element");
     let (valid, errors) = is_valid(text);
     assert!(valid, "{errors}\n{text}");
 }
 
 #[test]
-fn sarif_of_every_finding() {
+fn sarif_of_every_finding_is_valid() {
     let text = sarif(&report()).unwrap();
     assert_is_sarif(&text);
     let log: Value = serde_json::from_str(&text).unwrap();
@@ -95,7 +87,7 @@ fn sarif_of_every_finding() {
 }
 
 #[test]
-fn junit_of_every_finding() {
+fn junit_of_every_finding_is_valid() {
     let text = junit(&report()).unwrap();
     assert_is_junit(&text);
     let notes = Code::ALL.iter().filter(|c| c.severity().name() == "note").count();
@@ -105,7 +97,7 @@ fn junit_of_every_finding() {
 }
 
 #[test]
-fn the_command_prints_both() {
+fn the_command_prints_sarif_and_junit() {
     let bake = bake(&["--no-provenance"]);
     let check = |format: &str| roughcast(&["check", bake.baked.to_str().unwrap(), "--format", format]);
     let (outcome, text, err) = check("sarif");

@@ -1,5 +1,5 @@
-//! An asset for every form of input, made here: small maps as PNG, JPEG, WebP and KTX2, beside the document, in a buffer, in
-//! data URIs and in a .glb; compressed geometry; layers, anisotropy, heights and maps of one row or column.
+//! Generated assets for every form of input: small maps as PNG, JPEG, WebP and KTX2, in files, in a buffer, in data
+//! URIs and in a .glb; compressed geometry; layers, anisotropy, heights, and maps of one row or column.
 
 use std::fs;
 use std::io::Cursor;
@@ -17,7 +17,7 @@ use serde_json::{Value, json};
 /// Number of assets that [`write_inputs`] writes.
 pub const COUNT: usize = 16;
 
-/// Writes the assets, each into a folder of its own below `folder`.
+/// Writes the assets, each into its own folder below `folder`.
 pub fn write_inputs(folder: &Path) {
     for (name, extension, encode) in [
         ("png", "png", png as fn(&RgbImage) -> Vec<u8>),
@@ -63,7 +63,7 @@ fn write_sized(folder: &Path, name: &str, width: u32, height: u32) {
     files.document(&document);
 }
 
-/// WebP with PNG for engines that do not know it.
+/// Writes an asset with WebP images and PNG fallbacks.
 fn webp_beside_png(folder: &Path) {
     let mut files = Files::new(folder, "webp beside png");
     let mut images = Vec::new();
@@ -78,8 +78,8 @@ fn webp_beside_png(folder: &Path) {
     files.document(&document);
 }
 
-/// Images in data URIs, in an external buffer and in the BIN chunk of a .glb. The colours lie beyond the 4096 bytes that a
-/// check reads of any file.
+/// Writes assets with images in data URIs, in an external buffer and in the BIN chunk of a .glb. The colours are after
+/// the first 4096 bytes, which a check reads of every file.
 fn embedded(folder: &Path) {
     let maps = maps();
     let data = |(_, image): &(&str, RgbImage)| {
@@ -110,7 +110,7 @@ fn embedded(folder: &Path) {
     Files::new(folder, "glb").add("glb.glb", &glb.to_bytes().unwrap());
 }
 
-/// Geometry that engines decompress. What is in the compressed bytes does not matter to a bake, which copies them.
+/// Writes assets with compressed geometry. Its bytes are arbitrary, since a bake only copies them.
 fn compressed_geometry(folder: &Path) {
     let mut files = Files::new(folder, "draco");
     let mut document = textured(&mut files);
@@ -143,10 +143,16 @@ fn compressed_geometry(folder: &Path) {
     files.document(&document);
 }
 
-/// Materials with more than one layer, with anisotropy of their own, and with heights.
+/// Writes assets with clearcoats, anisotropy and heights.
 fn materials(folder: &Path) {
-    // As KhronosGroup's ClearCoatTest has them: coats that are whole and partial, that share the normals of the base and
-    // have their own, rough and smooth.
+    clearcoats(folder);
+    brushed(folder);
+    heights(folder);
+}
+
+/// Writes materials with a clearcoat as in KhronosGroup's ClearCoatTest: whole and partial coats, rough and smooth
+/// coats, and coats with the normals of the base layer or with their own.
+fn clearcoats(folder: &Path) {
     let mut files = Files::new(folder, "coats");
     let mut document = textured(&mut files);
     let wrap = files.add("wrap.png", &png(&wrinkles(64)));
@@ -166,9 +172,9 @@ fn materials(folder: &Path) {
         plain,
         with(json!({ "clearcoatFactor": 1 })),
         with(json!({ "clearcoatFactor": 1, "clearcoatTexture": { "index": 4 } })),
-        with(
-            json!({ "clearcoatFactor": 1, "clearcoatRoughnessFactor": 0.3, "clearcoatRoughnessTexture": { "index": 4 } })
-        ),
+        with(json!({
+            "clearcoatFactor": 1, "clearcoatRoughnessFactor": 0.3, "clearcoatRoughnessTexture": { "index": 4 }
+        })),
         with(json!({ "clearcoatFactor": 1, "clearcoatNormalTexture": { "index": 0 } })),
         with(json!({
             "clearcoatFactor": 1, "clearcoatTexture": { "index": 4 }, "clearcoatRoughnessFactor": 0.1,
@@ -186,7 +192,10 @@ fn materials(folder: &Path) {
         .collect();
     document["extensionsUsed"] = json!(["KHR_materials_clearcoat"]);
     files.document(&document);
+}
 
+/// Writes a material with anisotropy in its base lobe.
+fn brushed(folder: &Path) {
     let mut files = Files::new(folder, "brushed");
     let mut document = textured(&mut files);
     let axes = RgbImage::from_fn(16, 16, |x, y| image::Rgb([255 - 3 * y as u8, 128 + 4 * x as u8, 200]));
@@ -198,7 +207,10 @@ fn materials(folder: &Path) {
     } });
     document["extensionsUsed"] = json!(["KHR_materials_anisotropy"]);
     files.document(&document);
+}
 
+/// Writes a material with a height map.
+fn heights(folder: &Path) {
     let mut files = Files::new(folder, "heights");
     let mut document = textured(&mut files);
     let heights = image::ImageBuffer::from_fn(24, 20, |x, y| image::Luma([(3000 * (x % 7) + 2500 * (y % 5)) as u16]));
@@ -210,7 +222,7 @@ fn materials(folder: &Path) {
     files.document(&document);
 }
 
-/// A document whose three maps are PNG files.
+/// Returns a document whose three maps are PNG files.
 fn textured(files: &mut Files) -> Value {
     let uris = maps().map(|(map, image)| json!({ "uri": files.add(&format!("{map}.png"), &png(&image)) }));
     document(uris.to_vec())
@@ -234,13 +246,13 @@ impl Files {
         Self { folder, name: name.to_owned() }
     }
 
-    /// Writes a file; returns its URI.
+    /// Writes a file and returns its URI.
     fn add(&mut self, name: &str, bytes: &[u8]) -> String {
         fs::write(self.folder.join(name), bytes).unwrap();
         name.replace(' ', "%20")
     }
 
-    /// Writes the document, and the mesh where it is a file that is not there yet.
+    /// Writes the document, and the mesh if its file does not exist yet.
     fn document(mut self, document: &Value) {
         if !self.folder.join("mesh.bin").exists() {
             self.add("mesh.bin", &mesh());
@@ -250,7 +262,7 @@ impl Files {
     }
 }
 
-/// A triangle with normals along z, whose texture coordinates are turned and stretched.
+/// Returns a triangle with normals along z and with rotated and stretched texture coordinates.
 fn mesh() -> Vec<u8> {
     let positions = [[0., 0., 0.], [2., 0., 0.], [0., 1., 0.]];
     let normals = [[0., 0., 1.]; 3];
@@ -259,7 +271,7 @@ fn mesh() -> Vec<u8> {
     floats.flat_map(f32::to_le_bytes).collect()
 }
 
-/// A document of one material with the textures 0 (normals), 1 (surface) and 2 (colours).
+/// Returns a document of one material with the textures 0 (normals), 1 (surface) and 2 (colours).
 fn document(images: Vec<Value>) -> Value {
     json!({
         "asset": { "version": "2.0" },
@@ -289,18 +301,18 @@ fn document(images: Vec<Value>) -> Value {
     })
 }
 
-/// The maps of a material, with names.
+/// Returns the maps of a material with their names.
 fn maps() -> [(&'static str, RgbImage); 3] {
     [("normal", normals(32, 32)), ("surface", surface(16, 16)), ("colour", colours(48, 48))]
 }
 
-/// Whole numbers that look random, always the same.
+/// Returns a pseudorandom 16-bit number that depends on `x` and `y` only.
 fn noise(x: u32, y: u32) -> u32 {
     let mixed = (x.wrapping_mul(0x9E37_79B1) ^ y.wrapping_mul(0x85EB_CA77)).wrapping_mul(0xC2B2_AE3D);
     (mixed ^ mixed >> 15).wrapping_mul(0x27D4_EB2F) >> 16
 }
 
-/// Normals of slopes that `slope` gives.
+/// Returns the normal map of the slopes that `slope` gives.
 fn bump_map(width: u32, height: u32, slope: impl Fn(u32, u32) -> [f64; 2]) -> RgbImage {
     RgbImage::from_fn(width, height, |x, y| {
         let [u, v] = slope(x, y);
@@ -309,7 +321,7 @@ fn bump_map(width: u32, height: u32, slope: impl Fn(u32, u32) -> [f64; 2]) -> Rg
     })
 }
 
-/// Ridges with some noise.
+/// Returns normals of ridges with some noise.
 fn normals(width: u32, height: u32) -> RgbImage {
     bump_map(width, height, |x, y| {
         let noise = |seed: u32| f64::from(noise(x + seed, y)) / 65536.0 - 0.5;
@@ -317,23 +329,23 @@ fn normals(width: u32, height: u32) -> RgbImage {
     })
 }
 
-/// Steep folds a few texels wide, as those of wrapping film.
+/// Returns normals of steep wrinkles a few texels wide, as in wrapping film.
 fn wrinkles(size: u32) -> RgbImage {
     bump_map(size, size, |x, y| {
         let (x, y) = (f64::from(x), f64::from(y));
-        let fold = (0.9 * x + 0.35 * y + 2.0 * (0.2 * y).sin()).sin();
-        [2.5 * fold * fold * fold, 1.2 * (0.5 * y - 0.7 * x).sin()]
+        let wave = (0.9 * x + 0.35 * y + 2.0 * (0.2 * y).sin()).sin();
+        [2.5 * wave * wave * wave, 1.2 * (0.5 * y - 0.7 * x).sin()]
     })
 }
 
-/// Occlusion, roughness and metal.
+/// Returns occlusion, roughness and metalness.
 fn surface(width: u32, height: u32) -> RgbImage {
     RgbImage::from_fn(width, height, |x, y| {
         image::Rgb([255 - (noise(x, y) >> 11) as u8, 80 + 5 * x as u8, 7 * y as u8])
     })
 }
 
-/// Noise that no encoder makes small.
+/// Returns noise that no encoder can compress.
 fn colours(width: u32, height: u32) -> RgbImage {
     RgbImage::from_fn(width, height, |x, y| image::Rgb([0, 1, 2].map(|c| (noise(x + 100 * c, y) >> 8) as u8)))
 }
@@ -361,7 +373,7 @@ fn jpeg(image: &RgbImage) -> Vec<u8> {
     file
 }
 
-/// A texture of one level by another writer.
+/// Encodes a texture of one level whose KTXwriter is another tool.
 fn ktx2(image: &RgbImage) -> Vec<u8> {
     let row = |y: u32, out: &mut [[f32; 4]]| {
         for (x, texel) in out.iter_mut().enumerate() {

@@ -1,4 +1,4 @@
-//! `inspect` and what it extracts.
+//! Tests of `inspect` and of the pictures that it extracts.
 
 use std::fs;
 
@@ -14,7 +14,7 @@ fn inspect(path: &std::path::Path, options: &[&str]) -> String {
 }
 
 #[test]
-fn a_texture_tells_its_levels_format_and_provenance() {
+fn shows_levels_format_and_provenance_of_a_texture() {
     let bake = bake(&[]);
     let facts: Value = serde_json::from_str(&inspect(&bake.texture("bumps.normal.ktx2"), &["--json"])).unwrap();
     assert_eq!(facts["kind"], "ktx2");
@@ -33,7 +33,7 @@ fn a_texture_tells_its_levels_format_and_provenance() {
 }
 
 #[test]
-fn a_document_tells_its_materials_and_ranges() {
+fn shows_materials_and_ranges_of_a_document() {
     let bake = bake(&["--profile", "both", "--model", "anisotropic"]);
     let facts: Value = serde_json::from_str(&inspect(&bake.document(), &["--json"])).unwrap();
     let material = &facts["materials"][0];
@@ -52,7 +52,7 @@ fn a_document_tells_its_materials_and_ranges() {
 }
 
 #[test]
-fn a_document_tells_what_is_wrong_with_it() {
+fn shows_errors_of_a_document() {
     let bake = bake(&["--profile", "pyramid"]);
     fs::remove_file(bake.texture("bumps.offset.ktx2")).unwrap();
     bake.edit(|d| {
@@ -66,7 +66,7 @@ fn a_document_tells_what_is_wrong_with_it() {
 }
 
 #[test]
-fn levels_are_extracted_as_png() {
+fn extracts_levels_as_png() {
     let bake = bake(&[]);
     let folder = bake.baked.join("levels");
     inspect(&bake.texture("bumps.normal.ktx2"), &["--extract", folder.to_str().unwrap()]);
@@ -74,7 +74,7 @@ fn levels_are_extracted_as_png() {
         let picture = image::open(folder.join(format!("bumps.normal.level{level}.png"))).unwrap();
         assert_eq!((picture.width(), picture.height()), (size, size));
     }
-    // The source's texels, up to the error of the block encoder.
+    // Texels differ from the source only by the error of the block encoder.
     let source = image::open(bake.source.join("bumps.png")).unwrap().to_rgb8();
     let level_0 = image::open(folder.join("bumps.normal.level0.png")).unwrap().to_rgb8();
     let worst = source.iter().zip(level_0.iter()).map(|(a, b)| a.abs_diff(*b)).max();
@@ -82,7 +82,7 @@ fn levels_are_extracted_as_png() {
 }
 
 #[test]
-fn floats_are_extracted_as_exr_and_all_textures_of_a_document_are() {
+fn extracts_floats_of_all_textures_of_a_document_as_exr() {
     let bake = bake(&["--target", "float", "--profile", "both", "--model", "anisotropic"]);
     let folder = bake.baked.join("levels");
     inspect(&bake.document(), &["--extract", folder.to_str().unwrap()]);
@@ -94,15 +94,15 @@ fn floats_are_extracted_as_exr_and_all_textures_of_a_document_are() {
     let document: Value = serde_json::from_slice(&fs::read(bake.document()).unwrap()).unwrap();
     let extension = &document["materials"][0]["extensions"]["ROUGHCAST_materials_roughness_pyramid"];
     let [min, max] = ["offsetMin", "offsetMax"].map(|bound| extension[bound][0].as_f64().unwrap() as f32);
-    // Ridges of slopes 0.6 and -0.5, in 8 bits.
+    // The ridges have slopes of 0.6 and -0.5, stored in 8 bits.
     let across = [0, 1].map(|x| min + image.sample(x, 1, 0).unwrap() * (max - min));
     assert!((across[0] - 0.6).abs() < 0.02 && (across[1] + 0.5).abs() < 0.02, "{across:?}");
 }
 
 #[test]
-fn two_channels_are_extracted_as_red_and_green() {
+fn extracts_two_channels_as_red_and_green() {
     if !cfg!(feature = "bc") {
-        return;
+        return crate::skip::skip("the feature `bc` is off");
     }
     let bake = bake(&["--target", "bc"]);
     let folder = bake.baked.join("levels");
@@ -113,7 +113,7 @@ fn two_channels_are_extracted_as_red_and_green() {
 }
 
 #[test]
-fn images_of_the_document_are_not_extracted_over() {
+fn refuses_to_overwrite_images_of_the_document() {
     let bake = bake(&[]);
     let picture = bake.texture("bumps.normal.level0.png");
     fs::copy(bake.source.join("bumps.png"), &picture).unwrap();
@@ -128,7 +128,7 @@ fn images_of_the_document_are_not_extracted_over() {
 }
 
 #[test]
-fn what_is_no_texture_or_document_fails() {
+fn refuses_files_that_are_not_textures_or_documents() {
     let bake = bake(&[]);
     for path in [bake.source.join("bumps.png"), bake.baked.join("missing.ktx2")] {
         let (outcome, out, err) = roughcast(&["inspect", path.to_str().unwrap()]);

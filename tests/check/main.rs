@@ -1,4 +1,4 @@
-//! `check` and `inspect` on fresh bakes, whole and damaged, and their outputs against the schemas.
+//! Tests of `check` and `inspect` on fresh and damaged bakes, and of their outputs against the schemas.
 
 mod bounded;
 mod clean;
@@ -11,6 +11,8 @@ mod inputs;
 mod inspect;
 mod matrix;
 mod schemas;
+#[path = "../common/skip.rs"]
+mod skip;
 mod storage;
 mod table;
 mod textures;

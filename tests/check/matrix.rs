@@ -1,5 +1,5 @@
-//! Fresh bakes of every fixture and every form of input, in every profile, form, target and frame: `check` finds nothing, with
-//! and without `--deep`.
+//! Tests that `check` finds nothing in fresh bakes, with and without `--deep`: of every fixture and every form of
+//! input, in every profile, form, target and frame.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,10 +11,10 @@ use tempfile::TempDir;
 use crate::fixture::roughcast;
 use crate::inputs::{COUNT, write_inputs, write_row};
 
-/// The repository's fixtures that are assets, and those made by the test.
+/// The repository's fixtures that are assets.
 const FIXTURES: [&str; 4] = ["brushed", "heights", "knobs", "waves"];
 
-/// All of them but `left_out`, in a temporary folder.
+/// Writes all fixtures and inputs except `left_out` into a temporary folder.
 fn sources(left_out: &[&str]) -> (TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
     let source = folder.path().join("source");
@@ -34,8 +34,9 @@ fn sources(left_out: &[&str]) -> (TempDir, PathBuf) {
     (folder, source)
 }
 
-/// Bakes the `count` assets at `source` with `options` and checks them with the same ones; returns what is found beyond
-/// `expected`, which are codes of findings. RC1510 tells of the bumps, which are too rough for the default bound.
+/// Bakes the `count` assets at `source` with `options` and checks them with the same options. Returns the findings
+/// whose codes are not `expected`. RC1510 is always expected, since the bumps are too rough for the default
+/// `--max-error`.
 fn findings(source: &Path, count: usize, options: &[&str], expected: &[&str]) -> Vec<String> {
     let folder = tempfile::tempdir().unwrap();
     let (source, baked) = (source.to_str().unwrap(), folder.path().to_str().unwrap());
@@ -60,8 +61,8 @@ fn findings(source: &Path, count: usize, options: &[&str], expected: &[&str]) ->
     found
 }
 
-/// Codes that are found by intent: formats other than UASTC are not for KHR_texture_basisu (RC1101), and the dual form names
-/// the KTX2 twice (RC1205).
+/// Returns the codes that are expected: KHR_texture_basisu does not allow formats other than UASTC (RC1101), and the
+/// dual form names the KTX2 twice (RC1205).
 fn intended(target: &str, form: &str) -> Vec<&'static str> {
     let mut codes = Vec::new();
     codes.extend((target != "basis").then_some("RC1101"));
@@ -69,7 +70,7 @@ fn intended(target: &str, form: &str) -> Vec<&'static str> {
     codes
 }
 
-/// Options of a bake, and codes that are found by intent.
+/// Options of a bake, and the codes that are expected.
 type Row = (Vec<&'static str>, Vec<&'static str>);
 
 fn assert_all_clean(rows: &[Row], left_out: &[&str]) {
@@ -86,7 +87,6 @@ fn targets() -> &'static [&'static str] {
     if cfg!(feature = "bc") { &["basis", "bc", "float"] } else { &["basis", "float"] }
 }
 
-/// Every combination exists.
 #[test]
 fn every_input_is_clean_in_every_profile_form_target_and_frame() {
     let mut rows: Vec<Row> = Vec::new();
@@ -103,8 +103,8 @@ fn every_input_is_clean_in_every_profile_form_target_and_frame() {
     assert_all_clean(&rows, &[]);
 }
 
-/// `--glb` with `--gltf dual` does not exist, since the dual form needs external files, nor do .glb of buffers that meshopt
-/// has compressed, whose views cannot be moved.
+/// `--glb` excludes `--gltf dual`, since the dual form needs external files. It also excludes buffers that meshopt has
+/// compressed, since their views cannot be moved.
 #[test]
 fn every_input_is_clean_as_glb() {
     let mut rows: Vec<Row> = Vec::new();
@@ -127,18 +127,18 @@ fn every_input_is_clean_for_engines_and_with_other_models_and_encoders() {
         }
     }
     for engine in ["three", "babylon", "playcanvas", "filament", "bevy", "godot"] {
-        // Presets choose among forms and targets.
+        // Presets choose forms and targets.
         rows.push((vec!["--engine", engine, "--profile", "both"], vec!["RC1101", "RC1205"]));
     }
     rows.push((vec!["--quality", "best", "--profile", "both"], vec![]));
     rows.push((vec!["--rdo", "0.5", "--profile", "both", "--model", "anisotropic"], vec![]));
     rows.push((vec!["--rdo", "6", "--profile", "both", "--model", "anisotropic"], vec![]));
-    // Without provenance nothing tells whether a texture is stale.
+    // Without provenance, textures cannot be compared with their sources.
     rows.push((vec!["--no-provenance", "--profile", "both", "--rdo", "6"], vec!["RC1501", "RC1506", "RC1008"]));
     assert_all_clean(&rows, &[]);
 }
 
-/// A map of one row, as long as maps may be.
+/// The map has one row of the maximum length.
 #[test]
 fn the_longest_row_is_clean() {
     let folder = tempfile::tempdir().unwrap();

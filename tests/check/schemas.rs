@@ -1,12 +1,11 @@
-//! The schemas accept what the commands write and refuse what is broken, and the strict reader of the extension agrees
-//! with its schema.
+//! Tests that the schemas accept the outputs of the commands and refuse broken ones, and that the strict reader of the
+//! extension agrees with its schema.
 
 use std::fs;
 
 use jsonschema::Validator;
-use roughcast::bake::EXTENSION;
-use roughcast::check::RoughnessPyramid;
 use roughcast::cli::Outcome;
+use roughcast::gltf::roughness_pyramid::{EXTENSION, RoughnessPyramid};
 use serde_json::{Value, json};
 
 use crate::fixture::{bake, roughcast};
@@ -49,9 +48,9 @@ fn extensions_satisfy_their_schema_and_the_strict_reader() {
     }
 }
 
-/// The own lobe is told where the core material holds another one, and there only.
+/// The base lobe is recorded only where the core material has a roughened lobe.
 #[test]
-fn own_lobes_satisfy_the_schema_and_the_strict_reader() {
+fn base_lobes_satisfy_the_schema_and_the_strict_reader() {
     let schema = schema(&format!("material.{EXTENSION}"));
     for (profile, model, is_recorded) in [
         ("both", "anisotropic", true),
@@ -66,7 +65,7 @@ fn own_lobes_satisfy_the_schema_and_the_strict_reader() {
 }
 
 #[test]
-fn schema_and_strict_reader_refuse_the_same() {
+fn schema_and_strict_reader_refuse_the_same_values() {
     let schema = schema(&format!("material.{EXTENSION}"));
     let whole = json!({
         "offsetTexture": { "index": 1, "texCoord": 1, "extensions": { "KHR_texture_transform": { "scale": [2, 2] } } },
@@ -115,14 +114,14 @@ fn schema_and_strict_reader_refuse_the_same() {
     for (pointer, value) in edits {
         let mut broken = whole.clone();
         broken[&pointer[1..]] = value.clone();
-        assert!(!schema.is_valid(&broken), "the schema takes {pointer} = {value}");
-        assert!(RoughnessPyramid::read(&broken).is_err(), "the reader takes {pointer} = {value}");
+        assert!(!schema.is_valid(&broken), "the schema accepts {pointer} = {value}");
+        assert!(RoughnessPyramid::read(&broken).is_err(), "the reader accepts {pointer} = {value}");
     }
     for member in whole.as_object().unwrap().keys().filter(|k| !["extras", "baseLobe"].contains(&k.as_str())) {
         let mut broken = whole.clone();
         broken.as_object_mut().unwrap().remove(member);
-        assert!(!schema.is_valid(&broken), "the schema misses no {member}");
-        assert!(RoughnessPyramid::read(&broken).is_err(), "the reader misses no {member}");
+        assert!(!schema.is_valid(&broken), "the schema does not require {member}");
+        assert!(RoughnessPyramid::read(&broken).is_err(), "the reader does not require {member}");
     }
 }
 

@@ -1,4 +1,4 @@
-//! What storage explains, and what it does not: defects are found as soon as they are larger than what the format allows.
+//! Tests of the bounds of storage errors: defects are found as soon as they are larger than the format explains.
 
 use std::fs;
 
@@ -13,14 +13,14 @@ use crate::fixture::{Bake, bake, roughcast};
 
 const EXTENSION: &str = "/materials/0/extensions/ROUGHCAST_materials_roughness_pyramid";
 
-/// Formats of offset textures that this build writes.
+/// Returns the formats of offset textures that this build writes.
 fn formats() -> Vec<Format> {
     let mut formats = vec![Format::UastcRgb, Format::Rg16Float];
     formats.extend(cfg!(feature = "bc").then_some(Format::Bc5));
     formats
 }
 
-/// A texture of 16 x 16 whose texels `texel` gives by level, column and row, in [0, 1].
+/// Encodes a texture of 16 x 16. `texel` gives texels in [0, 1] by level, column and row.
 fn texture(format: Format, metric: Metric, keys: &[Key], texel: impl Fn(u32, u32, u32) -> [f64; 3] + Sync) -> Vec<u8> {
     let level = |level: u32| {
         let row = |y: u32, out: &mut [[f32; 4]]| {
@@ -36,18 +36,18 @@ fn texture(format: Format, metric: Metric, keys: &[Key], texel: impl Fn(u32, u32
     Ktx2Writer { format, width: 16, height: 16, levels: (0..5).map(level).collect(), keys }.into_bytes().unwrap()
 }
 
-/// The keys of a texture that this tool has written.
+/// Returns the keys of a texture that this tool has written.
 fn keys(bytes: &[u8]) -> Vec<Key> {
     provenance(&Ktx2::parse(bytes).unwrap()).unwrap().keys()
 }
 
-/// Findings of kind `code`, with the levels that they are about.
+/// Returns the levels of the findings of kind `code`.
 fn levels(findings: &[Finding], code: Code) -> Vec<u32> {
     let found = findings.iter().filter(|f| f.code == code);
     found.map(|f| f.place.rsplit(' ').next().unwrap().parse().unwrap()).collect()
 }
 
-/// The number behind `label` in a message.
+/// Returns the number after `label` in a message.
 fn number(message: &str, label: &str) -> f64 {
     let (_, rest) = message.split_once(label).unwrap_or_else(|| panic!("{label}: {message}"));
     let end = rest.find(|c: char| !matches!(c, '0'..='9' | '.' | '+' | '-')).unwrap_or(rest.len());
@@ -64,7 +64,7 @@ fn check_normals(format: Format, normal: impl Fn(u32, u32, u32) -> [f64; 3] + Sy
     findings.into_list()
 }
 
-/// Rough slopes that differ from texel to texel.
+/// Returns rough slopes that differ from texel to texel.
 fn slope(x: u32, y: u32) -> [f64; 2] {
     let noise =
         |seed: u32| f64::from((x * 7919 + y * 104_729 + seed).wrapping_mul(2_654_435_761) >> 16) / 65536.0 - 0.5;
@@ -76,7 +76,7 @@ fn unit([u, v]: [f64; 2]) -> [f64; 3] {
     [-u / length, -v / length, 1.0 / length]
 }
 
-/// The mean of `value` over the texels of level 0 under a texel.
+/// Returns the mean of `value` over the footprint of a texel.
 fn mean<const N: usize>(level: u32, x: u32, y: u32, value: impl Fn(u32, u32) -> [f64; N]) -> [f64; N] {
     let edge = 1 << level;
     let mut sum = [0.0; N];
@@ -87,11 +87,11 @@ fn mean<const N: usize>(level: u32, x: u32, y: u32, value: impl Fn(u32, u32) -> 
     sum
 }
 
-/// Unit normals are clean however they are stored. Normals that somebody averaged are found: in floats at every level but the
-/// first, in blocks at the last: of coarser blocks neither the length of the line between their texels nor the few levels that
-/// their endpoints may have leave room for what is found there.
+/// Unit normals are clean in every format. Averaged normals are found at every level except the first in floats, but
+/// only at the last level in blocks: at the other levels, texels of a block are so far apart, and endpoints have so few
+/// levels, that storage explains the defect.
 #[test]
-fn averaged_normals_are_found_and_unit_normals_are_not() {
+fn finds_averaged_normals_but_no_unit_normals() {
     for (format, expected) in [(Format::UastcRgb, vec![4]), (Format::Rgba16Float, vec![1, 2, 3, 4])] {
         let normalised = |level, x, y| unit(mean(level, x, y, slope));
         assert_eq!(levels(&check_normals(format, normalised), Code::NormalLength), [] as [u32; 0], "{format:?}");
@@ -101,9 +101,9 @@ fn averaged_normals_are_found_and_unit_normals_are_not() {
     }
 }
 
-/// Normals that point all the same way are found as soon as they are shorter than rounding makes them.
+/// Equal normals are found as soon as they are shorter than rounding explains.
 #[test]
-fn lengths_just_outside_the_bound_are_found() {
+fn finds_lengths_just_outside_the_bound() {
     for (format, step) in [(Format::UastcRgb, 2.0 / 255.0), (Format::Rgba16Float, 0.002)] {
         let check = |length: f64| check_normals(format, |_, _, _| unit([0.5, -0.3]).map(|c| c * length));
         let lengths = (0..40).map(|n| 1.0 - 0.25 * step * f64::from(n));
@@ -115,7 +115,7 @@ fn lengths_just_outside_the_bound_are_found() {
     }
 }
 
-/// A pyramid bake whose offset texture is replaced by one of `texel`, encoded as `format`.
+/// Bakes a pyramid and replaces its offset texture by one of `texel`, encoded as `format`.
 fn with_offsets(format: Format, texel: impl Fn(u32, u32, u32) -> [f64; 3] + Sync) -> Bake {
     let bake = bake(&["--profile", "pyramid", "--model", "none", "--gltf", "strict"]);
     let path = bake.texture("bumps.offset.ktx2");
@@ -135,9 +135,9 @@ fn variance_messages(bake: &Bake) -> Vec<String> {
     findings.map(|f| f["message"].as_str().unwrap().to_owned()).collect()
 }
 
-/// Means that storage rounds are clean; one that is off by just more than rounding explains is found.
+/// Rounded means are clean. A mean is found if its error is just larger than rounding explains.
 #[test]
-fn means_just_outside_the_bound_are_found() {
+fn finds_means_just_outside_the_bound() {
     for format in formats() {
         let rough = with_offsets(format, |level, x, y| {
             let [u, v] = mean(level, x, y, slope);
@@ -154,15 +154,15 @@ fn means_just_outside_the_bound_are_found() {
         let coordinate = |label: &str| number(message, label);
         let deviation = coordinate("found (") - coordinate("mean (");
         let limit = number(message, "storage explains ");
-        // A step of a texel is four of its range, and printed numbers are rounded.
+        // The range is 4, so a step of a texel is four steps of the value. Printed numbers are rounded.
         assert!(deviation > limit - 1e-4 && deviation < limit + 4.0 * 1.5 * step, "{format:?}: {message}");
     }
 }
 
-/// D that somebody filtered loses variance that offsets do not gain: all of it is missed as soon as it is more than storage
-/// explains.
+/// D that somebody filtered loses variance that offsets do not gain: all of it is missed as soon as it is more than
+/// storage explains.
 #[test]
-fn variance_just_outside_the_bound_is_found() {
+fn finds_variance_just_outside_the_bound() {
     let targets: &[&str] = if cfg!(feature = "bc") { &["basis", "bc", "float"] } else { &["basis", "float"] };
     for target in targets {
         let options = ["--profile", "pyramid", "--model", "anisotropic", "--gltf", "strict", "--target", target];
@@ -183,9 +183,9 @@ fn variance_just_outside_the_bound_is_found() {
     }
 }
 
-/// `--fix` bakes again what has lost its variance or its length, and the bake is clean.
+/// `--fix` bakes textures with wrong variance or lengths again, and the new bake is clean.
 #[test]
-fn what_is_outside_the_bounds_is_cured_by_a_bake() {
+fn a_bake_fixes_variance_and_lengths() {
     let bake = bake(&["--profile", "both", "--model", "anisotropic"]);
     for name in ["bumps.offset.ktx2", "bumps.normal.ktx2"] {
         let path = bake.texture(name);

@@ -1,4 +1,4 @@
-//! The table of findings: documented, and each with a failing fixture.
+//! Tests that each finding is documented and has a failing fixture.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -14,9 +14,9 @@ fn every_code_has_a_fixture() {
     assert_eq!(tested, all);
 }
 
-/// Each has a heading `### <code> <severity>: <title>`, in order, a cause and a remedy.
+/// Each finding has a heading `### <code> <severity>: <title>`, in order, a cause and a remedy.
 #[test]
-fn the_documentation_agrees_with_the_table() {
+fn documentation_agrees_with_the_table() {
     let text = fs::read_to_string("docs/findings.md").unwrap();
     let sections: Vec<&str> = text.split("\n### ").skip(1).collect();
     let headings: Vec<&str> = sections.iter().map(|s| s.lines().next().unwrap()).collect();

@@ -1,4 +1,4 @@
-//! One damaged KTX2 for each finding about textures.
+//! Tests with one damaged KTX2 for each finding about textures.
 
 use std::fs;
 use std::sync::LazyLock;
@@ -48,7 +48,7 @@ fn replace(file: &mut [u8], from: &[u8], to: &[u8]) {
     file[at..at + to.len()].copy_from_slice(to);
 }
 
-/// Offset and stored length of level 0.
+/// Returns offset and stored length of level 0.
 fn level_0(file: &[u8]) -> (usize, usize) {
     (word(file, INDEX), word(file, INDEX + 8))
 }
@@ -77,7 +77,7 @@ fn provenance() -> Provenance {
     }
 }
 
-/// Normals in half floats, of which the first component is not a number: no writer of ours would encode them.
+/// Returns normals in half floats whose first component is NaN. Our writer would refuse to encode them.
 fn not_finite() -> Vec<u8> {
     let level = |size: usize| [0x7e00_u16, 0x3800, 0x3c00, 0x3c00].map(u16::to_le_bytes).concat().repeat(size * size);
     let (format, keys) = (Format::Rgba16Float, provenance().keys());
@@ -90,8 +90,8 @@ fn with_key(file: &[u8], key: &str, value: &str) -> Vec<u8> {
     write(Format::UastcRgb, 16, &levels, &[Key { key: key.into(), value: value.into() }])
 }
 
-/// Provenance of a roughness texture with a bound of 0.1.
-fn judged(lobe_errors: &[f32]) -> String {
+/// Returns the provenance of a roughness texture with `maxError` 0.1.
+fn roughness_provenance(lobe_errors: &[f32]) -> String {
     json!({
         "version": "0.1.0", "content": "roughness", "settings": { "maxError": 0.1 }, "lobeErrors": lobe_errors,
         "sources": []
@@ -107,7 +107,7 @@ fn uastc(change: impl FnOnce(&mut Vec<u8>)) -> Vec<u8> {
     file
 }
 
-/// A damaged file for each finding, and the place where it is to be found.
+/// A damaged file for each finding, and the expected place of the finding.
 pub const FIXTURES: &[(Code, &str, Damage)] = &[
     (Code::UnreadableTexture, "", || uastc(|f| f.truncate(100))),
     (Code::IncompleteChain, "header", || uastc(|f| set(f, LEVELS, 4))),
@@ -152,7 +152,7 @@ pub const FIXTURES: &[(Code, &str, Damage)] = &[
             f[offset..offset + length].fill(0xFF);
         })
     }),
-    // (0, 0, 1/2)
+    // The normal is (0, 0, 1/2).
     (Code::NormalLength, "level 1", || normals([0.5, 0.5, 0.75, 1.0], Format::UastcRgb)),
     (Code::NotFinite, "level 0", not_finite),
     (Code::NoProvenance, "key roughcast", || with_key(&UASTC, "KTXwriter", "roughcast 0.1.0")),
@@ -162,7 +162,7 @@ pub const FIXTURES: &[(Code, &str, Damage)] = &[
     (Code::BadProvenance, "key roughcast", || {
         uastc(|f| replace(f, b"\"version\":\"0.1.0\"", b"\"version\":\"0.1.x\""))
     }),
-    (Code::LobeError, "key roughcast", || with_key(&UASTC, PROVENANCE_KEY, &judged(&[0.05, 0.11]))),
+    (Code::LobeError, "key roughcast", || with_key(&UASTC, PROVENANCE_KEY, &roughness_provenance(&[0.05, 0.11]))),
     (Code::OtherVersion, "key roughcast", || uastc(|f| replace(f, b"\"version\":\"0.1.0\"", b"\"version\":\"0.0.9\""))),
 ];
 
@@ -185,21 +185,21 @@ fn whole_textures_are_clean() {
 }
 
 #[test]
-fn each_damage_is_found_at_its_place() {
+fn finds_each_damage_at_its_place() {
     for (code, place, damage) in FIXTURES {
         let found = check(&damage());
         assert!(found.contains(&(*code, (*place).to_owned())), "{code} {place}: {found:?}");
     }
 }
 
-/// Codes that only decoding tells: 14xx.
+/// Returns whether a finding needs decoded levels: 14xx.
 fn is_of_texels(code: Code) -> bool {
     (1400..1500).contains(&(code as u16))
 }
 
-/// Without --deep, levels are not looked at: zeros in their place make no difference, and nothing else is lost.
+/// Without `--deep`, levels are not used: zeros in their place make no difference, and all other findings are reported.
 #[test]
-fn what_is_not_of_texels_is_found_in_heads() {
+fn finds_all_but_texel_errors_without_the_levels() {
     for (code, place, damage) in FIXTURES {
         let file = damage();
         let found = check_to(false, &file);
@@ -211,7 +211,7 @@ fn what_is_not_of_texels_is_found_in_heads() {
         for level in parsed.levels() {
             head[level.offset as usize..][..level.length as usize].fill(0);
         }
-        // Where levels reach into other sections, zeros would damage those.
+        // If a level overlaps another section, zeros would damage that section.
         if *code != Code::LevelOrder {
             assert_eq!(check_to(false, &head), found, "{code}");
         }
@@ -219,12 +219,12 @@ fn what_is_not_of_texels_is_found_in_heads() {
 }
 
 #[test]
-fn errors_within_the_bound_are_no_finding() {
-    let found = check(&with_key(&UASTC, PROVENANCE_KEY, &judged(&[0.05, 0.1])));
+fn lobe_errors_within_the_bound_are_no_finding() {
+    let found = check(&with_key(&UASTC, PROVENANCE_KEY, &roughness_provenance(&[0.05, 0.1])));
     assert!(found.iter().all(|(code, _)| *code != Code::LobeError), "{found:?}");
 }
 
-/// Whatever is cut off, something is found and nothing panics.
+/// A truncated file has an error and causes no panic.
 #[test]
 fn every_truncation_is_an_error() {
     for length in 0..UASTC.len() {
@@ -233,9 +233,9 @@ fn every_truncation_is_an_error() {
     }
 }
 
-/// No byte may make it panic.
+/// No changed byte causes a panic.
 #[test]
-fn every_changed_byte_is_survived() {
+fn survives_every_changed_byte() {
     for at in 0..UASTC.len().min(600) {
         for value in [0, 1, 0x7F, 0xFF] {
             check(&uastc(|f| f[at] = value));
@@ -243,9 +243,9 @@ fn every_changed_byte_is_survived() {
     }
 }
 
-/// Another writer's file is read, and not judged.
+/// A file of another writer has no findings unless it cannot be read.
 #[test]
-fn foreign_textures_are_only_read() {
+fn only_reads_textures_of_other_writers() {
     let mut file = with_key(&UASTC, "KTXwriter", "toktx v4.3");
     set_descriptor(&mut file, 10, 2);
     assert_eq!(check(&file), []);

@@ -1,4 +1,5 @@
-//! `bake --nearest`: what the report says of levels that can be sampled, and what `--trim` leaves of the textures.
+//! Tests of `bake --nearest`, which reports the levels that can be sampled, and of `--trim`, which drops all finer
+//! levels.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,8 +12,8 @@ use tempfile::TempDir;
 use crate::fixture::{findings, roughcast, write_asset};
 use crate::schemas::{assert_valid, schema};
 
-/// The triangle of the other tests, whose legs of one unit are one repeat of a map of 16 x 16, in a scene of `nodes`
-/// that draw `meshes` with the materials given.
+/// Writes the triangle of the other tests into a scene, and applies `edit` to the document. The triangle's legs are one
+/// unit long, which is one repeat of a map of 16 x 16 texels.
 fn asset(edit: impl Fn(&mut Value)) -> (TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
     let source = folder.path().join("source");
@@ -26,14 +27,14 @@ fn asset(edit: impl Fn(&mut Value)) -> (TempDir, PathBuf) {
     (folder, source)
 }
 
-/// A pixel covers `pixel` units: under 90 degrees and a slit, 2 d / 1000 / 2.
+/// Returns options under which a pixel covers `pixel` units: 2 d / 1000 / 2 at 90 degrees and an aspect of almost 0.
 fn view(pixel: f64) -> Vec<String> {
     let distance = (1000.0 * pixel).to_string();
     let options = ["--nearest", &distance, "--screen-height", "1000", "--fov", "90", "--aspect", "1e-9"];
     options.map(str::to_owned).to_vec()
 }
 
-/// Bakes the asset at `source` beside it; returns the folder and the report.
+/// Bakes the asset at `source` into the sibling folder `name`. Returns that folder and the report.
 fn bake(source: &Path, name: &str, options: &[String]) -> (PathBuf, Value) {
     let baked = source.with_file_name(name);
     let paths = ["bake", source.to_str().unwrap(), "-o", baked.to_str().unwrap(), "--json"];
@@ -49,7 +50,7 @@ fn trimmed(pixel: f64) -> Vec<String> {
     [view(pixel), vec!["--trim".to_owned()]].concat()
 }
 
-/// (width, levels, trimmed) of each texture.
+/// Returns (width, levels, trimmed) of each texture.
 fn sizes(report: &Value) -> Vec<[u64; 3]> {
     let number = |t: &Value, key: &str| t.get(key).map_or(0, |n| n.as_u64().unwrap());
     let textures = report["textures"].as_array().unwrap();
@@ -57,7 +58,7 @@ fn sizes(report: &Value) -> Vec<[u64; 3]> {
 }
 
 #[test]
-fn the_report_tells_the_finest_level_and_changes_nothing() {
+fn reports_the_finest_level_without_changing_textures() {
     let (_folder, source) = asset(|_| {});
     for (pixel, level) in [(0.01, 0), (1.0 / 16.0, 0), (2.02 / 16.0, 1), (4.02 / 16.0, 2), (1000.0, 4)] {
         let (_, report) = bake(&source, "baked", &view(pixel));
@@ -71,7 +72,7 @@ fn the_report_tells_the_finest_level_and_changes_nothing() {
 }
 
 #[test]
-fn trimmed_textures_hold_the_coarser_levels_of_whole_ones() {
+fn trimmed_textures_have_the_coarser_levels_of_whole_textures() {
     let (_folder, source) = asset(|_| {});
     for profile in ["portable", "both"] {
         for target in ["basis", "float"] {
@@ -88,7 +89,7 @@ fn trimmed_textures_hold_the_coarser_levels_of_whole_ones() {
                     let bytes = fs::read(folder.join(path)).unwrap();
                     Ktx2::parse(&bytes).unwrap().decode_level(level).unwrap()
                 };
-                // Ranges of the pyramid profile fit what is written, so its texels differ.
+                // Ranges of the pyramid profile depend on the written levels, so its texels differ.
                 if texture.get("range").is_none() {
                     assert_eq!(level(&baked, 0).samples, level(&whole, 1).samples, "{path}");
                     assert_eq!(level(&baked, 3).samples, level(&whole, 4).samples, "{path}");
@@ -104,9 +105,9 @@ fn trimmed_textures_hold_the_coarser_levels_of_whole_ones() {
     }
 }
 
-/// KHR_texture_basisu wants multiples of 4; half floats do not.
+/// KHR_texture_basisu requires multiples of 4; half floats do not.
 #[test]
-fn trimming_stops_at_the_last_size_that_the_format_allows() {
+fn trimming_stops_at_the_smallest_size_that_the_format_allows() {
     let (_folder, source) = asset(|_| {});
     assert_eq!(sizes(&bake(&source, "baked", &trimmed(1000.0)).1), [[4, 3, 2]; 3]);
     let float = [trimmed(1000.0), vec!["--target".into(), "float".into()]].concat();
@@ -114,16 +115,17 @@ fn trimming_stops_at_the_last_size_that_the_format_allows() {
 }
 
 #[test]
-fn a_scaled_node_magnifies() {
+fn a_scaled_node_needs_a_finer_level() {
     let (_folder, source) = asset(|document| document["nodes"][0]["scale"] = json!([2, 2, 2]));
     let (_, report) = bake(&source, "baked", &trimmed(4.02 / 16.0));
     assert_eq!(report["layers"][0]["finest"]["level"], 1);
     assert_eq!(sizes(&report), [[8, 4, 1]; 3]);
 }
 
-/// Materials on a small mesh and on one twice as large share their textures: levels go as far as the larger needs.
+/// Materials on a small mesh and on a mesh twice as large share their textures, which keep the levels of the larger
+/// mesh.
 #[test]
-fn a_shared_texture_keeps_what_any_of_its_materials_needs() {
+fn a_shared_texture_keeps_the_levels_of_all_its_materials() {
     let (_folder, source) = asset(|document| {
         for array in ["meshes", "materials"] {
             let first = document[array][0].clone();
@@ -140,7 +142,7 @@ fn a_shared_texture_keeps_what_any_of_its_materials_needs() {
 }
 
 #[test]
-fn nothing_is_trimmed_where_the_scene_does_not_tell() {
+fn trims_nothing_if_the_scene_does_not_show_the_size() {
     type Edit = fn(&mut Value);
     let cases: [(&str, Edit); 5] = [
         ("is in no scene", |d| d["scenes"] = json!([])),

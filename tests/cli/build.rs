@@ -1,4 +1,4 @@
-//! What build systems want: dependencies, a build script, completions and manual pages.
+//! What build systems need: depfiles, a build script, completions and manual pages.
 
 use std::fs;
 use std::path::Path;
@@ -8,7 +8,7 @@ use tempfile::tempdir;
 
 use super::process::{copy, fixtures, roughcast_in};
 
-/// Targets and prerequisites as Make reads them.
+/// Returns targets and prerequisites as Make reads them.
 fn rules(text: &str) -> Vec<(String, Vec<String>)> {
     let text = text.replace("\\\n", " ");
     let names = |text: &str| -> Vec<String> {
@@ -36,7 +36,7 @@ fn depfiles_name_what_each_output_was_made_from() {
     assert!(target.starts_with("o/") && has(".gltf") && has(".png") && has("my assets #1/roughcast.toml"), "{rules:?}");
 }
 
-/// Make asks again as long as an output is older than an input.
+/// Make runs a rule again while an output is older than an input.
 #[test]
 fn outputs_from_the_cache_are_newer_than_touched_inputs() {
     let folder = tempdir().expect("a folder");
@@ -54,7 +54,7 @@ fn outputs_from_the_cache_are_newer_than_touched_inputs() {
 }
 
 #[test]
-fn the_build_script_bakes_and_tells_cargo_its_inputs() {
+fn the_build_script_bakes_and_reports_its_inputs_to_cargo() {
     let folder = tempdir().expect("a folder");
     copy(&fixtures().join("brushed"), &folder.path().join("assets"));
     let tests = std::env::current_exe().expect("a path");
@@ -72,7 +72,7 @@ fn the_build_script_bakes_and_tells_cargo_its_inputs() {
 }
 
 #[test]
-fn completions_and_manual_pages_know_every_command() {
+fn completions_and_manual_pages_list_every_command() {
     let folder = tempdir().expect("a folder");
     let commands = ["bake", "init", "map", "plan", "check", "inspect", "compare", "render"];
     for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {

@@ -1,51 +1,11 @@
-//! The same bytes from the same input: golden hashes, thread counts, second runs, and assets without bumps.
+//! Tests that equal inputs give equal bytes: for any number of threads, in a second run, and for assets without bumps.
 
-use std::collections::BTreeMap;
-use std::fmt::Write;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use tempfile::tempdir;
 
 use super::process::{bake, files, fixtures, hashes};
-
-/// Set to 1 to write the hashes of this build instead of comparing with them.
-const BLESS: &str = "ROUGHCAST_BLESS";
-
-fn goldens() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/goldens.txt")
-}
-
-/// Baked fixtures, in every form for every target whose encoder is ours. (The encoder of `bc` picks its instructions by
-/// the processor.) What changes a hash on purpose says so in CHANGELOG.md: caches and version control see it.
-#[test]
-fn outputs_match_their_golden_hashes() {
-    let mut found = String::new();
-    for form in ["fallback", "strict", "dual"] {
-        for target in ["basis", "float"] {
-            let folder = tempdir().expect("a folder");
-            let options = ["--gltf", form, "--target", target, "--profile", "both", "--no-provenance"];
-            bake(&fixtures(), folder.path(), &options);
-            for (name, hash) in hashes(folder.path()) {
-                writeln!(found, "{hash}  {form}/{target}/{name}").expect("text");
-            }
-        }
-    }
-    if std::env::var(BLESS).as_deref() == Ok("1") {
-        fs::write(goldens(), &found).expect("tests/goldens.txt can be written");
-    }
-    let expected = fs::read_to_string(goldens()).expect("tests/goldens.txt");
-    let lines = |text: &str| -> BTreeMap<String, String> {
-        text.lines().filter_map(|l| l.split_once("  ")).map(|(hash, name)| (name.into(), hash.into())).collect()
-    };
-    let (expected, found) = (lines(&expected), lines(&found));
-    let differing: Vec<_> = expected
-        .keys()
-        .chain(found.keys().filter(|name| !expected.contains_key(*name)))
-        .filter(|name| expected.get(*name) != found.get(*name))
-        .collect();
-    assert!(differing.is_empty(), "{BLESS}=1 accepts these changes, which belong into the changelog: {differing:#?}");
-}
 
 #[test]
 fn bytes_do_not_depend_on_threads() {
@@ -56,7 +16,7 @@ fn bytes_do_not_depend_on_threads() {
 }
 
 #[test]
-fn a_second_bake_writes_the_same_over_the_first() {
+fn a_second_bake_writes_equal_bytes() {
     let folder = tempdir().expect("a folder");
     bake(&fixtures(), folder.path(), &[]);
     let first = hashes(folder.path());
@@ -65,7 +25,7 @@ fn a_second_bake_writes_the_same_over_the_first() {
 }
 
 #[test]
-fn an_asset_without_bumps_comes_back_byte_for_byte() {
+fn an_asset_without_bumps_is_copied_byte_for_byte() {
     let (source, baked) = (tempdir().expect("a folder"), tempdir().expect("a folder"));
     let text = "{ \"asset\" : {\"version\":\"2.0\"},\n\t\"images\":[{\"uri\":\"a%20picture.png\"}],\r\n \
         \"textures\" : [ {\"source\":0} ], \"materials\":[{\"extras\":{\"n\":[1.50,1e+3,-0.0]},\
@@ -85,7 +45,7 @@ fn an_asset_without_bumps_comes_back_byte_for_byte() {
     assert_eq!(files(baked.path()).len(), 3);
 }
 
-/// A GLB without a BIN chunk.
+/// Returns a GLB without a BIN chunk.
 fn glb(text: &str) -> Vec<u8> {
     let json = format!("{text:width$}", width = text.len().next_multiple_of(4));
     let mut bytes = b"glTF".to_vec();

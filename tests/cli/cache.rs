@@ -1,4 +1,4 @@
-//! The cache: what was baked is not baked again, and what comes from it is what a bake writes.
+//! Tests that cached assets are not baked again, and that outputs from the cache equal those of a bake.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -23,7 +23,7 @@ fn run(folder: &Path, options: &str) -> Run {
     roughcast_in(folder, format!("bake assets -o out --cache cache --json {options}").split_whitespace())
 }
 
-/// Bakes and returns how each asset ended: brushed, flat, knobs, waves.
+/// Bakes and returns the status of each asset: brushed, flat, knobs, waves.
 fn statuses(folder: &Path, options: &str) -> Vec<String> {
     let run = run(folder, options);
     assert_eq!((run.code, run.err.as_str()), (0, ""), "{options}");
@@ -55,7 +55,7 @@ fn a_second_run_bakes_nothing_and_touches_nothing() {
     let times = modified();
     assert_eq!(statuses(folder, ""), ["cached"; 4]);
     assert_eq!(modified(), times, "outputs that are right are written");
-    // Touched without a change; and outputs that are gone or wrong.
+    // Inputs with a new time but equal contents, and outputs that are missing or wrong.
     let image = folder.join("assets/knobs/textures/surface.png");
     fs::write(&image, fs::read(&image).expect("an image")).expect("a file");
     fs::remove_dir_all(folder.join("out/brushed")).expect("a folder");
@@ -112,7 +112,7 @@ fn a_corrupted_entry_is_dropped_with_a_warning_and_baked_again() {
         let run = run(folder, "");
         assert_eq!(run.code, 0, "{}", run.err);
         assert_eq!(run.err.matches("warning: assets/").count(), 4, "{}", run.err);
-        assert!(run.err.contains("dropped it, and bake again"), "{}", run.err);
+        assert!(run.err.contains("the damaged file was removed"), "{}", run.err);
         assert_eq!(of_report(&run), ["baked", "copied", "baked", "baked"]);
         assert_eq!(hashes(&folder.join("out")), before);
         assert_eq!(statuses(folder, ""), ["cached"; 4]);
@@ -120,7 +120,7 @@ fn a_corrupted_entry_is_dropped_with_a_warning_and_baked_again() {
 }
 
 #[test]
-fn blobs_that_are_gone_are_baked_again() {
+fn missing_blobs_are_baked_again() {
     let scene = scene();
     let folder = scene.path();
     statuses(folder, "");
@@ -133,7 +133,7 @@ fn blobs_that_are_gone_are_baked_again() {
 }
 
 #[test]
-fn the_cache_is_bounded() {
+fn the_cache_stays_within_its_size() {
     let scene = scene();
     let folder = scene.path();
     statuses(folder, "");
@@ -191,7 +191,7 @@ fn a_cache_that_cannot_be_written_does_not_stop_a_bake() {
 
 #[test]
 #[cfg(not(feature = "object-store"))]
-fn a_build_without_stores_says_so() {
+fn a_build_without_object_stores_rejects_their_urls() {
     let run = roughcast_in(scene().path(), "bake assets -o out --cache s3://bucket/prefix".split(' '));
     assert!(run.code == 2 && run.err.contains("build it with --features object-store"), "{}", run.err);
 }

@@ -1,4 +1,5 @@
-//! `roughcast compare`: its four kinds of files agree, are well formed, and but for the times never change.
+//! Tests that the four kinds of files of `roughcast compare` agree, are well formed and, apart from times, are
+//! reproducible.
 
 use std::fs;
 use std::path::Path;
@@ -15,7 +16,7 @@ fn compare(input: &Path, output: &Path, options: &[&str]) -> Run {
     run
 }
 
-/// Fails unless every tag of `text` is closed in its turn and attributes have no markup in them.
+/// Fails unless every tag of `text` is closed in order and attributes contain no markup.
 fn assert_well_formed(text: &str) {
     let text = text.strip_prefix("<!DOCTYPE html>").unwrap_or(text);
     let mut open: Vec<&str> = Vec::new();
@@ -33,7 +34,7 @@ fn assert_well_formed(text: &str) {
     assert!(open.is_empty(), "{open:?}");
 }
 
-/// The report without times.
+/// Returns the report without times.
 fn report(folder: &Path) -> Value {
     let text = fs::read_to_string(folder.join("compare.json")).expect("a report");
     let mut report: Value = serde_json::from_str(&text).expect("JSON");
@@ -46,7 +47,7 @@ fn report(folder: &Path) -> Value {
 }
 
 #[test]
-fn a_bare_map_is_charted() {
+fn a_standalone_map_is_charted() {
     let folder = tempdir().expect("a folder");
     let input = fixtures().join("maps/line_normal.png");
     let run = compare(&input, folder.path(), &["--roughness", "0.3"]);
@@ -90,7 +91,7 @@ fn the_numbers_do_not_depend_on_threads() {
 }
 
 #[test]
-fn a_hostile_name_is_text() {
+fn hostile_names_are_escaped() {
     let folder = tempdir().expect("a folder");
     copy(&fixtures().join("brushed"), folder.path());
     let path = folder.path().join("brushed.gltf");
@@ -114,7 +115,7 @@ fn a_hostile_name_is_text() {
 }
 
 #[test]
-fn bad_input_is_one_clear_error() {
+fn bad_input_gives_one_clear_error() {
     let folder = tempdir().expect("a folder");
     let out = folder.path().join("out");
     let out = out.to_str().expect("a path in UTF-8");

@@ -1,4 +1,4 @@
-//! `roughcast.toml`: found, read, overridden, shown.
+//! Tests how `roughcast.toml` is found, read, overridden and printed.
 
 use std::fs;
 
@@ -7,7 +7,7 @@ use tempfile::{TempDir, tempdir};
 
 use super::process::{copy, done, files, fixtures, hashes, run};
 
-/// `assets/brushed`, `assets/props/waves`, and `assets/roughcast.toml` with `config`.
+/// Writes `assets/brushed`, `assets/props/waves`, and `assets/roughcast.toml` with `config`.
 fn scene(config: &str) -> TempDir {
     let folder = tempdir().expect("a folder");
     let assets = folder.path().join("assets");
@@ -18,7 +18,7 @@ fn scene(config: &str) -> TempDir {
 }
 
 #[test]
-fn the_file_says_what_flags_would_say() {
+fn settings_of_the_file_equal_those_of_flags() {
     let scene = scene("model = 'isotropic'\ntarget = 'float'\n[[override]]\nfiles = 'props/**'\ngltf = 'strict'\n");
     let folder = scene.path();
     done(folder, "bake assets -o by-file -q");
@@ -27,7 +27,7 @@ fn the_file_says_what_flags_would_say() {
     done(folder, &format!("bake assets/props -o by-flags/props -q --no-config {props}"));
     let by_file = hashes(&folder.join("by-file"));
     assert_eq!(by_file, hashes(&folder.join("by-flags")));
-    // One asset of the folder is baked as with all others.
+    // An asset that is baked alone gets the settings that it has among the others.
     done(folder, "bake assets/props/waves.glb -o alone/props -q");
     for (name, hash) in hashes(&folder.join("alone")) {
         assert_eq!(by_file.get(&name), Some(&hash), "{name}");
@@ -35,7 +35,7 @@ fn the_file_says_what_flags_would_say() {
 }
 
 #[test]
-fn flags_win_and_every_value_tells_where_it_is_from() {
+fn flags_win_and_every_value_names_its_origin() {
     let config =
         "max-error = 0.5\nmodel = 'none'\n[[override]]\nfiles = 'waves.glb'\nengine = 'bevy'\nmodel = 'isotropic'\n";
     let scene = scene(config);
@@ -74,7 +74,7 @@ fn the_file_may_name_the_output() {
 }
 
 #[test]
-fn a_named_file_or_none() {
+fn reads_a_named_file_or_no_file() {
     let scene = scene("modle = 'none'\n");
     let folder = scene.path();
     fs::write(folder.join("other.toml"), "profile = 'pyramid'\n").expect("a file");
@@ -94,12 +94,12 @@ fn a_named_file_or_none() {
 }
 
 #[test]
-fn reports_tell_settings_of_their_own() {
+fn reports_list_settings_that_differ() {
     let scene = scene("[[override]]\nfiles = 'waves.glb'\nmodel = 'none'\n");
     let report: Value = serde_json::from_str(&done(scene.path(), "bake assets -o out --json")).expect("JSON");
     assert_eq!(report["settings"]["model"], "auto");
-    let own = |index: usize| report["assets"][index].get("settings").map(|s| s["model"].clone());
-    assert_eq!((own(0), own(1)), (None, Some("none".into())));
+    let model = |index: usize| report["assets"][index].get("settings").map(|s| s["model"].clone());
+    assert_eq!((model(0), model(1)), (None, Some("none".into())));
 }
 
 #[test]
@@ -118,15 +118,15 @@ fn init_writes_a_file_that_changes_nothing_and_never_overwrites() {
 }
 
 #[test]
-fn the_schema_knows_every_setting_and_its_default() {
+fn the_schema_has_every_setting_and_its_default() {
     let schema: Value = serde_json::from_str(include_str!("../../schemas/roughcast.schema.json")).expect("JSON");
     let validator = jsonschema::validator_for(&schema).expect("a schema");
     let settings = schema["$defs"]["settings"]["properties"].as_object().expect("properties");
-    let defaults = roughcast::project::Values::defaults().said();
+    let defaults = roughcast::project::Values::defaults().to_members();
     let names = roughcast::project::Values::names();
     assert!(settings.keys().eq(names.iter()), "{:?}", settings.keys());
     for (name, property) in settings {
-        // Whole numbers are numbers too.
+        // Whole numbers are valid as numbers, too.
         let text = |value: Option<&Value>| {
             value.map_or_else(String::new, |v| v.to_string().replace(".0,", ",").replace(".0]", "]"))
         };

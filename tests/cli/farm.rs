@@ -1,4 +1,4 @@
-//! The examples for schedulers do what they say: their command lines are run as the scheduler would run them.
+//! Runs the command lines of the examples for schedulers as a scheduler would run them.
 
 use std::env;
 use std::fs;
@@ -20,7 +20,7 @@ fn yaml(name: &str) -> Value {
     serde_saphyr::from_str(&fs::read_to_string(example(name)).expect("an example")).expect("YAML")
 }
 
-/// Two assets, and the folder of the reports.
+/// Writes two assets and the folder of reports.
 fn scene() -> TempDir {
     let folder = tempdir().expect("a folder");
     for asset in ["brushed", "heights"] {
@@ -30,7 +30,7 @@ fn scene() -> TempDir {
     folder
 }
 
-/// Runs `line` in the shell, with the tool on its PATH.
+/// Runs `line` in the shell with the tool on its PATH.
 fn shell(folder: &Path, line: &str, variables: &[(&str, &str)]) -> Run {
     let tool = Path::new(env!("CARGO_BIN_EXE_roughcast")).parent().expect("a folder").to_owned();
     let paths = env::var_os("PATH").unwrap_or_default();
@@ -46,14 +46,14 @@ fn done(folder: &Path, line: &str, variables: &[(&str, &str)]) -> String {
     run.out
 }
 
-/// The lines of a comment that are command lines, by how they begin.
+/// Returns the first command line in the comments of an example that begins with `start`.
 fn command_line(name: &str, start: &str) -> String {
     let text = fs::read_to_string(example(name)).expect("an example");
     let mut lines = text.lines().filter_map(|line| line.strip_prefix("#   "));
     lines.find(|line| line.starts_with(start)).unwrap_or_else(|| panic!("{name} has no {start}")).to_owned()
 }
 
-/// What a bake without a farm writes.
+/// Returns the outputs of a bake without a scheduler.
 fn whole(folder: &Path) -> std::collections::BTreeMap<String, String> {
     let run = roughcast_in(folder, "bake assets -o whole -q".split(' '));
     assert_eq!((run.code, run.err.as_str()), (0, ""));
@@ -61,7 +61,7 @@ fn whole(folder: &Path) -> std::collections::BTreeMap<String, String> {
 }
 
 #[test]
-fn slurm() {
+fn slurm_example_runs_every_job() {
     let script = example("slurm.sh");
     let text = fs::read_to_string(&script).expect("an example");
     assert!(text.contains("\n#SBATCH --array=0-7\n") && text.contains(" --shard /8 "));
@@ -84,7 +84,7 @@ fn slurm() {
 }
 
 #[test]
-fn kubernetes() {
+fn kubernetes_example_runs_every_job() {
     let job = yaml("kubernetes.yaml");
     let spec = &job["spec"];
     let container = &spec["template"]["spec"]["containers"][0];
@@ -109,7 +109,7 @@ fn kubernetes() {
 }
 
 #[test]
-fn github() {
+fn github_example_runs_every_job() {
     let jobs = &yaml("github.yml")["jobs"];
     let line = |job: &str| -> String {
         let steps = jobs[job]["steps"].as_array().expect("steps").iter();
@@ -119,7 +119,7 @@ fn github() {
     let scene = scene();
     let folder = scene.path();
     done(folder, &line("plan"), &[]);
-    // Each part on a machine of its own; artifacts are carried to the last one.
+    // Each part runs on a machine of its own. Artifacts are copied to the last one.
     let merging = tempdir().expect("a folder");
     fs::copy(folder.join("plan.json"), merging.path().join("plan.json")).expect("a file");
     for part in parts {

@@ -1,4 +1,5 @@
-//! The command as its users run it: a process, folders, exit codes, bytes. One binary, since each costs a link.
+//! Tests the command as its users run it: processes, folders, exit codes, bytes. They are one program, because each
+//! program takes time to link.
 
 mod bad_input;
 mod build;
@@ -8,6 +9,7 @@ mod compare;
 mod config;
 mod farm;
 mod fixtures;
+mod goldens;
 mod merge;
 mod notes;
 mod plan;
@@ -15,7 +17,10 @@ mod process;
 #[path = "../common/random.rs"]
 mod random;
 mod rdo;
+mod real;
 mod render;
+#[path = "../common/skip.rs"]
+mod skip;
 mod survival;
 mod transcripts;
 mod trust;

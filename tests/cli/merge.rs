@@ -1,4 +1,4 @@
-//! Parts of a plan, and what is missing of them.
+//! Parts of a plan, and the jobs that no part has run.
 
 use std::fs;
 use std::path::Path;
@@ -10,7 +10,7 @@ use super::process::{Run, copy, fixtures, hashes, roughcast_in, roughcast_with};
 
 const PARTS: usize = 3;
 
-/// A plan of three assets.
+/// Plans three assets.
 fn planned() -> TempDir {
     let folder = tempdir().expect("a folder");
     for asset in ["brushed", "heights", "waves"] {
@@ -20,7 +20,7 @@ fn planned() -> TempDir {
     folder
 }
 
-/// The same, run in parts that wrote `0.json` to `2.json`.
+/// Plans three assets and runs the plan in parts, which write `0.json` to `2.json`.
 fn run_in_parts() -> TempDir {
     let folder = planned();
     for task in 0..PARTS {
@@ -30,7 +30,7 @@ fn run_in_parts() -> TempDir {
     folder
 }
 
-/// Runs a part as Slurm would.
+/// Runs a part as Slurm would run it.
 fn part(folder: &Path, task: usize, options: &str) -> Run {
     let line = format!("bake --plan plan.json --shard /{PARTS} -q {options}");
     roughcast_with(&[("SLURM_ARRAY_TASK_ID", &task.to_string())], folder, line.split_whitespace())
@@ -51,7 +51,7 @@ fn first_lines(run: &Run) -> (i32, Vec<&str>) {
 }
 
 #[test]
-fn tasks_of_an_array_do_the_whole_plan() {
+fn tasks_of_an_array_run_the_whole_plan() {
     let folder = run_in_parts();
     assert_eq!(
         done(folder.path(), "plan merge plan.json 0.json 1.json 2.json"),
@@ -69,7 +69,7 @@ fn tasks_of_an_array_do_the_whole_plan() {
 }
 
 #[test]
-fn what_no_part_did_is_missing_until_it_is_run() {
+fn jobs_that_no_part_ran_are_missing() {
     let folder = run_in_parts();
     let folder = folder.path();
     fs::remove_dir_all(folder.join("out/waves")).expect("a folder");
@@ -77,7 +77,7 @@ fn what_no_part_did_is_missing_until_it_is_run() {
     let merged = lost(folder, "0.json 1.json 2.json");
     let gone = "missing assets/waves/waves.glb: expected out/waves/waves.gltf, found nothing there";
     assert_eq!(first_lines(&merged), (4, vec!["3 jobs: 2 done, 0 failed, 1 missing", gone]));
-    assert_eq!(first_lines(&lost(folder, "")), first_lines(&merged), "outputs alone tell it, too");
+    assert_eq!(first_lines(&lost(folder, "")), first_lines(&merged), "the outputs alone suffice");
     let reported = done(folder, "plan merge plan.json 0.json 1.json 2.json --no-outputs");
     assert_eq!(reported, "3 jobs: 3 done, 0 failed, 0 missing\n");
     lost(folder, "");
@@ -85,13 +85,13 @@ fn what_no_part_did_is_missing_until_it_is_run() {
     done(folder, "plan merge plan.json more.json 0.json 1.json 2.json --rest rest.json");
     done(folder, "bake --plan rest.json");
     let merged = lost(folder, "more.json");
-    let unreported = |name: &str| format!("missing assets/{name}: no report tells of it");
+    let unreported = |name: &str| format!("missing assets/{name}: no report names the job");
     let (brushed, heights) = (unreported("brushed/brushed.gltf"), unreported("heights/heights.gltf"));
     assert_eq!(first_lines(&merged), (4, vec!["3 jobs: 1 done, 0 failed, 2 missing", &brushed, &heights]));
 }
 
 #[test]
-fn what_fails_for_good_is_told_apart_from_what_may_be_tried_again() {
+fn permanent_failures_differ_from_those_worth_a_retry() {
     let folder = planned();
     let folder = folder.path();
     fs::write(folder.join("assets/heights/heights.png"), "changed").expect("a file");
@@ -120,7 +120,7 @@ fn what_fails_for_good_is_told_apart_from_what_may_be_tried_again() {
 }
 
 #[test]
-fn wrong_files_are_one_clear_message() {
+fn wrong_files_give_one_clear_error() {
     let folder = run_in_parts();
     let folder = folder.path();
     fs::write(folder.join("bad.json"), "{}").expect("a file");
@@ -128,7 +128,7 @@ fn wrong_files_are_one_clear_message() {
         ("plan merge", "<PLAN>"),
         ("plan merge missing.json", "missing.json: expected a readable file"),
         ("plan merge bad.json", "bad.json: expected a plan"),
-        ("plan merge plan.json bad.json", "bad.json: expected a report as `bake --report` writes it"),
+        ("plan merge plan.json bad.json", "bad.json: expected a report of formatVersion 1, found none"),
         ("plan merge plan.json missing.json", "missing.json: expected a readable file"),
         ("plan merge plan.json --no-outputs", "<REPORT>"),
     ] {

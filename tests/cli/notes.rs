@@ -1,4 +1,4 @@
-//! What summaries and reports tell of sources where the method cannot be exact (docs/stability.md). Kernels' own faults
+//! The notes on sources for which the method cannot be exact (docs/stability.md). Notes on faults of kernels
 //! are tested where the notes are made.
 
 use std::fs;
@@ -10,7 +10,7 @@ use super::process::{bake, copy, fixtures, roughcast};
 
 const NOTE: &str = "note: the bump map is a JPEG";
 
-/// The picture `from` as a JPEG.
+/// Writes the image `from` as a JPEG.
 fn to_jpeg(from: &Path, to: &Path) {
     let picture = image::open(from).expect("a picture").to_rgb8();
     let (width, height) = (picture.width() as u16, picture.height() as u16);
@@ -21,7 +21,7 @@ fn to_jpeg(from: &Path, to: &Path) {
 }
 
 #[test]
-fn jpeg_sources_are_told() {
+fn jpeg_sources_are_reported() {
     let (source, baked) = (tempdir().expect("a folder"), tempdir().expect("a folder"));
     copy(&fixtures().join("brushed"), source.path());
     let (png, jpeg) = (source.path().join("brushed_normal.png"), source.path().join("brushed_normal.jpg"));
@@ -37,4 +37,14 @@ fn jpeg_sources_are_told() {
     let map = |image: &Path| roughcast(["map".as_ref(), image.as_os_str(), "-o".as_ref(), output.as_os_str()]).out;
     assert!(map(&jpeg).contains(NOTE));
     assert!(!map(&png).contains(NOTE));
+}
+
+#[test]
+fn notes_that_ask_for_nothing_are_printed_with_verbose_only() {
+    let baked = tempdir().expect("a folder");
+    let (document, note) = (fixtures().join("knobs/knobs.gltf"), "was resampled to 64 x 48");
+    assert!(!bake(&document, baked.path(), &[]).out.contains(note));
+    assert!(bake(&document, baked.path(), &["-v"]).out.contains(note));
+    let report = bake(&document, baked.path(), &["--json"]).out;
+    assert!(report.contains(note), "{report}");
 }

@@ -1,4 +1,4 @@
-//! Plans, jobs and shards: what is planned is what is run, and nothing else.
+//! Tests that plans, jobs and shards run exactly what was planned.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -30,7 +30,7 @@ fn ids(plan: &Value) -> Vec<String> {
 }
 
 #[test]
-fn plans_satisfy_their_schema_and_tell_true_digests() {
+fn plans_satisfy_their_schema_and_have_correct_digests() {
     let scene = scene();
     let plan = plan(scene.path(), "--profile both");
     let schema: Value = serde_json::from_str(include_str!("../../schemas/plan.schema.json")).expect("JSON");
@@ -61,11 +61,11 @@ fn plans_satisfy_their_schema_and_tell_true_digests() {
 }
 
 #[test]
-fn an_id_is_that_of_contents_settings_and_names() {
+fn ids_depend_on_contents_settings_and_names_only() {
     let scene = scene();
     let folder = scene.path();
     let before = ids(&plan(folder, ""));
-    // Touched, moved as a whole, planned to elsewhere, said in other words: the same jobs.
+    // New times, another folder, another output folder and other words for equal settings give equal jobs.
     let image = folder.join("assets/brushed/brushed_normal.png");
     fs::write(&image, fs::read(&image).expect("an image")).expect("a file");
     fs::rename(folder.join("assets"), folder.join("moved")).expect("a folder");
@@ -164,14 +164,14 @@ fn a_job_whose_declared_outputs_were_edited_fails() {
         fs::write(folder.join("plan.json"), plan.to_string()).expect("a file");
         let run = run(folder, "bake --plan plan.json -q");
         assert_eq!(run.code, 1, "{path}");
-        let line = "error: assets/heights/heights.gltf: expected the outputs that planning makes of the job, found others: \
-                    the plan was edited; plan again\n";
+        let line = "error: assets/heights/heights.gltf: expected the outputs that planning makes of the job, found \
+                    others: the plan was edited; plan again\n";
         assert_eq!(run.err, line);
     }
 }
 
 #[test]
-fn what_cannot_be_planned_is_told_and_the_rest_is_planned() {
+fn assets_that_cannot_be_planned_are_reported_and_the_rest_is_planned() {
     let scene = scene();
     let folder = scene.path();
     fs::write(folder.join("assets/brushed/brushed.gltf"), "{").expect("a file");
@@ -186,7 +186,7 @@ fn what_cannot_be_planned_is_told_and_the_rest_is_planned() {
 }
 
 #[test]
-fn wrong_use_is_one_clear_error() {
+fn wrong_use_gives_one_clear_error() {
     let scene = scene();
     let folder = scene.path();
     plan(folder, "");
@@ -197,7 +197,7 @@ fn wrong_use_is_one_clear_error() {
     let absolute = folder.join("assets").display().to_string();
     for (line, part) in [
         ("bake --plan missing.json", "missing.json: expected a readable file"),
-        ("bake --plan bad.json", "bad.json: expected a plan"),
+        ("bake --plan bad.json", "bad.json: expected a plan of formatVersion 1, found none"),
         ("bake --plan other.json", "found one of 9.9.9; plan again"),
         ("bake --plan plan.json --glb", "cannot be used with"),
         ("bake --plan plan.json --fov 30", "cannot be used with"),

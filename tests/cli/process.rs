@@ -1,15 +1,14 @@
-//! Running the command, and what it leaves in folders.
+//! Runs the command and reads the files that it leaves.
 
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::fs;
-use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use walkdir::WalkDir;
 
-/// How a run ended.
+/// Result of a run.
 pub struct Run {
     /// Exit code; -1 after a signal.
     pub code: i32,
@@ -31,12 +30,12 @@ pub fn roughcast(arguments: impl IntoIterator<Item = impl AsRef<OsStr>>) -> Run 
     roughcast_in(Path::new("."), arguments)
 }
 
-/// Runs it in `folder`. Help is wrapped at 100 columns.
+/// Runs `roughcast` in `folder`. Help is wrapped at 100 columns.
 pub fn roughcast_in(folder: &Path, arguments: impl IntoIterator<Item = impl AsRef<OsStr>>) -> Run {
     roughcast_with(&[], folder, arguments)
 }
 
-/// Runs it in `folder` with more `variables` in its environment.
+/// Runs `roughcast` in `folder` with additional environment `variables`.
 pub fn roughcast_with(
     variables: &[(&str, &str)],
     folder: &Path,
@@ -48,19 +47,19 @@ pub fn roughcast_with(
     command.output().expect("the command starts").into()
 }
 
-/// Runs it in `folder` with the words of `line` as arguments.
+/// Runs `roughcast` in `folder` with the words of `line` as arguments.
 pub fn run(folder: &Path, line: &str) -> Run {
     roughcast_in(folder, line.split_whitespace())
 }
 
-/// What it prints there, when it works and complains of nothing.
+/// Runs `line` in `folder`, expects success without warnings, and returns standard output.
 pub fn done(folder: &Path, line: &str) -> String {
     let run = run(folder, line);
     assert_eq!((run.code, run.err.as_str()), (0, ""), "{line}");
     run.out
 }
 
-/// Bakes `input` to `output` and expects it to work.
+/// Bakes `input` to `output` and expects success without warnings.
 pub fn bake(input: &Path, output: &Path, options: &[&str]) -> Run {
     let mut arguments = vec![OsStr::new("bake"), input.as_ref(), "-o".as_ref(), output.as_ref()];
     arguments.extend(options.iter().map(OsStr::new));
@@ -69,23 +68,18 @@ pub fn bake(input: &Path, output: &Path, options: &[&str]) -> Run {
     run
 }
 
-/// The repository's `fixtures/`.
+/// Returns the folder `fixtures/` of the repository.
 pub fn fixtures() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures")
 }
 
-/// Tells a person what was not tested. Written past the test runner, which keeps what tests that pass print.
-pub fn skipped(what: &str) {
-    let _ = writeln!(io::stderr(), "skipped: {what}");
-}
-
-/// BLAKE3 of every file below `folder`, by its path with `/`.
+/// Returns the BLAKE3 digest of every file below `folder` by its path with `/`.
 pub fn hashes(folder: &Path) -> BTreeMap<String, String> {
     let hash = |path: &Path| blake3::hash(&fs::read(path).expect("a readable file")).to_hex().to_string();
     files(folder).into_iter().map(|(name, path)| (name, hash(&path))).collect()
 }
 
-/// Every file below `folder`: its path relative to it with `/`, and its path.
+/// Returns the relative path with `/` and the path of every file below `folder`.
 pub fn files(folder: &Path) -> Vec<(String, PathBuf)> {
     let entries = WalkDir::new(folder).sort_by_file_name().into_iter().map(|e| e.expect("a readable folder"));
     let paths = entries.filter(|e| e.file_type().is_file()).map(walkdir::DirEntry::into_path);
@@ -94,6 +88,14 @@ pub fn files(folder: &Path) -> Vec<(String, PathBuf)> {
         below.to_str().expect("names in UTF-8").replace(std::path::MAIN_SEPARATOR, "/")
     };
     paths.map(|path| (name(&path), path)).collect()
+}
+
+/// Makes a folder with copies of the brushed sphere (`in/bad`), for tests to damage, and of the lake (`in/good`).
+pub fn bad_and_good_asset() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a folder");
+    copy(&fixtures().join("brushed"), &folder.path().join("in/bad"));
+    copy(&fixtures().join("waves"), &folder.path().join("in/good"));
+    folder
 }
 
 /// Copies everything below `from` into `to`.

@@ -1,4 +1,5 @@
-//! `--rdo` from settings to files: smaller textures that say so, other jobs, other cache keys.
+//! Tests `--rdo` from settings to files: textures become smaller and record the setting, and jobs and cache keys
+//! change.
 
 use std::fs;
 use std::path::Path;
@@ -24,20 +25,20 @@ fn size(path: &Path) -> u64 {
     path.metadata().expect("a file").len()
 }
 
-/// The ids of the jobs that bake `assets` with `options`.
+/// Returns the ids of the jobs that bake `assets` with `options`.
 fn ids(folder: &Path, options: &str) -> Vec<Value> {
     let plan = json(&done(folder, &format!("plan assets -o out --json {options}")));
     plan["jobs"].as_array().expect("jobs").iter().map(|job| job["id"].clone()).collect()
 }
 
-/// How each asset ended.
+/// Returns the status of each asset.
 fn statuses(folder: &Path, line: &str) -> Vec<Value> {
     let report = json(&done(folder, &format!("{line} --cache cache --json")));
     report["assets"].as_array().expect("assets").iter().map(|asset| asset["status"].clone()).collect()
 }
 
 #[test]
-fn textures_are_smaller_and_say_so() {
+fn textures_are_smaller_and_record_the_setting() {
     let scene = scene();
     let folder = scene.path();
     let reports =
@@ -65,8 +66,8 @@ fn textures_are_smaller_and_say_so() {
         }
         textures += 1;
         assert!(size(&small) < size(&plain), "{name}: {} of {}", size(&small), size(&plain));
-        let said = ["plain", "small"].map(|out| json(&done(folder, &format!("inspect {out}/{name} --json"))));
-        let [plain, small] = said.each_ref().map(|said| &said["provenance"]["settings"]);
+        let inspected = ["plain", "small"].map(|out| json(&done(folder, &format!("inspect {out}/{name} --json"))));
+        let [plain, small] = inspected.each_ref().map(|inspected| &inspected["provenance"]["settings"]);
         assert_eq!((plain.get("rdo"), &small["rdo"]), (None, &Value::from(0.5)), "{name}");
     }
     assert_eq!((textures, files(&folder.join("small")).len()), (6, files(&folder.join("plain")).len()));
@@ -74,7 +75,7 @@ fn textures_are_smaller_and_say_so() {
 }
 
 #[test]
-fn it_means_nothing_to_other_payloads() {
+fn rdo_does_not_change_other_payloads() {
     let scene = scene();
     let folder = scene.path();
     for target in ["bc", "float"] {
@@ -90,7 +91,7 @@ fn it_means_nothing_to_other_payloads() {
 }
 
 #[test]
-fn jobs_and_cache_keys_know_it() {
+fn jobs_and_cache_keys_depend_on_rdo() {
     let scene = scene();
     let folder = scene.path();
     let [without, half, whole] = ["", "--rdo 0.5", "--rdo 1"].map(|options| ids(folder, options));
@@ -102,14 +103,14 @@ fn jobs_and_cache_keys_know_it() {
     {
         assert_eq!(statuses(folder, line), [status; 2], "{line}");
     }
-    // What comes from the cache is what a bake writes.
+    // Outputs from the cache equal those of a bake.
     assert_eq!(statuses(folder, "bake assets -o out --rdo 0.5"), ["cached"; 2]);
     done(folder, "bake assets -o alone -q --rdo 0.5");
     assert_eq!(hashes(&folder.join("out")), hashes(&folder.join("alone")));
 }
 
 #[test]
-fn the_file_says_what_the_flag_says() {
+fn rdo_of_the_file_equals_that_of_the_flag() {
     let scene = scene();
     let folder = scene.path();
     let config = folder.join("assets/roughcast.toml");

@@ -1,4 +1,4 @@
-//! `roughcast render`: what it writes, and that the bake is nearer to the truth than plain mips.
+//! Tests what `roughcast render` writes, and that the bake is closer to the reference than plain mips are.
 
 use std::fs;
 use std::path::Path;
@@ -8,9 +8,9 @@ use tempfile::tempdir;
 
 use super::process::{Run, copy, files, fixtures, hashes, roughcast};
 
-/// Small and quick pictures.
+/// Small pictures, which render quickly.
 const QUICK: [&str; 4] = ["--width", "40", "--samples", "64"];
-/// Large enough for distant waves to be finer than pixels.
+/// Large enough that distant waves are finer than pixels.
 const LARGER: [&str; 4] = ["--width", "96", "--samples", "96"];
 
 fn render(arguments: &[&str], output: &Path) -> Run {
@@ -20,7 +20,7 @@ fn render(arguments: &[&str], output: &Path) -> Run {
     run
 }
 
-/// Relative L1 by the name of the column, of each row of the first sheet.
+/// Returns the relative L1 errors of each row of the first sheet, with the name of the column.
 fn errors(arguments: &[&str]) -> Vec<Vec<(String, f64)>> {
     let folder = tempdir().expect("a folder");
     let run = render(&[arguments, &LARGER, &["--json"]].concat(), folder.path());
@@ -37,7 +37,7 @@ fn errors(arguments: &[&str]) -> Vec<Vec<(String, f64)>> {
 }
 
 #[test]
-fn baked_mips_are_nearer_to_the_truth_than_plain_ones() {
+fn baked_mips_are_closer_to_the_reference_than_plain_ones() {
     for (scene, distance) in [("lake", "0.7"), ("pattern", "2"), ("plane", "4"), ("sphere", "4")] {
         for row in errors(&["--scene", scene, "--distance", distance]) {
             println!("{scene} {row:?}");
@@ -49,7 +49,7 @@ fn baked_mips_are_nearer_to_the_truth_than_plain_ones() {
 }
 
 #[test]
-fn a_map_without_bumps_is_the_same_in_every_column() {
+fn columns_are_equal_for_a_map_without_bumps() {
     let folder = tempdir().expect("a folder");
     let flat = folder.path().join("flat.png");
     let image = image::RgbImage::from_pixel(16, 16, image::Rgb([140, 120, 253]));
@@ -104,7 +104,7 @@ fn pictures_do_not_depend_on_threads() {
 }
 
 #[test]
-fn bad_input_is_one_clear_error() {
+fn bad_input_gives_one_clear_error() {
     let folder = tempdir().expect("a folder");
     copy(&fixtures().join("brushed"), folder.path());
     let at = |name: &str| folder.path().join(name).to_str().expect("a path in UTF-8").to_owned();

@@ -1,4 +1,4 @@
-//! Killed at any moment, run twice at once, led in circles: nothing is lost, and nothing is half there.
+//! Tests that no file is lost or incomplete when bakes are killed, run at the same time, or find links in circles.
 
 use std::collections::BTreeMap;
 use std::ffi::{OsStr, OsString};
@@ -12,52 +12,52 @@ use tempfile::tempdir;
 
 use super::process::{bake, copy, files, fixtures, hashes, roughcast, roughcast_in};
 
-/// A bake of `assets` to `out` in `folder`, under way.
+/// Starts a bake of `assets` to `out` in `folder`.
 fn start(folder: &Path, options: &[&str]) -> Child {
     let mut command = Command::new(env!("CARGO_BIN_EXE_roughcast"));
     command.current_dir(folder).args(["bake", "assets", "-o", "out", "--cache", "cache", "--quiet"]).args(options);
     command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("the command starts")
 }
 
-/// Two ways to bake, quick ones.
-const WAYS: [&[&str]; 2] = [&["--model=isotropic"], &["--model=none", "--gltf=dual"]];
+/// Two sets of options that bake quickly.
+const OPTIONS: [&[&str]; 2] = [&["--model=isotropic"], &["--model=none", "--gltf=dual"]];
 
-/// The outputs of each way, by name.
-fn wanted(folder: &Path) -> Vec<BTreeMap<String, String>> {
+/// Returns the outputs with each set of options, by name.
+fn expected(folder: &Path) -> Vec<BTreeMap<String, String>> {
     let bake = |(index, options): (usize, &&[&str])| {
-        let out = folder.join(format!("wanted{index}"));
+        let out = folder.join(format!("expected{index}"));
         bake(&folder.join("assets"), &out, options);
         hashes(&out)
     };
-    WAYS.iter().enumerate().map(bake).collect()
+    OPTIONS.iter().enumerate().map(bake).collect()
 }
 
 #[test]
-fn a_bake_that_is_killed_leaves_whole_files_and_the_next_completes() {
+fn a_killed_bake_leaves_whole_files_and_the_next_bake_completes() {
     let folder = tempdir().expect("a folder");
     let folder = folder.path();
     copy(&fixtures().join("waves"), &folder.join("assets"));
     copy(&fixtures().join("knobs"), &folder.join("assets/knobs"));
-    let (sources, wanted) = (hashes(&folder.join("assets")), wanted(folder));
+    let (sources, expected) = (hashes(&folder.join("assets")), expected(folder));
     let start_of_run = Instant::now();
-    assert!(start(folder, WAYS[0]).wait().expect("an end").success());
+    assert!(start(folder, OPTIONS[0]).wait().expect("an end").success());
     let mut whole_run = start_of_run.elapsed();
     let mut random = 1_u64;
     let mut killed = 0;
     for round in 0..50 {
         if round % 4 < 2 {
-            // Not there, if the last one was killed before it began.
+            // The folder does not exist if the previous bake was killed before it began.
             let _ = fs::remove_dir_all(folder.join("cache"));
         }
-        let way = round % 2;
-        let (mut child, begin) = (start(folder, WAYS[way]), Instant::now());
+        let index = round % 2;
+        let (mut child, begin) = (start(folder, OPTIONS[index]), Instant::now());
         random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         let moment = whole_run.mul_f64((random >> 40) as f64 / (1 << 24) as f64);
         while begin.elapsed() < moment && child.try_wait().expect("a process").is_none() {
             sleep(Duration::from_millis(1));
         }
         if child.try_wait().expect("a process").is_some() {
-            // It was quicker than it used to be: the next is killed sooner.
+            // The bake ended before it was killed. The next one is killed sooner.
             whole_run = begin.elapsed();
         }
         let _ = child.kill();
@@ -65,20 +65,20 @@ fn a_bake_that_is_killed_leaves_whole_files_and_the_next_completes() {
         assert_eq!(hashes(&folder.join("assets")), sources, "a source changed");
         for (name, hash) in hashes(&folder.join("out")) {
             let is_left_over = name.rsplit('/').next().is_some_and(|name| name.starts_with(".roughcast-"));
-            let is_whole = wanted.iter().any(|outputs| outputs.get(&name) == Some(&hash));
+            let is_whole = expected.iter().any(|outputs| outputs.get(&name) == Some(&hash));
             assert!(is_left_over || is_whole, "round {round}: {name} is half there");
         }
     }
     assert!(killed > 10, "only {killed} of 50 were killed in time");
-    assert!(start(folder, WAYS[1]).wait().expect("an end").success());
+    assert!(start(folder, OPTIONS[1]).wait().expect("an end").success());
     let found = hashes(&folder.join("out"));
-    for (name, hash) in &wanted[1] {
+    for (name, hash) in &expected[1] {
         assert_eq!(found.get(name), Some(hash), "{name}");
     }
 }
 
 #[test]
-fn what_a_killed_bake_left_is_swept_when_it_is_old() {
+fn old_leftovers_of_a_killed_bake_are_removed() {
     let folder = tempdir().expect("a folder");
     let out = folder.path().join("out");
     fs::create_dir(&out).expect("a folder");
@@ -90,8 +90,8 @@ fn what_a_killed_bake_left_is_swept_when_it_is_old() {
     for name in [names[0], names[2]] {
         fs::File::options().write(true).open(out.join(name)).and_then(|f| f.set_modified(day_ago)).expect("a file");
     }
-    bake(&fixtures().join("waves/waves.glb"), &out, WAYS[0]);
-    // The new one may be that of a bake under way.
+    bake(&fixtures().join("waves/waves.glb"), &out, OPTIONS[0]);
+    // A new temporary file may belong to a running bake.
     assert_eq!(names.map(|name| out.join(name).exists()), [false, true, true]);
 }
 
@@ -101,20 +101,20 @@ fn two_bakes_into_one_folder_at_once_both_finish() {
     let folder = folder.path();
     copy(&fixtures().join("waves"), &folder.join("assets"));
     copy(&fixtures().join("knobs"), &folder.join("assets/knobs"));
-    let wanted = wanted(folder);
+    let expected = expected(folder);
     for _ in 0..3 {
-        let children: Vec<Child> = (0..3).map(|_| start(folder, WAYS[0])).collect();
+        let children: Vec<Child> = (0..3).map(|_| start(folder, OPTIONS[0])).collect();
         for mut child in children {
             assert!(child.wait().expect("an end").success());
         }
-        assert_eq!(hashes(&folder.join("out")), wanted[0]);
+        assert_eq!(hashes(&folder.join("out")), expected[0]);
         fs::remove_dir_all(folder.join("out")).expect("a folder");
         fs::remove_dir_all(folder.join("cache")).expect("a folder");
     }
 }
 
 #[test]
-fn paths_that_no_system_takes() {
+fn rejects_paths_that_no_system_allows() {
     let folder = tempdir().expect("a folder");
     let waves = fixtures().join("waves/waves.glb");
     let long = "n".repeat(5000);
@@ -136,17 +136,17 @@ fn paths_that_no_system_takes() {
 
 #[cfg(unix)]
 #[test]
-fn names_that_are_not_utf_8() {
+fn reports_names_that_are_not_utf_8() {
     use std::os::unix::ffi::OsStrExt;
     let folder = tempdir().expect("a folder");
-    let odd = OsStr::from_bytes(b"odd \xff name");
-    let assets = folder.path().join(odd);
+    let not_utf8 = OsStr::from_bytes(b"odd \xff name");
+    let assets = folder.path().join(not_utf8);
     copy(&fixtures().join("waves"), &assets);
-    // A folder may have any name; an asset's stands in the URIs of its outputs.
-    let out = folder.path().join("out").join(odd);
-    bake(&assets, &out, WAYS[0]);
+    // A folder may have any name. The name of an asset is part of the URIs of its outputs.
+    let out = folder.path().join("out").join(not_utf8);
+    bake(&assets, &out, OPTIONS[0]);
     assert!(out.join("waves.gltf").is_file());
-    let mut name = OsString::from(odd);
+    let mut name = OsString::from(not_utf8);
     name.push(".glb");
     fs::copy(assets.join("waves.glb"), assets.join(name)).expect("a file");
     let run = roughcast(["bake".as_ref(), assets.as_os_str(), "-o".as_ref(), out.as_os_str()]);
@@ -156,7 +156,7 @@ fn names_that_are_not_utf_8() {
 
 #[cfg(unix)]
 #[test]
-fn links_that_lead_in_circles() {
+fn ends_at_links_in_circles() {
     use std::os::unix::fs::symlink;
     let folder = tempdir().expect("a folder");
     let folder = folder.path();

@@ -1,5 +1,4 @@
-//! What a person reads: help, summaries and complaints, as transcripts in `tests/cmd`. `SNAPSHOTS=overwrite` accepts
-//! changes.
+//! Compares help, summaries and messages with the transcripts in `tests/cmd`. `SNAPSHOTS=overwrite` writes them anew.
 
 use std::fs;
 use std::path::Path;
@@ -9,8 +8,8 @@ use tempfile::tempdir;
 
 use super::process::{copy, fixtures, roughcast_in};
 
-/// Runs each command line in a copy of the fixtures and compares all that they write, and their exit codes, with
-/// `tests/cmd/<name>.txt`. `SECONDS` stands for what a clock says.
+/// Runs each command line in a copy of the fixtures. Compares output and exit codes with `tests/cmd/<name>.txt`, in
+/// which `SECONDS` stands for times.
 fn transcript(name: &str, command_lines: &[&str]) {
     let folder = tempdir().expect("a folder");
     copy(&fixtures(), folder.path());
@@ -32,7 +31,7 @@ fn transcript(name: &str, command_lines: &[&str]) {
     Assert::new().action_env("SNAPSHOTS").redact_with(redactions).eq(text, Data::read_from(&path, None));
 }
 
-/// `... 0.06 s` at the end of a line becomes `... SECONDS`.
+/// Replaces times at the ends of lines, such as `0.06 s`, by `SECONDS`.
 fn without_seconds(text: &str) -> String {
     let line = |line: &str| match line.strip_suffix(" s").and_then(|l| l.rsplit_once(", ")) {
         Some((rest, seconds)) if seconds.parse::<f64>().is_ok() => format!("{rest}, SECONDS\n"),
@@ -60,7 +59,7 @@ fn bake() {
         "bake",
         &[
             "roughcast bake brushed waves -o out",
-            "roughcast bake knobs/knobs.gltf -o out --engine bevy",
+            "roughcast bake knobs/knobs.gltf -o out --engine bevy -v",
             "roughcast bake heights -o out --profile pyramid --model isotropic",
             "roughcast bake knobs -o out --quiet",
             "roughcast bake brushed knobs -o out --nearest 400 --screen-height 1080 --trim",

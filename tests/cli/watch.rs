@@ -1,4 +1,4 @@
-//! Watching: what changed is baked, what is gone is removed, and in the end all is as a bake of the folder leaves it.
+//! Tests that watching bakes what changed and removes what is gone, so that the outputs equal those of a bake.
 
 mod edits;
 pub mod session;
@@ -11,9 +11,9 @@ use std::process::Command;
 
 use tempfile::{TempDir, tempdir};
 
-#[cfg(target_os = "linux")]
-use super::process::skipped;
 use super::process::{copy, files, fixtures, hashes, roughcast_in};
+#[cfg(target_os = "linux")]
+use super::skip::skip;
 use session::{Session, assert_as_baked};
 
 fn scene() -> TempDir {
@@ -40,7 +40,7 @@ fn only_what_depends_on_a_change_is_baked() {
         assert_eq!(first.iter().filter(|event| event["event"] == "baked").count(), 3, "{first:?}");
         assert_as_baked(folder, "at first");
         let at = |name: &str| folder.join("assets").join(name);
-        // At once: a file that is empty for a moment has changed.
+        // A file that is empty for a moment has changed at once.
         let touch = |name: &str| {
             fs::copy(at(name), at("copy")).expect("a file");
             fs::rename(at("copy"), at(name)).expect("a file");
@@ -58,8 +58,8 @@ fn only_what_depends_on_a_change_is_baked() {
         fs::write(at("roughcast.toml"), config).expect("a file");
         assert_eq!(session.settle(folder), ["baked assets/waves/waves.glb"], "a setting of one");
         rename(folder, "assets/brushed", "assets/renamed");
-        let told = session.settle(folder);
-        assert_eq!(told, ["removed assets/brushed/brushed.gltf", "baked assets/renamed/brushed.gltf"]);
+        let events = session.settle(folder);
+        assert_eq!(events, ["removed assets/brushed/brushed.gltf", "baked assets/renamed/brushed.gltf"]);
         fs::remove_file(at("knobs/knobs.gltf")).expect("a file");
         assert_eq!(session.settle(folder), ["removed assets/knobs/knobs.gltf"]);
         assert!(!folder.join("out/knobs").exists() && !folder.join("out/brushed").exists());
@@ -70,7 +70,7 @@ fn only_what_depends_on_a_change_is_baked() {
 }
 
 #[test]
-fn a_file_that_is_being_written_waits_and_one_that_is_broken_is_tried_again() {
+fn unfinished_files_wait_and_broken_files_are_retried() {
     let scene = scene();
     let folder = scene.path();
     let mut session = Session::start(folder, "--settle 1500");
@@ -97,9 +97,9 @@ fn a_file_that_is_being_written_waits_and_one_that_is_broken_is_tried_again() {
     assert!(err.ends_with("; out/knobs/knobs.gltf stays as it was last baked\n"), "{err}");
 }
 
-/// The document itself is broken, then its asset goes. What was never baked has nothing to keep.
+/// The document is broken, then its asset is removed. An asset that was never baked has no outputs to keep.
 #[test]
-fn the_last_good_outputs_stay_until_their_source_is_gone() {
+fn the_last_good_outputs_stay_until_their_source_is_removed() {
     let scene = scene();
     let folder = scene.path();
     fs::write(folder.join("assets/never.gltf"), "{").expect("a file");
@@ -127,13 +127,13 @@ fn the_last_good_outputs_stay_until_their_source_is_gone() {
     assert_eq!(session.stop().code, 0);
 }
 
-/// A place of the last good outputs is needed by another asset: what is left of them is not whole.
+/// Another asset needs a path of the last good outputs, which are then incomplete and removed.
 #[test]
-fn last_good_outputs_give_way_to_an_asset_that_can_be_baked() {
+fn an_asset_that_can_be_baked_replaces_last_good_outputs() {
     let scene = scene();
     let folder = scene.path();
     let at = |name: &str| folder.join("assets").join(name);
-    // Both are in one folder, and copy an image of one name.
+    // Both assets are in one folder and copy an image with the same name.
     let document = |image: &str| {
         format!(
             r#"{{"asset":{{"version":"2.0"}},"images":[{{"uri":"{image}"}},{{"uri":"n.png"}}],
@@ -149,12 +149,12 @@ fn last_good_outputs_give_way_to_an_asset_that_can_be_baked() {
     assert_eq!(session.settle(folder), ["failed assets/one.gltf"]);
     assert!(folder.join("out/one.gltf").is_file());
     session.assert_as_baked(folder, "broken");
-    // The name of the broken asset's folder of textures, as a folder of sources.
+    // A folder of sources gets the name of the broken asset's folder of textures.
     fs::create_dir(at("one.roughcast")).expect("a folder");
     fs::copy(fixtures().join("brushed/brushed_colour.png"), at("one.roughcast/n.normal.ktx2")).expect("a file");
     fs::write(at("two.gltf"), document("one.roughcast/n.normal.ktx2")).expect("a file");
-    let told = session.settle(folder);
-    assert_eq!(told, ["baked assets/two.gltf", "removed assets/one.gltf"]);
+    let events = session.settle(folder);
+    assert_eq!(events, ["baked assets/two.gltf", "removed assets/one.gltf"]);
     assert_as_baked(folder, "in the end");
     assert_eq!(session.stop().code, 0);
 }
@@ -177,59 +177,59 @@ fn outputs_of_earlier_bakes_are_not_baked() {
     );
 }
 
-/// More happens than the system keeps until it is read: of the last changes it tells only that there were some.
+/// The system queues fewer events than occur. It reports only that some of the last ones were lost.
 #[cfg(target_os = "linux")]
 #[test]
-fn events_that_are_lost_make_no_difference() {
+fn lost_events_change_no_output() {
     let scene = scene();
     let folder = scene.path();
     let limit = fs::read_to_string("/proc/sys/fs/inotify/max_queued_events").expect("Linux has it");
     let limit: usize = limit.trim().parse().expect("a number");
     if limit > 100_000 {
-        return skipped(&format!("lost events: {limit} are kept"));
+        return skip(&format!("the system keeps {limit} events, too many to lose some"));
     }
     let notes = ["a", "b"].map(|name| folder.join("assets").join(name));
     notes.iter().for_each(|note| fs::write(note, "new").expect("a file"));
     let mut session = Session::start(folder, "");
     session.until("idle");
     session.signal("-STOP");
-    // In turn: the system joins events that are alike.
+    // The files alternate, because the system merges equal events.
     for note in notes.iter().cycle().take(limit) {
         fs::write(note, "old").expect("a file");
     }
-    // Nothing but the loss itself may say that there is more to look at: the same files are referred to as before.
+    // Only the loss of events may show that there are changes, because the document refers to the same files.
     fs::copy(fixtures().join("brushed/brushed_normal.png"), folder.join("assets/knobs/knurled grip.png"))
         .expect("a file");
     fs::create_dir(folder.join("assets/lost")).expect("a folder");
     session.signal("-CONT");
-    let told = session.until("idle");
+    let events = session.until("idle");
     assert!(
-        told.iter().any(|event| event["event"] == "baked" && event["input"] == "assets/knobs/knobs.gltf"),
-        "{told:?}"
+        events.iter().any(|event| event["event"] == "baked" && event["input"] == "assets/knobs/knobs.gltf"),
+        "{events:?}"
     );
-    // The folder whose making was lost is watched as well.
+    // The new folder, whose event was lost, is watched as well.
     copy(&fixtures().join("brushed"), &folder.join("made"));
     rename(folder, "made", "assets/lost/brushed");
-    let told = session.until("baked");
-    assert_eq!(told.last().expect("an event")["input"], "assets/lost/brushed/brushed.gltf");
+    let events = session.until("baked");
+    assert_eq!(events.last().expect("an event")["input"], "assets/lost/brushed/brushed.gltf");
     session.until("idle");
     assert_as_baked(folder, "after the loss");
     assert_eq!(session.stop().code, 0);
 }
 
 #[test]
-fn folders_come_late_and_go() {
+fn folders_may_appear_late_and_disappear() {
     let folder = tempdir().expect("a folder");
     let folder = folder.path();
     let mut session = Session::start(folder, "--model none");
     session.until("idle");
-    // The folder itself, made and filled, and one below it.
+    // The folder is made and filled, and then a folder below it.
     copy(&fixtures().join("waves"), &folder.join("assets/waves"));
     session.settle(folder);
     copy(&fixtures().join("brushed"), &folder.join("assets/new/deep/brushed"));
     assert_eq!(session.settle(folder), ["baked assets/new/deep/brushed/brushed.gltf"]);
     let before = hashes(&folder.join("out"));
-    // Without its folder, nothing is known to be gone.
+    // Without the folder, no asset is known to be removed.
     rename(folder, "assets", "away");
     assert_eq!(session.until("failed").len(), 1);
     session.until("idle");
@@ -242,7 +242,7 @@ fn folders_come_late_and_go() {
 }
 
 #[test]
-fn what_watch_did_not_write_stays() {
+fn files_that_watch_did_not_write_stay() {
     let scene = scene();
     let folder = scene.path();
     let foreign =
@@ -271,7 +271,7 @@ fn a_command_runs_after_each_change_and_its_failure_is_a_warning() {
     let script = "echo noise; echo \"+$ROUGHCAST_OUTPUTS-$ROUGHCAST_REMOVED\" >> hook.txt; exit 3";
     fs::write(folder.join("hook.sh"), script).expect("a file");
     let mut session = Session::start(folder, "--on-change ./hook.sh");
-    // Not executable: the shell's own failure.
+    // The file is not executable, so that the shell itself fails.
     session.until("idle");
     assert!(session.stop().err.contains("warning: expected \"./hook.sh\" to end with exit code 0"));
     let _ = fs::remove_file(folder.join("hook.txt"));
@@ -283,16 +283,16 @@ fn a_command_runs_after_each_change_and_its_failure_is_a_warning() {
     fs::remove_dir_all(folder.join("assets/waves")).expect("a folder");
     session.until("idle");
     let run = session.stop();
-    let told = fs::read_to_string(folder.join("hook.txt")).expect("a file");
+    let text = fs::read_to_string(folder.join("hook.txt")).expect("a file");
     let first = "+out/brushed/brushed.gltf\nout/knobs/knobs.gltf\nout/waves/waves.gltf-\n+-out/waves/waves.";
-    assert!(told.starts_with(first), "{told}");
+    assert!(text.starts_with(first), "{text}");
     assert!(run.err.contains("found exit status: 3") && run.err.contains("noise"), "{}", run.err);
     assert_eq!(run.code, 0);
 }
 
 #[cfg(unix)]
 #[test]
-fn an_interrupt_ends_it_cleanly_at_any_time() {
+fn an_interrupt_ends_watching_cleanly_at_any_time() {
     for wait_for in ["started", "baked", "idle"] {
         let scene = scene();
         let folder = scene.path();
@@ -325,12 +325,12 @@ fn a_cache_saves_the_first_bake() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn more_folders_than_the_system_watches_are_looked_at_from_time_to_time() {
-    // Limits of a user namespace are its own.
+fn folders_beyond_the_watch_limit_are_polled() {
+    // A user namespace has limits of its own.
     let limit = "echo 3 > /proc/sys/user/max_inotify_watches";
     let probe = Command::new("unshare").args(["-Ur", "sh", "-c", limit]).output();
     if !probe.is_ok_and(|output| output.status.success()) {
-        return skipped("the limit on watched folders, which needs user namespaces");
+        return skip("a limit on watched folders needs user namespaces");
     }
     let scene = scene();
     let folder = scene.path();
@@ -347,7 +347,7 @@ fn more_folders_than_the_system_watches_are_looked_at_from_time_to_time() {
 }
 
 #[test]
-fn what_makes_no_sense_is_refused() {
+fn contradictory_options_are_refused() {
     let scene = scene();
     let folder = scene.path();
     for (line, code, expected) in [
@@ -362,7 +362,7 @@ fn what_makes_no_sense_is_refused() {
 }
 
 #[test]
-fn a_configuration_that_is_wrong_is_told_of_and_outputs_stay() {
+fn a_wrong_configuration_is_reported_and_outputs_stay() {
     let scene = scene();
     let folder = scene.path();
     let config = folder.join("assets/roughcast.toml");

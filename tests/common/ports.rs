@@ -1,10 +1,10 @@
-//! Ports of servers that cannot choose one themselves.
+//! Ports of servers that cannot choose a port themselves.
 
 use std::net::TcpListener;
 use std::process;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// A port of loopback where nothing listens, another one on each call. It is below those that systems give to callers, so
+/// Returns a loopback port on which nothing listens, a different one on each call. It is below the ephemeral ports, so
 /// that no connection of a test takes it before the server does.
 pub fn free_port() -> u16 {
     static CALLS: AtomicU32 = AtomicU32::new(0);

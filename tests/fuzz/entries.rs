@@ -1,14 +1,14 @@
-//! Where bytes of others come in: whatever they are, an error or an answer, within bounds of time and memory.
+//! Entry points for untrusted bytes. Each returns a result or an error within bounds of time and memory.
 //!
-//! `cargo +nightly fuzz run --fuzz-dir tests/fuzz <entry>` looks for bytes that break this; those that did are in `found`, and
-//! `tests/hostile.rs` tries them again.
+//! `cargo +nightly fuzz run --fuzz-dir tests/fuzz <entry>` searches for bytes that break this promise. Cases that did
+//! are in `tests/attack/found`, and `cargo test --test attack` runs them again.
 #![allow(dead_code, reason = "each target has one entry")]
 
 use std::io;
 use std::path::Path;
 
-use roughcast::bake::{Source, bake};
-use roughcast::check::{Referred, Scope, check_document};
+use roughcast::bake::{Source, bake_asset};
+use roughcast::check::{ReferencedFiles, Scope, check_document};
 use roughcast::decode::decode;
 use roughcast::gltf::document::Document;
 use roughcast::image::DecodeOptions;
@@ -16,10 +16,11 @@ use roughcast::inspect::{extract, inspect_document, inspect_texture};
 use roughcast::project::{Config, resolve};
 use roughcast::settings::{Model, Profile, Settings};
 
-/// Few enough that a lying header cannot make a run slow.
+/// Limit of texels, so that a header with a false size cannot make a run slow.
 const MAX_TEXELS: u64 = 1 << 12;
 
-/// A .gltf or .glb, whose images are one normal map of 8x8 texels; what is baked from it can be read.
+/// Checks, inspects and bakes a .gltf or .glb whose images are all one normal map of 8 x 8 texels. A baked document
+/// must be readable.
 pub fn document(bytes: &[u8]) {
     let read = |path: &Path| match path.extension().and_then(|e| e.to_str()) {
         Some("png") => Ok(include_bytes!("../../fixtures/maps/line_normal.png").to_vec()),
@@ -31,19 +32,20 @@ pub fn document(bytes: &[u8]) {
     let source = Source { stem: "fuzzed", document: &document, files: &read };
     if let Ok(root) = document.json().value("") {
         let root = root.unwrap_or_default();
-        let _ = inspect_document(&root, &Referred::new(&document, &root, &read, true));
+        let _ = inspect_document(&root, &ReferencedFiles::new(&document, &root, &read, true));
     }
     for (profile, model, glb) in
         [(Profile::Both, Model::Isotropic, false), (Profile::Portable, Model::Anisotropic, true)]
     {
-        let settings = Settings { profile, model, glb, max_texels: MAX_TEXELS, ..Settings::default() };
-        if let Ok(baked) = bake(&source, &settings, &|_| ()) {
+        let settings = Settings::default().with_profile(profile).with_model(model);
+        let settings = settings.with_glb(glb).with_max_texels(MAX_TEXELS);
+        if let Ok(baked) = bake_asset(&source, &settings, &|_| ()) {
             Document::parse(&baked.document).expect("what is baked is a document");
         }
     }
 }
 
-/// A KTX2 file.
+/// Inspects, decodes and extracts a KTX2 file.
 pub fn texture(bytes: &[u8]) {
     let _ = inspect_texture(bytes);
     let options = DecodeOptions { max_pixels: MAX_TEXELS, layer: None, extension: Some("ktx2".to_owned()) };
@@ -52,7 +54,7 @@ pub fn texture(bytes: &[u8]) {
     }
 }
 
-/// A `roughcast.toml`.
+/// Parses and resolves a `roughcast.toml`.
 pub fn configuration(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
     if let Ok(config) = Config::parse(text, Path::new("assets/roughcast.toml")) {
@@ -60,7 +62,7 @@ pub fn configuration(bytes: &[u8]) {
     }
 }
 
-/// An image in any format: the first byte says by which name.
+/// Decodes an image. The first byte selects the file extension.
 pub fn image(bytes: &[u8]) {
     const NAMES: [&str; 9] = ["png", "jpg", "tif", "tga", "webp", "hdr", "exr", "ktx2", "?"];
     let Some((first, bytes)) = bytes.split_first() else { return };

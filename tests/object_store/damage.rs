@@ -1,13 +1,13 @@
-//! What is damaged in a store is dropped, baked again and put back.
+//! Tests of damaged objects: they are dropped, baked again and replaced.
 
-use super::machine::{Machine, alone};
+use super::machine::{Machine, without_cache};
 use super::moto::{Moto, URL};
 
 #[test]
-fn damaged_objects_are_replaced() {
+fn replaces_damaged_objects() {
     let Some(moto) = Moto::start() else { return };
     let options = format!("--cache {URL}");
-    let whole = alone();
+    let expected = without_cache();
     Machine::new(&moto.endpoint()).statuses(&options);
     for kind in ["blobs", "jobs"] {
         for object in moto.objects(kind) {
@@ -22,11 +22,11 @@ fn damaged_objects_are_replaced() {
         assert!(warnings.len() >= 3, "{warnings:#?}");
         for warning in warnings {
             assert!(
-                warning.starts_with("warning: assets/") && warning.contains("drop it if that is allowed"),
+                warning.starts_with("warning: assets/") && warning.contains("replaced if the store allows it"),
                 "{warning}"
             );
         }
-        assert_eq!(bake.outputs(), whole);
+        assert_eq!(bake.outputs(), expected);
         assert_eq!(Machine::new(&moto.endpoint()).statuses(&options), ["cached"; 3], "{kind}");
     }
 }

@@ -1,4 +1,4 @@
-//! A machine: a folder with the same assets as every other one, and a bake there.
+//! A machine: a folder with assets, which are the same on every machine, and bakes in that folder.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -10,7 +10,7 @@ use serde_json::Value;
 use tempfile::{TempDir, tempdir};
 use walkdir::WalkDir;
 
-/// Credentials of all machines, which must not be told.
+/// Credentials of all machines, which must never be printed.
 const KEY: (&str, &str) = ("hunter-key", "hunter-secret");
 
 /// The assets of each machine.
@@ -18,20 +18,20 @@ pub const ASSETS: [&str; 3] = ["brushed", "knobs", "waves"];
 
 pub struct Machine {
     folder: TempDir,
-    /// Where S3 is.
+    /// URL of the S3 server.
     endpoint: String,
 }
 
-/// How a bake ended.
+/// The result of a bake.
 pub struct Bake {
-    /// How each asset ended, in the order of [`ASSETS`].
+    /// Status of each asset, in the order of [`ASSETS`].
     pub statuses: Vec<String>,
     /// Standard error.
     pub err: String,
 }
 
 impl Machine {
-    /// A machine whose S3 is at `endpoint`.
+    /// Makes a machine that uses the S3 server at `endpoint`.
     pub fn new(endpoint: &str) -> Self {
         let folder = tempdir().expect("a folder");
         for asset in ASSETS {
@@ -51,7 +51,7 @@ impl Machine {
         self.folder.path()
     }
 
-    /// `bake` with `options`, ready to start.
+    /// Returns the command `bake` with `options`.
     pub fn command(&self, options: &str) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_roughcast"));
         command.current_dir(self.path()).args(["bake", "assets", "-o", "out"]).args(options.split_whitespace());
@@ -61,28 +61,28 @@ impl Machine {
         command
     }
 
-    /// Bakes into a new folder `out`; it works, and tells no secrets.
+    /// Bakes into a new folder `out`. The bake must succeed and print no credentials.
     pub fn bake(&self, options: &str) -> Bake {
         let _ = fs::remove_dir_all(self.path().join("out"));
-        Bake::of(self.command(&format!("{options} --json")).output().expect("the command starts"))
+        Bake::from_output(self.command(&format!("{options} --json")).output().expect("the command starts"))
     }
 
-    /// The same without a warning.
+    /// Bakes like [`Self::bake`], without any warning, and returns the statuses.
     pub fn statuses(&self, options: &str) -> Vec<String> {
         let bake = self.bake(options);
         assert_eq!(bake.err, "", "{options}");
         bake.statuses
     }
 
-    /// BLAKE3 of every output.
+    /// Returns the BLAKE3 hash of every output.
     pub fn outputs(&self) -> BTreeMap<String, String> {
         hashes(&self.path().join("out"))
     }
 }
 
 impl Bake {
-    /// What became of a bake with `--json`.
-    pub fn of(output: std::process::Output) -> Self {
+    /// Reads the result of a bake with `--json`.
+    pub fn from_output(output: std::process::Output) -> Self {
         let err = String::from_utf8(output.stderr).expect("UTF-8");
         assert_eq!(output.status.code(), Some(0), "{err}");
         let out = String::from_utf8(output.stdout).expect("UTF-8");
@@ -94,13 +94,13 @@ impl Bake {
         Self { statuses: assets.map(|asset| asset["status"].as_str().expect("a status").to_owned()).collect(), err }
     }
 
-    /// Complaints, by line.
+    /// Returns the lines of standard error.
     pub fn warnings(&self) -> Vec<&str> {
         self.err.lines().collect()
     }
 }
 
-/// BLAKE3 of every file below `folder`, by its path.
+/// Returns the BLAKE3 hash of every file below `folder`, by path.
 fn hashes(folder: &Path) -> BTreeMap<String, String> {
     let files = WalkDir::new(folder).into_iter().map(|e| e.expect("a folder")).filter(|e| e.file_type().is_file());
     let hash = |path: &Path| blake3::hash(&fs::read(path).expect("a file")).to_hex().to_string();
@@ -108,13 +108,13 @@ fn hashes(folder: &Path) -> BTreeMap<String, String> {
     files.map(|file| (name(file.path()), hash(file.path()))).collect()
 }
 
-/// What a bake without a cache writes.
-pub fn alone() -> BTreeMap<String, String> {
-    static ALONE: OnceLock<BTreeMap<String, String>> = OnceLock::new();
+/// Returns the hashes of a bake without a cache.
+pub fn without_cache() -> BTreeMap<String, String> {
+    static OUTPUTS: OnceLock<BTreeMap<String, String>> = OnceLock::new();
     let bake = || {
         let machine = Machine::new("");
         assert_eq!(machine.statuses(""), ["baked"; 3]);
         machine.outputs()
     };
-    ALONE.get_or_init(bake).clone()
+    OUTPUTS.get_or_init(bake).clone()
 }

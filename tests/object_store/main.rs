@@ -1,4 +1,4 @@
-//! Caches that machines share: in a folder by `file://`, in moto's S3 server, and in servers that do not do what they should.
+//! Tests of object-store caches: in a folder by `file://`, in moto's S3 server, and in servers with faults.
 
 mod damage;
 mod down;
@@ -8,3 +8,5 @@ mod moto;
 #[path = "../common/ports.rs"]
 mod ports;
 mod sharing;
+#[path = "../common/skip.rs"]
+mod skip;

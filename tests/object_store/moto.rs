@@ -1,4 +1,4 @@
-//! moto's S3 server on loopback, and just enough of HTTP to look into its buckets.
+//! moto's S3 server on the loopback interface, with a minimal HTTP client for its buckets.
 
 use std::io::{Read, Write};
 use std::net::TcpStream;
@@ -8,8 +8,9 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use super::ports::free_port;
+use super::skip::missing_tool;
 
-/// Of every test, on a server of its own.
+/// URL of the cache in every test. Each test has its own server.
 pub const URL: &str = "s3://bucket/some/prefix";
 
 pub struct Moto {
@@ -18,13 +19,11 @@ pub struct Moto {
 }
 
 impl Moto {
-    /// Starts a server with an empty bucket; `None` where moto is not installed.
+    /// Starts a server with an empty bucket. Returns `None` if moto is not installed.
     pub fn start() -> Option<Self> {
         let tool = Path::new(env!("CARGO_MANIFEST_DIR")).join("tools/object-store/venv/bin/moto_server");
         if !tool.is_file() {
-            let missing = "tests of shared caches need `bash tools/object-store/install`";
-            assert!(std::env::var("CI").as_deref() != Ok("true"), "{missing}");
-            let _ = writeln!(std::io::stderr(), "skipped: {missing}");
+            missing_tool("tests of shared caches need `bash tools/object-store/install`");
             return None;
         }
         let port = free_port();
@@ -44,7 +43,7 @@ impl Moto {
         format!("http://127.0.0.1:{}", self.port)
     }
 
-    /// Names of all objects below `some/prefix/<kind>`.
+    /// Returns the names of all objects below `some/prefix/<kind>`.
     pub fn objects(&self, kind: &str) -> Vec<String> {
         let list = self.request("GET", &format!("?list-type=2&prefix=some/prefix/{kind}/"), b"");
         let list = String::from_utf8(list).expect("XML");
@@ -60,13 +59,13 @@ impl Moto {
         self.request("PUT", &format!("/{object}"), bytes);
     }
 
-    /// Ends the server, as a crash would.
+    /// Kills the server.
     pub fn kill(&mut self) {
         let _ = self.server.kill();
         let _ = self.server.wait();
     }
 
-    /// The body of the answer. moto wants a signature and does not check it.
+    /// Sends a request and returns the body of the answer. moto requires a signature but does not check it.
     fn request(&self, method: &str, path: &str, body: &[u8]) -> Vec<u8> {
         let mut stream = TcpStream::connect(("127.0.0.1", self.port)).expect("moto answers");
         let head = format!(

@@ -1,7 +1,7 @@
-//! A real server: buildbox-casd, whose workers run actions in a sandbox. One node, two of which one dies, and its traps.
+//! Tests with the real server buildbox-casd, whose workers run actions in a sandbox: with one node, with two nodes of
+//! which one is killed, and with a wrong configuration.
 
 use std::collections::BTreeMap;
-use std::env;
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::net::TcpStream;
@@ -15,8 +15,9 @@ use tempfile::TempDir;
 
 use super::ports::free_port;
 use super::scene::{ROUGHCAST, Run, Scene, hashes};
+use super::skip::missing_tool;
 
-/// A node, killed when this is dropped.
+/// A node, which is killed when this value is dropped.
 struct Node {
     process: Child,
     port: u16,
@@ -25,12 +26,10 @@ struct Node {
 }
 
 impl Node {
-    /// Starts one with `options` of casd; `None` where there is none to start.
+    /// Starts a node with `options` of casd. Returns `None` if casd or bubblewrap is not installed.
     fn start(options: &[&str]) -> Option<Self> {
         if !tools().join("buildbox-casd").exists() || Command::new("bwrap").arg("--version").output().is_err() {
-            let missing = "tests of --remote need tools/buildbox/install and bubblewrap";
-            assert!(env::var("CI").as_deref() != Ok("true"), "{missing}");
-            let _ = writeln!(io::stderr(), "skipped: {missing}");
+            missing_tool("tests of --remote need tools/buildbox/install and bubblewrap");
             return None;
         }
         let folder = tempfile::tempdir().expect("a folder");
@@ -46,7 +45,8 @@ impl Node {
         format!("grpc://127.0.0.1:{}", self.port)
     }
 
-    /// Waits until it answers: a node with another behind it ends if that one does not answer within 9 seconds.
+    /// Waits until the node answers. A node that depends on another one exits if that node does not answer within 9
+    /// seconds.
     fn wait(&mut self) {
         while TcpStream::connect(("127.0.0.1", self.port)).is_err() {
             let exit = self.process.try_wait().expect("a process");
@@ -55,12 +55,12 @@ impl Node {
         }
     }
 
-    /// What it says.
+    /// Returns the log of the node.
     fn log(&self) -> String {
         fs::read_to_string(self.folder.path().join("log")).unwrap_or_default()
     }
 
-    /// Kills it with all that it runs, and starts it again on what is left of its folder.
+    /// Kills the node with all its child processes, and starts it again in the same folder.
     fn restart(&mut self) {
         self.kill();
         self.process = spawn(&self.folder, self.port, &self.options);
@@ -68,7 +68,7 @@ impl Node {
     }
 
     fn kill(&mut self) {
-        // Its group: it alone would leave runners behind.
+        // The whole process group is killed: otherwise runners would stay behind.
         let group = format!("-{}", self.process.id());
         let _ = Command::new("kill").args(["-KILL", "--", &group]).status();
         let _ = self.process.wait();
@@ -90,12 +90,12 @@ fn spawn(folder: &TempDir, port: u16, options: &[String]) -> Child {
     let mut command = Command::new(tools().join("buildbox-casd"));
     command.arg(format!("--bind=127.0.0.1:{port}")).arg("--quota-high=5G").current_dir(folder.path());
     command.arg(format!("--buildbox-run={}", tools().join("buildbox-run").display()));
-    // The tool of a test is no static build: it takes the libraries of this machine.
+    // The tool of a test is not a static build, so it needs the libraries of this machine.
     for argument in ["--staging-mode=copy-or-link", "--bind-mount=/lib:/lib", "--bind-mount=/lib64:/lib64"] {
         command.arg(format!("--runner-arg={argument}"));
     }
     command.args(options);
-    // A relative folder is the trap of a test of its own.
+    // One test passes a relative folder of its own.
     if options.iter().all(|option| option.starts_with('-')) {
         command.arg(folder.path().join("casd"));
     }
@@ -103,11 +103,11 @@ fn spawn(folder: &TempDir, port: u16, options: &[String]) -> Child {
     command.spawn().expect("casd starts")
 }
 
-/// A scene whose tool is the command itself.
+/// Makes a scene whose tool is the command itself.
 fn scene() -> Scene {
-    let scene = Scene::bare();
+    let scene = Scene::without_tool();
     let tool = scene.path("tool");
-    // Without what only debuggers read, four fifths of it.
+    // Debug information is four fifths of the file.
     let stripped = Command::new("strip").arg("-o").arg(&tool).arg(ROUGHCAST).status();
     if !stripped.is_ok_and(|status| status.success()) {
         fs::copy(ROUGHCAST, tool).expect("a file");
@@ -116,7 +116,7 @@ fn scene() -> Scene {
 }
 
 #[test]
-fn one_node() {
+fn bakes_on_one_node_and_reuses_its_results() {
     let Some(node) = Node::start(&["--jobs=2"]) else { return };
     let scene = scene();
     let first = scene.baked(&node.url(), "");
@@ -129,8 +129,9 @@ fn one_node() {
 }
 
 #[test]
-fn a_server_that_cannot_keep_outputs_fails_the_jobs() {
-    // Its folder is relative, which it finds out after the action. (It answered exit code 0 to outputs that are files.)
+fn jobs_fail_if_the_server_cannot_store_outputs() {
+    // The server's folder is relative, which the server reports only after the action. For outputs that are files the
+    // server returned exit code 0.
     let Some(node) = Node::start(&["casd"]) else { return };
     let scene = scene();
     let run = scene.bake(&node.url(), "--remote-retries 1");
@@ -138,8 +139,8 @@ fn a_server_that_cannot_keep_outputs_fails_the_jobs() {
     assert_eq!(scene.hashes(), BTreeMap::new());
 }
 
-/// A scene with more actions than are run at a time, and what a local bake of it writes.
-fn many() -> (Scene, BTreeMap<String, String>) {
+/// Makes a scene with more actions than run at the same time. Returns the scene and the hashes of a local bake.
+fn scene_of_many_assets() -> (Scene, BTreeMap<String, String>) {
     let scene = scene();
     for number in 0..5 {
         let folder = scene.path(&format!("assets/{number}"));
@@ -147,7 +148,7 @@ fn many() -> (Scene, BTreeMap<String, String>) {
         for file in fs::read_dir(scene.path("assets/brushed")).expect("a folder").map(|file| file.expect("a file")) {
             fs::copy(file.path(), folder.join(file.file_name())).expect("a file");
         }
-        // Another asset, another job.
+        // A different buffer makes a different job.
         let mut buffer = File::options().append(true).open(folder.join("brushed.bin")).expect("a buffer");
         buffer.write_all(&[number]).expect("a file");
     }
@@ -158,19 +159,19 @@ fn many() -> (Scene, BTreeMap<String, String>) {
     (scene, local)
 }
 
-/// A run whose cache is in `cache`.
+/// Starts a run with the cache folder `cache`.
 fn start(scene: &Scene, url: &str, options: &str) -> Child {
     let mut command = scene.command(url, &format!("--cache cache --model isotropic {options}"));
     command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the command starts")
 }
 
-/// Waits until that cache has the results of a job.
-fn first_result(scene: &Scene, client: &mut Child) {
+/// Waits until the folder `cache` has the results of a job.
+fn wait_for_first_result(scene: &Scene, client: &mut Child) {
     let start = Instant::now();
     while hashes(&scene.path("cache/jobs")).is_empty() {
         if client.try_wait().expect("a process").is_some() {
-            let said = client.stderr.take().map(io::read_to_string);
-            panic!("the run ended without results: {said:?}");
+            let err = client.stderr.take().map(io::read_to_string);
+            panic!("the run ended without results: {err:?}");
         }
         assert!(start.elapsed() < Duration::from_secs(300), "no job ends");
         sleep(Duration::from_millis(20));
@@ -178,32 +179,32 @@ fn first_result(scene: &Scene, client: &mut Child) {
 }
 
 #[test]
-fn a_server_that_is_killed_and_started_again() {
+fn a_run_survives_a_restart_of_the_server() {
     let Some(mut node) = Node::start(&["--jobs=1"]) else { return };
-    let (scene, expected) = many();
+    let (scene, expected) = scene_of_many_assets();
     let mut client = start(&scene, &node.url(), "");
-    first_result(&scene, &mut client);
+    wait_for_first_result(&scene, &mut client);
     node.restart();
     let run = Run::from(client.wait_with_output().expect("an exit"));
-    // It waits half a minute for a server.
+    // The client waits half a minute for a server.
     assert_eq!((run.code, run.err.as_str()), (0, ""), "{}", node.log());
     assert!(run.count("retries") > 0, "{}", run.out);
     assert_eq!(scene.hashes(), expected);
 }
 
 #[test]
-fn two_nodes_one_of_which_is_killed() {
+fn a_run_finishes_after_one_of_two_nodes_was_killed() {
     let Some(mut worker) = Node::start(&["--jobs=1", "--log-level=info"]) else { return };
     let url = format!("http://127.0.0.1:{}", worker.port);
     let remotes = ["cas", "ac", "exec"].map(|service| format!("--{service}-remote={url}"));
     let [cas, ac, exec] = remotes.each_ref().map(String::as_str);
-    // Each of its calls to a node that is gone would take 9 seconds.
+    // By default, each call of the front node to a killed node would take 9 seconds.
     let options = [cas, ac, exec, "--exec-hybrid-queue-limit=1", "--jobs=1", "--retry-limit=1", "--retry-delay=100"];
     let Some(front) = Node::start(&options) else { return };
-    let (scene, expected) = many();
+    let (scene, expected) = scene_of_many_assets();
     let mut client = start(&scene, &front.url(), "--remote-retries 3");
-    first_result(&scene, &mut client);
-    assert!(worker.log().contains("Execute request"), "all is done by the other node");
+    wait_for_first_result(&scene, &mut client);
+    assert!(worker.log().contains("Execute request"), "the front node executed all actions itself");
     worker.kill();
     let run = Run::from(client.wait_with_output().expect("an exit"));
     assert!([0, 4].contains(&run.code), "{}", run.err);

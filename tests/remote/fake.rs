@@ -1,5 +1,5 @@
-//! A server of the API in this process. It keeps everything in memory, runs actions in temporary folders without a sandbox,
-//! and misbehaves as it is told.
+//! A fake server of the API in this process. It keeps everything in memory, runs actions in temporary folders without a
+//! sandbox, and has the faults that a test chooses.
 
 use std::collections::HashMap;
 use std::fs;
@@ -23,40 +23,40 @@ use tokio::sync::oneshot;
 use tonic::Status;
 use tonic::transport::Server;
 
-/// What a server does wrong, and how often.
+/// Faults of a server, and how often they occur.
 #[derive(Default)]
 pub struct Faults {
-    /// Calls of these names fail with UNAVAILABLE.
+    /// Calls that fail with UNAVAILABLE, by name, and how often.
     pub unavailable: HashMap<&'static str, u32>,
-    /// Executions whose stream breaks after the first message.
+    /// Number of executions whose stream breaks after the first message.
     pub broken: u32,
-    /// Executions that break, and that nobody knows of afterwards.
+    /// Number of executions whose stream breaks and that the server forgets.
     pub lost: u32,
-    /// Executions before which all blobs of inputs vanish.
+    /// Number of executions before which all blobs are removed.
     pub evicted: u32,
-    /// Results of executions are changed by this.
+    /// Changes results of executions.
     pub result: Option<fn(&State, re::ActionResult) -> re::ActionResult>,
-    /// Blobs that are read are changed by this.
+    /// Changes blobs that are read.
     pub read: Option<fn(Vec<u8>) -> Vec<u8>>,
-    /// Calls without this header are refused.
+    /// Header that every call needs.
     pub header: Option<(&'static str, &'static str)>,
-    /// What it says of itself is changed by this.
+    /// Changes the capabilities that the server reports.
     pub capabilities: Option<fn(&mut re::ServerCapabilities)>,
 }
 
-/// What a server has, and what was asked of it.
+/// Data and counters of a server.
 #[derive(Default)]
 pub struct State {
     pub blobs: Mutex<HashMap<String, Vec<u8>>>,
     pub actions: Mutex<HashMap<String, re::ActionResult>>,
     pub faults: Mutex<Faults>,
-    /// Executions that have ended, by their names.
+    /// Finished executions, by name.
     pub operations: Mutex<HashMap<String, Operation>>,
-    /// How often each call was made, and each blob was written.
+    /// Number of times that each call was made, and that each blob was written.
     pub calls: Mutex<HashMap<String, u32>>,
 }
 
-/// A server; ends when it is dropped.
+/// A server, which stops when it is dropped.
 pub struct Fake {
     pub state: Arc<State>,
     pub address: SocketAddr,
@@ -65,12 +65,12 @@ pub struct Fake {
 }
 
 impl Fake {
-    /// Starts one on a port that is free.
+    /// Starts a server on a free port.
     pub fn start() -> Self {
         Self::start_as(Server::builder())
     }
 
-    /// Starts one that is built so.
+    /// Starts a server from `builder`.
     pub fn start_as(builder: Server) -> Self {
         let state = Arc::new(State::default());
         let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
@@ -103,17 +103,17 @@ impl Fake {
         Self { state, address, stop: Some(stop), thread: Some(thread) }
     }
 
-    /// Where it is.
+    /// Returns the URL of the server.
     pub fn url(&self) -> String {
         format!("grpc://{}", self.address)
     }
 
-    /// How often `call` was made.
+    /// Returns how often `call` was made.
     pub fn calls(&self, call: &str) -> u32 {
         self.state.calls.lock().expect("calls").get(call).copied().unwrap_or(0)
     }
 
-    /// Its faults, to be changed.
+    /// Returns the faults of the server for changes.
     pub fn faults(&self) -> MutexGuard<'_, Faults> {
         self.state.faults.lock().expect("faults")
     }
@@ -127,14 +127,14 @@ impl Drop for Fake {
     }
 }
 
-/// The API's name of `bytes`.
+/// Returns the digest of `bytes` in the API's form.
 pub fn digest(bytes: &[u8]) -> re::Digest {
     let hash = Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect();
     re::Digest { hash, size_bytes: bytes.len() as i64 }
 }
 
 impl State {
-    /// Counts a call, and fails it if that is asked for.
+    /// Counts a call, and returns an error if a fault requires one.
     pub fn call<T>(&self, name: &'static str, request: &tonic::Request<T>) -> Result<(), Status> {
         *self.calls.lock().expect("calls").entry(name.to_owned()).or_default() += 1;
         let mut faults = self.faults.lock().expect("faults");
@@ -160,12 +160,12 @@ impl State {
         digest
     }
 
-    /// A blob.
+    /// Returns a blob.
     pub fn get(&self, hash: &str) -> Option<Vec<u8>> {
         self.blobs.lock().expect("blobs").get(hash).cloned()
     }
 
-    /// A blob that an execution needs.
+    /// Returns a blob that an execution needs.
     fn input(&self, digest: Option<&re::Digest>) -> Result<Vec<u8>, Status> {
         let found = digest.and_then(|digest| self.get(&digest.hash));
         found.ok_or_else(|| Status::failed_precondition("a blob is missing"))

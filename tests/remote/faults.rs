@@ -1,4 +1,4 @@
-//! What goes wrong on the way and passes: it is tried again, and the bytes are the same.
+//! Tests of temporary faults: calls are repeated, and outputs are those of a local bake.
 
 use std::fs;
 use std::process::Stdio;
@@ -9,7 +9,7 @@ use super::fake::Fake;
 use super::scene::{Scene, expected};
 
 #[test]
-fn calls_that_fail_twice_are_made_again() {
+fn repeats_calls_that_fail_twice() {
     let (scene, server) = (Scene::new(), Fake::start());
     for call in [
         "GetCapabilities",
@@ -28,7 +28,7 @@ fn calls_that_fail_twice_are_made_again() {
 }
 
 #[test]
-fn a_stream_that_breaks_is_waited_for_and_a_lost_execution_is_begun_again() {
+fn waits_after_a_broken_stream_and_restarts_a_lost_execution() {
     let (scene, server) = (Scene::new(), Fake::start());
     server.faults().broken = 1;
     let run = scene.baked(&server.url(), "--remote-jobs 1");
@@ -42,7 +42,7 @@ fn a_stream_that_breaks_is_waited_for_and_a_lost_execution_is_begun_again() {
 }
 
 #[test]
-fn blobs_that_the_server_loses_are_sent_again() {
+fn uploads_blobs_again_that_the_server_loses() {
     let (scene, server) = (Scene::new(), Fake::start());
     server.faults().evicted = 1;
     let run = scene.baked(&server.url(), "--remote-jobs 1");
@@ -50,7 +50,7 @@ fn blobs_that_the_server_loses_are_sent_again() {
 }
 
 #[test]
-fn results_whose_blobs_are_gone_are_made_anew() {
+fn executes_again_if_blobs_of_a_result_are_missing() {
     let (scene, server) = (Scene::new(), Fake::start());
     let first = scene.baked(&server.url(), "");
     server.state.blobs.lock().expect("blobs").clear();
@@ -60,7 +60,7 @@ fn results_whose_blobs_are_gone_are_made_anew() {
 }
 
 #[test]
-fn results_of_no_use_are_made_anew() {
+fn executes_again_if_a_cached_result_has_no_outputs() {
     let (scene, server) = (Scene::new(), Fake::start());
     scene.baked(&server.url(), "");
     for result in server.state.actions.lock().expect("actions").values_mut() {
@@ -72,7 +72,7 @@ fn results_of_no_use_are_made_anew() {
 }
 
 #[test]
-fn a_server_that_is_away_is_worth_another_run() {
+fn an_unreachable_server_ends_a_run_with_code_4() {
     let scene = Scene::new();
     let url = Fake::start().url();
     let run = scene.bake(&url, "--remote-retries 1");
@@ -86,7 +86,7 @@ fn a_server_that_is_away_is_worth_another_run() {
 }
 
 #[test]
-fn a_server_that_stays_busy_is_worth_another_run() {
+fn a_busy_server_ends_a_run_with_code_4() {
     let (scene, server) = (Scene::new(), Fake::start());
     server.faults().unavailable.insert("Execute", u32::MAX);
     let run = scene.bake(&server.url(), "--remote-jobs 1 --remote-retries 1");
@@ -97,9 +97,9 @@ fn a_server_that_stays_busy_is_worth_another_run() {
 }
 
 #[test]
-fn a_client_that_is_killed_leaves_nothing_half_done() {
+fn a_killed_client_leaves_no_partial_outputs() {
     let (scene, server) = (Scene::new(), Fake::start());
-    // The first action waits, the others are done by then.
+    // One action waits until the test allows it to continue. The others finish before.
     let go = scene.path("go");
     scene.tool(&format!("if grep -q brushed plan.json; then until [ -e '{}' ]; do sleep 0.05; done; fi", go.display()));
     let mut command = scene.command(&server.url(), "--cache cache");

@@ -1,4 +1,4 @@
-//! Answers that must not be believed: no output comes of them, and nothing is written elsewhere.
+//! Tests of hostile answers: they produce no outputs, and nothing is written outside of the output folder.
 
 use std::collections::BTreeMap;
 
@@ -9,8 +9,8 @@ use serde_json::{Value, json};
 use super::fake::{Fake, State, digest};
 use super::scene::{Run, Scene, hashes};
 
-/// Bakes on a server that changes its results; everything must fail, and only `out` may be new.
-fn refused(change: fn(&State, re::ActionResult) -> re::ActionResult) -> Run {
+/// Bakes on a server whose results `change` alters. All assets must fail, and no file may be written.
+fn assert_refused(change: fn(&State, re::ActionResult) -> re::ActionResult) -> Run {
     let (scene, server) = (Scene::new(), Fake::start());
     server.faults().result = Some(change);
     let before = hashes(scene.folder());
@@ -21,9 +21,9 @@ fn refused(change: fn(&State, re::ActionResult) -> re::ActionResult) -> Run {
     run
 }
 
-/// `result` with each entry of its cache changed.
-fn entries(state: &State, result: re::ActionResult, change: fn(&mut Value)) -> re::ActionResult {
-    files(state, result, |state, folder, file| {
+/// Changes each entry of the cache in `result`.
+fn change_entries(state: &State, result: re::ActionResult, change: fn(&mut Value)) -> re::ActionResult {
+    change_files(state, result, |state, folder, file| {
         if folder != "jobs" {
             return;
         }
@@ -36,8 +36,8 @@ fn entries(state: &State, result: re::ActionResult, change: fn(&mut Value)) -> r
     })
 }
 
-/// `result` with each file of its cache changed, by the folder it is in.
-fn files(
+/// Changes each file of the cache in `result`. `change` gets the name of the file's folder.
+fn change_files(
     state: &State,
     mut result: re::ActionResult,
     mut change: impl FnMut(&State, &str, &mut re::FileNode),
@@ -71,8 +71,8 @@ fn files(
 }
 
 #[test]
-fn an_action_that_ends_well_without_outputs_has_failed() {
-    let run = refused(|_, result| re::ActionResult { output_directories: Vec::new(), ..result });
+fn an_action_without_outputs_fails_despite_exit_code_0() {
+    let run = assert_refused(|_, result| re::ActionResult { output_directories: Vec::new(), ..result });
     assert_eq!(run.code, 1);
     assert_eq!(
         run.err.matches("expected the outputs of the job from the server, found none").count(),
@@ -80,9 +80,9 @@ fn an_action_that_ends_well_without_outputs_has_failed() {
         "{}",
         run.err
     );
-    // The entries are there, what they name is not.
-    let run = refused(|state, result| {
-        files(state, result, |_, folder, file| {
+    // The entries exist, but the blobs that they name do not.
+    let run = assert_refused(|state, result| {
+        change_files(state, result, |_, folder, file| {
             if folder == "blobs" {
                 file.name = "0".repeat(64);
             }
@@ -92,16 +92,18 @@ fn an_action_that_ends_well_without_outputs_has_failed() {
 }
 
 #[test]
-fn entries_that_lead_elsewhere_are_none() {
+fn refuses_entries_with_foreign_paths_and_digests() {
     let changes: [fn(&State, re::ActionResult) -> re::ActionResult; 7] = [
-        |state, result| entries(state, result, |entry| entry["job"] = "0".repeat(64).into()),
-        |state, result| entries(state, result, |entry| entry["document"]["blake3"] = "../../evil".into()),
-        |state, result| entries(state, result, |entry| entry["document"]["path"] = "../../evil.gltf".into()),
-        |state, result| entries(state, result, |entry| entry["document"]["path"] = "/tmp/evil.gltf".into()),
-        |state, result| entries(state, result, |entry| entry["document"]["path"] = "other.gltf".into()),
-        |state, result| entries(state, result, |entry| entry["copies"] = json!(["../assets/brushed/brushed.bin"])),
+        |state, result| change_entries(state, result, |entry| entry["job"] = "0".repeat(64).into()),
+        |state, result| change_entries(state, result, |entry| entry["document"]["blake3"] = "../../evil".into()),
+        |state, result| change_entries(state, result, |entry| entry["document"]["path"] = "../../evil.gltf".into()),
+        |state, result| change_entries(state, result, |entry| entry["document"]["path"] = "/tmp/evil.gltf".into()),
+        |state, result| change_entries(state, result, |entry| entry["document"]["path"] = "other.gltf".into()),
         |state, result| {
-            entries(state, result, |entry| {
+            change_entries(state, result, |entry| entry["copies"] = json!(["../assets/brushed/brushed.bin"]))
+        },
+        |state, result| {
+            change_entries(state, result, |entry| {
                 let mut file = entry["document"].clone();
                 file["path"] = "other.roughcast/evil.ktx2".into();
                 entry["files"] = json!([file]);
@@ -109,13 +111,13 @@ fn entries_that_lead_elsewhere_are_none() {
         },
     ];
     for change in changes {
-        assert_eq!(refused(change).code, 1);
+        assert_eq!(assert_refused(change).code, 1);
     }
 }
 
 #[test]
-fn blobs_that_are_not_what_they_are_called_are_refused() {
-    // By SHA-256.
+fn refuses_blobs_that_do_not_match_their_digest() {
+    // SHA-256 does not match.
     let (scene, server) = (Scene::new(), Fake::start());
     server.faults().read = Some(|mut bytes| {
         bytes.push(0);
@@ -123,9 +125,9 @@ fn blobs_that_are_not_what_they_are_called_are_refused() {
     });
     let run = scene.bake(&server.url(), "--remote-retries 1");
     assert_eq!((run.code, scene.hashes()), (4, BTreeMap::new()), "{}", run.err);
-    // By BLAKE3: the tree is right, and names other bytes of the same length.
-    let run = refused(|state, result| {
-        files(state, result, |state, folder, file| {
+    // BLAKE3 does not match: the tree is valid, but names other bytes of the same length.
+    let run = assert_refused(|state, result| {
+        change_files(state, result, |state, folder, file| {
             if folder == "blobs" {
                 let mut bytes = state.get(&file.digest.clone().expect("a digest").hash).expect("a blob");
                 bytes[0] ^= 1;
@@ -137,16 +139,16 @@ fn blobs_that_are_not_what_they_are_called_are_refused() {
 }
 
 #[test]
-fn sizes_that_are_too_large_cost_nothing() {
-    let run = refused(|state, result| {
-        files(state, result, |_, _, file| {
+fn refuses_huge_sizes_without_allocating() {
+    let run = assert_refused(|state, result| {
+        change_files(state, result, |_, _, file| {
             if let Some(digest) = &mut file.digest {
                 digest.size_bytes = i64::MAX;
             }
         })
     });
     assert_eq!(run.code, 1, "{}", run.err);
-    let run = refused(|_, mut result| {
+    let run = assert_refused(|_, mut result| {
         for output in &mut result.output_directories {
             output.tree_digest = Some(re::Digest { hash: "0".repeat(64), size_bytes: i64::MAX });
         }
@@ -156,14 +158,14 @@ fn sizes_that_are_too_large_cost_nothing() {
 }
 
 #[test]
-fn a_tool_that_does_not_run_is_told_of() {
-    let run = refused(|_, result| re::ActionResult {
+fn reports_a_tool_that_does_not_run() {
+    let run = assert_refused(|_, result| re::ActionResult {
         exit_code: 127,
         stderr_raw: b"no such\x1b[2J library\n".to_vec(),
         ..result
     });
     assert_eq!(run.code, 1);
     assert!(run.err.contains("exit code 127: no such[2J library; --remote-tool takes a static build"), "{}", run.err);
-    let run = refused(|_, result| re::ActionResult { exit_code: 1, stdout_raw: b"{".to_vec(), ..result });
+    let run = assert_refused(|_, result| re::ActionResult { exit_code: 1, stdout_raw: b"{".to_vec(), ..result });
     assert_eq!(run.code, 1);
 }

@@ -1,4 +1,4 @@
-//! `bake --remote` against a server in this process that misbehaves as it is told, and against buildbox-casd.
+//! Tests of `bake --remote` with a fake server whose faults the tests choose, and with buildbox-casd.
 #![cfg(unix)]
 
 mod casd;
@@ -10,4 +10,6 @@ mod ports;
 mod scene;
 mod secrets;
 mod services;
+#[path = "../common/skip.rs"]
+mod skip;
 mod work;

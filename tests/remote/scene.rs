@@ -1,4 +1,4 @@
-//! Assets in a folder, and runs of the command there.
+//! Scenes: assets in a folder, and runs of the command in that folder.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -17,7 +17,7 @@ pub const ROUGHCAST: &str = env!("CARGO_BIN_EXE_roughcast");
 /// A folder with `assets`, and a `tool` for workers.
 pub struct Scene(TempDir);
 
-/// How a run ended.
+/// The result of a run.
 pub struct Run {
     /// Exit code; -1 after a signal.
     pub code: i32,
@@ -28,17 +28,17 @@ pub struct Run {
 }
 
 impl Run {
-    /// The report of `--json`.
+    /// Returns the report of `--json`.
     pub fn report(&self) -> Value {
         serde_json::from_str(&self.out).unwrap_or_else(|error| panic!("{error}: {}{}", self.out, self.err))
     }
 
-    /// A number of what the server did.
+    /// Returns a count of the report's `remote` section.
     pub fn count(&self, name: &str) -> u64 {
         self.report()["remote"][name].as_u64().unwrap_or_else(|| panic!("no {name} in {}", self.out))
     }
 
-    /// How each asset ended.
+    /// Returns the status of each asset.
     pub fn statuses(&self) -> Vec<String> {
         let report = self.report();
         let assets = report["assets"].as_array().expect("assets").iter();
@@ -54,38 +54,38 @@ impl From<Output> for Run {
 }
 
 impl Scene {
-    /// The assets alone.
-    pub fn bare() -> Self {
+    /// Makes a scene of the assets without a tool.
+    pub fn without_tool() -> Self {
         let scene = Self(tempfile::tempdir().expect("a folder"));
         assets(scene.folder());
         scene
     }
 
-    /// The same with a tool for workers without a sandbox.
+    /// Makes a scene of the assets and a tool for workers without a sandbox.
     pub fn new() -> Self {
-        let scene = Self::bare();
+        let scene = Self::without_tool();
         scene.tool("");
         scene
     }
 
-    /// Its folder.
+    /// Returns the folder of the scene.
     pub fn folder(&self) -> &Path {
         self.0.path()
     }
 
-    /// A file in it.
+    /// Returns the path of a file in the scene.
     pub fn path(&self, name: &str) -> PathBuf {
         self.0.path().join(name)
     }
 
-    /// Makes the tool for workers without a sandbox one that does `first`, then is the command: with all assets in its
-    /// cache, since few tests are about baking.
+    /// Writes a tool that runs `first` and then the command with a filled cache, since few tests are about baking. The
+    /// tool is for workers without a sandbox.
     pub fn tool(&self, first: &str) {
-        let known = expected().1.display();
-        self.script(&format!("{first}\nmkdir cache && cp -r '{known}'/* cache"));
+        let cache = expected().1.display();
+        self.script(&format!("{first}\nmkdir cache && cp -r '{cache}'/* cache"));
     }
 
-    /// Makes it one that does `first`, then is the command.
+    /// Writes a tool that runs `first` and then the command.
     pub fn script(&self, first: &str) {
         let path = self.path("tool");
         fs::write(&path, format!("#!/bin/sh\nPATH=/bin:/usr/bin\n{first}\nexec '{ROUGHCAST}' \"$@\"\n"))
@@ -93,7 +93,7 @@ impl Scene {
         fs::set_permissions(path, fs::Permissions::from_mode(0o755)).expect("a file");
     }
 
-    /// The command that bakes the assets to `out` on the server at `url`.
+    /// Returns the command that bakes the assets to `out` on the server at `url`.
     pub fn command(&self, url: &str, options: &str) -> Command {
         let mut command = Command::new(ROUGHCAST);
         let line = format!("bake assets -o out --json --remote {url} --remote-tool tool {options}");
@@ -106,7 +106,7 @@ impl Scene {
         self.command(url, options).output().expect("the command starts").into()
     }
 
-    /// Bakes them and expects that all is well.
+    /// Bakes the assets and expects the outputs of a local bake.
     pub fn baked(&self, url: &str, options: &str) -> Run {
         let run = self.bake(url, options);
         assert_eq!((run.code, run.err.as_str()), (0, ""), "{options}: {}", run.out);
@@ -114,19 +114,19 @@ impl Scene {
         run
     }
 
-    /// What is in `out`.
+    /// Returns the hashes of all files in `out`.
     pub fn hashes(&self) -> BTreeMap<String, String> {
         hashes(&self.path("out"))
     }
 
-    /// Removes what was baked.
+    /// Removes the folder `out`.
     pub fn clear(&self) {
         fs::remove_dir_all(self.path("out")).expect("a folder");
     }
 }
 
-/// Three fixtures below `folder`, and a document without materials. `brushed` and `knobs` have actions of their own, since a
-/// buffer is long.
+/// Writes three fixtures and a document without materials below `folder`. `brushed` and `knobs` get long buffers, so
+/// that each becomes its own action.
 fn assets(folder: &Path) {
     let assets = folder.join("assets");
     for asset in ["brushed", "knobs", "waves"] {
@@ -140,7 +140,7 @@ fn assets(folder: &Path) {
     fs::write(assets.join("flat.gltf"), r#"{"asset":{"version":"2.0"}}"#).expect("a file");
 }
 
-/// What a local bake of the assets writes, and the cache that it fills: both of this build, in a folder that is kept.
+/// Returns the hashes of a local bake of the assets, and the cache that it fills. The folder is kept between tests.
 pub fn expected() -> &'static (BTreeMap<String, String>, PathBuf) {
     static EXPECTED: OnceLock<(BTreeMap<String, String>, PathBuf)> = OnceLock::new();
     EXPECTED.get_or_init(|| {
@@ -155,7 +155,7 @@ pub fn expected() -> &'static (BTreeMap<String, String>, PathBuf) {
     })
 }
 
-/// BLAKE3 of every file below `folder`, by its path.
+/// Returns the BLAKE3 hash of every file below `folder`, by path.
 pub fn hashes(folder: &Path) -> BTreeMap<String, String> {
     let entries = WalkDir::new(folder).into_iter().filter_map(Result::ok).filter(|entry| entry.file_type().is_file());
     entries

@@ -1,4 +1,4 @@
-//! Headers and certificates: what lets the caller in is shown to nobody else.
+//! Tests of headers and certificates: credentials reach the server and are never printed.
 
 use std::fs;
 
@@ -10,23 +10,23 @@ use super::scene::{Run, Scene};
 
 const SECRET: &str = "hunter2-hunter2";
 
-fn hides_it(run: &Run) {
+fn assert_hides_secret(run: &Run) {
     assert!(!run.out.contains(SECRET) && !run.err.contains(SECRET), "{}{}", run.out, run.err);
 }
 
 #[test]
-fn headers_let_the_caller_in_and_are_never_shown() {
+fn headers_authenticate_and_are_never_printed() {
     let (scene, server) = (Scene::new(), Fake::start());
     server.faults().header = Some(("authorization", SECRET));
     let run = scene.bake(&server.url(), "");
     assert_eq!(run.code, 2, "{}", run.err);
     assert!(run.err.contains("UNAUTHENTICATED"), "{}", run.err);
-    // The server repeats what it was sent.
+    // The server's error repeats the header.
     let run = scene.bake(&server.url(), &format!("--remote-header authorization={SECRET}-no"));
     assert_eq!(run.code, 2);
-    hides_it(&run);
+    assert_hides_secret(&run);
     let run = scene.baked(&server.url(), &format!("--remote-header Authorization={SECRET} --report report.json"));
-    hides_it(&run);
+    assert_hides_secret(&run);
     assert!(!fs::read_to_string(scene.path("report.json")).expect("a report").contains(SECRET));
     scene.clear();
     let mut command = scene.command(&server.url(), "");
@@ -34,23 +34,23 @@ fn headers_let_the_caller_in_and_are_never_shown() {
         command.env("ROUGHCAST_REMOTE_HEADER", format!("authorization={SECRET}\n")).output().expect("a run").into();
     assert_eq!(run.code, 0, "{}", run.err);
     fs::write(scene.path("headers"), format!("x=y\nauthorization = {SECRET}\n")).expect("a file");
-    hides_it(&scene.baked(&server.url(), "--remote-header-file headers"));
+    assert_hides_secret(&scene.baked(&server.url(), "--remote-header-file headers"));
 }
 
 #[test]
-fn headers_that_are_none_are_not_shown_either() {
+fn invalid_headers_are_never_printed() {
     let (scene, server) = (Scene::new(), Fake::start());
     let run = scene.bake(&server.url(), &format!("--remote-header {SECRET}"));
     assert_eq!(run.code, 2);
     assert!(run.err.contains("--remote-header: expected NAME=VALUE"), "{}", run.err);
-    hides_it(&run);
+    assert_hides_secret(&run);
     let run = scene.bake(&server.url(), &format!("--remote-header a={SECRET}\u{7f}"));
     assert_eq!(run.code, 2, "{}", run.err);
-    hides_it(&run);
+    assert_hides_secret(&run);
 }
 
 #[test]
-fn servers_that_cannot_do_it_are_refused_before_anything_is_sent() {
+fn refuses_unsuitable_servers_before_any_upload() {
     let scene = Scene::new();
     for url in ["localhost:1", "http://localhost:1", "grpc://", "grpc://a b"] {
         let run = scene.bake(&url.replace(' ', "%20"), "");
@@ -64,7 +64,7 @@ fn servers_that_cannot_do_it_are_refused_before_anything_is_sent() {
 }
 
 #[test]
-fn certificates_are_checked_both_ways() {
+fn client_and_server_check_each_others_certificates() {
     let scene = Scene::new();
     let [server, client] = ["server", "client"].map(|name| {
         let made = generate_simple_self_signed(["127.0.0.1".to_owned()]).expect("a certificate");

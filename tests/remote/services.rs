@@ -1,4 +1,4 @@
-//! The calls of the API, as the server in this process answers them.
+//! The services of the API of the fake server.
 
 use bazel_remote_apis::build::bazel::remote::execution::v2 as re;
 use bazel_remote_apis::google::bytestream::byte_stream_server::ByteStream;
@@ -16,7 +16,7 @@ use super::fake::{Faults, State};
 
 type Answer<T> = Result<Response<T>, Status>;
 
-/// A stream of what is known from the start.
+/// A stream of messages that are all known from the start.
 type Known<T> = Iter<std::vec::IntoIter<Result<T, Status>>>;
 
 fn known<T>(messages: Vec<Result<T, Status>>) -> Answer<Known<T>> {
@@ -84,7 +84,7 @@ impl re::content_addressable_storage_server::ContentAddressableStorage for State
     ) -> Answer<re::BatchUpdateBlobsResponse> {
         self.call("BatchUpdateBlobs", &request)?;
         let stored = request.into_inner().requests.into_iter().map(|blob| {
-            let digest = self.written(blob.data);
+            let digest = self.store_written(blob.data);
             let is_right = blob.digest.as_ref() == Some(&digest);
             let code = if is_right { 0 } else { tonic::Code::InvalidArgument as i32 };
             re::batch_update_blobs_response::Response {
@@ -167,7 +167,7 @@ impl ByteStream for State {
             bytes = zstd::stream::decode_all(bytes.as_slice()).expect("zstd");
         }
         let hash = name.rsplit('/').nth(1).unwrap_or_default().to_owned();
-        if self.written(bytes).hash == hash {
+        if self.store_written(bytes).hash == hash {
             Ok(Response::new(WriteResponse { committed_size }))
         } else {
             Err(Status::invalid_argument("another digest"))
@@ -240,14 +240,14 @@ impl re::execution_server::Execution for State {
 }
 
 impl State {
-    /// A blob that a client wrote.
-    fn written(&self, bytes: Vec<u8>) -> re::Digest {
+    /// Stores a blob that a client writes, and counts the write.
+    fn store_written(&self, bytes: Vec<u8>) -> re::Digest {
         let digest = self.put(bytes);
         *self.calls.lock().expect("calls").entry(digest.hash.clone()).or_default() += 1;
         digest
     }
 
-    /// A blob that a client reads.
+    /// Returns a blob that a client reads, with the fault `read`.
     fn read_blob(&self, hash: &str) -> Option<Vec<u8>> {
         let change = self.faults.lock().expect("faults").read.unwrap_or(|bytes| bytes);
         self.get(hash).map(change)

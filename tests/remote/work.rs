@@ -1,4 +1,4 @@
-//! A server that does what it should: bytes are those of a local bake, and nothing is sent or run twice.
+//! Tests with a correct server: outputs are those of a local bake, and nothing is uploaded or executed twice.
 
 use std::fs;
 use std::process::Command;
@@ -10,8 +10,8 @@ use super::fake::{Fake, digest};
 use super::scene::{ROUGHCAST, Run, Scene, expected};
 
 #[test]
-fn outputs_are_those_of_a_local_bake_and_are_made_once() {
-    let (scene, server) = (Scene::bare(), Fake::start());
+fn outputs_equal_a_local_bake_and_are_baked_once() {
+    let (scene, server) = (Scene::without_tool(), Fake::start());
     scene.script("");
     let first = scene.baked(&server.url(), "");
     assert_eq!(first.statuses(), ["baked", "copied", "baked", "baked"]);
@@ -21,13 +21,13 @@ fn outputs_are_those_of_a_local_bake_and_are_made_once() {
         [first.count("actions"), first.count("actions"), 0, 0]
     );
     assert!(first.count("actions") >= 3 && first.count("uploadedBlobs") > 0 && first.count("downloadedBlobs") > 0);
-    // The server's cache: another machine, or this one without its own.
+    // Without a local cache, the results come from the server's cache.
     scene.clear();
     let second = scene.baked(&server.url(), "--cache cache");
     assert_eq!(second.statuses(), ["cached"; 4]);
     assert_eq!(["executed", "uploadedBlobs"].map(|name| second.count(name)), [0, 0]);
     assert_eq!(second.count("cached"), first.count("actions"));
-    // The own cache: the server is not asked, even if it is gone.
+    // With a full local cache, the server is not called and may be gone.
     let url = server.url();
     drop(server);
     scene.clear();
@@ -36,7 +36,7 @@ fn outputs_are_those_of_a_local_bake_and_are_made_once() {
 }
 
 #[test]
-fn concurrent_actions_send_a_blob_once() {
+fn concurrent_actions_upload_a_blob_once() {
     let (scene, server) = (Scene::new(), Fake::start());
     scene.baked(&server.url(), "--remote-jobs 8");
     let tool = digest(&fs::read(scene.path("tool")).expect("a tool"));
@@ -46,7 +46,7 @@ fn concurrent_actions_send_a_blob_once() {
 }
 
 #[test]
-fn equal_assets_in_other_folders_are_the_same_actions() {
+fn equal_assets_in_other_folders_have_equal_actions() {
     let (scene, server) = (Scene::new(), Fake::start());
     scene.baked(&server.url(), "");
     fs::rename(scene.path("assets"), scene.path("elsewhere")).expect("a folder");
@@ -58,7 +58,7 @@ fn equal_assets_in_other_folders_are_the_same_actions() {
 }
 
 #[test]
-fn blobs_go_compressed_where_the_server_takes_them_so() {
+fn compresses_blobs_if_the_server_supports_it() {
     let (scene, server) = (Scene::new(), Fake::start());
     server.faults().capabilities = Some(|capabilities| {
         let cache = capabilities.cache_capabilities.as_mut().expect("a cache");
@@ -69,7 +69,7 @@ fn blobs_go_compressed_where_the_server_takes_them_so() {
 }
 
 #[test]
-fn workers_are_asked_for_what_the_caller_says() {
+fn actions_have_the_requested_platform_and_timeout() {
     let (scene, server) = (Scene::new(), Fake::start());
     scene.baked(&server.url(), "--remote-platform b=2 --remote-platform a=1=1 --remote-timeout 100");
     let blobs = server.state.blobs.lock().expect("blobs").clone();
@@ -91,7 +91,7 @@ fn workers_are_asked_for_what_the_caller_says() {
 }
 
 #[test]
-fn a_server_may_be_named_in_the_configuration() {
+fn reads_the_server_from_the_configuration() {
     let (scene, server) = (Scene::new(), Fake::start());
     let text = format!("[remote]\nurl = '{}'\ntool = '../tool'\njobs = 2\nplatform = {{ a = 'b' }}\n", server.url());
     fs::write(scene.path("assets/roughcast.toml"), text).expect("a file");
@@ -110,7 +110,7 @@ fn a_server_may_be_named_in_the_configuration() {
 }
 
 #[test]
-fn a_job_that_fails_reads_as_it_does_here_and_takes_no_other_with_it() {
+fn a_failed_job_has_the_local_message_and_fails_alone() {
     let (scene, server) = (Scene::new(), Fake::start());
     fs::write(scene.path("assets/waves/broken.gltf"), BROKEN).expect("a file");
     let remote = scene.bake(&server.url(), "");
@@ -124,12 +124,12 @@ fn a_job_that_fails_reads_as_it_does_here_and_takes_no_other_with_it() {
     assert_eq!(remote.err, local.err);
 }
 
-/// A material whose normal map is not there.
+/// A document whose normal map is missing.
 const BROKEN: &str = r#"{"asset":{"version":"2.0"},"images":[{"uri":"missing.png"}],"textures":[{"source":0}],
     "materials":[{"normalTexture":{"index":0}}]}"#;
 
 #[test]
-fn a_job_that_kills_the_tool_takes_no_other_with_it() {
+fn a_job_that_kills_the_tool_fails_alone() {
     let (scene, server) = (Scene::new(), Fake::start());
     fs::write(scene.path("assets/fatal.gltf"), r#"{"asset":{"version":"2.0","generator":"fatal"}}"#).expect("a file");
     scene.tool("if grep -q fatal.gltf plan.json; then echo out of luck >&2; kill -9 $$; fi");

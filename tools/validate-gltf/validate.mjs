@@ -1,5 +1,5 @@
-// Validates every .gltf and .glb below a folder with Khronos' validator; resources are read from disk.
-// usage: node validate.mjs <folder>; exit code 1 when a file has errors, or when there is none to validate.
+// Validates every .gltf and .glb file below a folder with Khronos' validator. Resources are read from disk.
+// usage: node validate.mjs <folder>; the exit code is 1 when a file has errors, or when there is no file to validate.
 import { readdir, readFile } from "node:fs/promises";
 import path from "node:path";
 import process from "node:process";

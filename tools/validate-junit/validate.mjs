@@ -1,4 +1,5 @@
-// node validate.mjs SCHEMA.xsd FILE.xml: exit code 1 and a line per error where FILE does not satisfy SCHEMA.
+// usage: node validate.mjs SCHEMA.xsd FILE.xml
+// The exit code is 1, with a line for each error, when FILE does not satisfy SCHEMA.
 import { readFileSync } from "node:fs";
 import { validateXML } from "xmllint-wasm";
 

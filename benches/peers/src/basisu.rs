@@ -1,4 +1,4 @@
-//! basis_universal's UASTC encoder, as its C interface calls it and as C++ programs do.
+//! basis_universal's UASTC encoder, called as its C interface calls it and as C++ programs do.
 
 use std::ffi::c_void;
 use std::ptr::null_mut;
@@ -9,17 +9,18 @@ use basisu_c_sys::encoder as c;
 
 use crate::Failure;
 
-/// What of the library is called.
+/// The function of the library to call.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Interface {
-    /// `basisu::basis_compress`, which encodes and no more.
+    /// `basisu::basis_compress`, which only encodes.
     Plain,
-    /// `bu_compress_texture`, the C interface, which always computes PSNR, SSIM and PSNR-HVS-M on the side.
+    /// `bu_compress_texture`, the C interface, which always computes PSNR, SSIM and PSNR-HVS-M as well.
     Statistics,
 }
 
 unsafe extern "C" {
-    /// `basisu::basis_compress` of one image: the C interface hides its last parameter, statistics or none.
+    /// Calls `basisu::basis_compress` for one image. The C interface hides the last parameter, which turns statistics
+    /// off.
     #[link_name = "_ZN6basisu14basis_compressEN6basist16basis_tex_formatEPKhjjjjfPmPNS_11image_statsE"]
     fn basis_compress(
         format: u32,
@@ -37,24 +38,24 @@ unsafe extern "C" {
     fn basis_free_data(data: *mut c_void);
 }
 
-/// Builds the library's tables; before the clock starts.
+/// Builds the library's tables, before the clock starts.
 pub fn prepare() {
-    // SAFETY: takes nothing, may be called repeatedly.
+    // SAFETY: the function takes no arguments and may be called repeatedly.
     unsafe { c::bu_init() }
 }
 
-/// A KTX2 file of one level of UASTC without supercompression, by as many threads as there are cores. `rgba` has
-/// `width * height` texels of 4 bytes; `level` is 0 (fastest) to 4.
+/// Encodes one level to a KTX2 file of UASTC without supercompression, on as many threads as there are cores. `rgba`
+/// has `width * height` texels of 4 bytes; `level` is 0 (fastest) to 4.
 ///
 /// # Errors
-/// Where the library gives no file.
+/// When the library returns no file.
 pub fn encode(rgba: &[u8], width: u32, height: u32, level: u32, interface: Interface) -> Result<Vec<u8>, Failure> {
     assert_eq!(rgba.len(), width as usize * height as usize * 4);
     let flags = (BU_COMP_FLAGS_THREADED | BU_COMP_FLAGS_KTX2_OUTPUT) as u32 | level;
     match interface {
         Interface::Plain => {
             let mut size = 0;
-            // SAFETY: the image has that many texels, and the file that comes back `size` bytes, which are ours to free.
+            // SAFETY: the image has that many texels. The returned file has `size` bytes, which the caller must free.
             unsafe {
                 let image = rgba.as_ptr();
                 let file =
@@ -68,7 +69,8 @@ pub fn encode(rgba: &[u8], width: u32, height: u32, level: u32, interface: Inter
             }
         }
         Interface::Statistics => {
-            // SAFETY: addresses travel as integers; the image is copied, and the file lives as long as the parameters.
+            // SAFETY: addresses are passed as integers. The library copies the image, and the file lives as long as the
+            // parameters.
             unsafe {
                 let parameters = c::bu_new_comp_params();
                 let image = rgba.as_ptr() as u64;

@@ -1,20 +1,20 @@
-//! Time of a piece of work, on the wall and of all threads.
+//! Wall time and processor time of a piece of work.
 
 use std::time::{Duration, Instant};
 
 use rustix::time::{ClockId, clock_gettime};
 use serde_json::{Value, json};
 
-/// Seconds of a piece of work.
+/// Seconds that a piece of work takes.
 pub struct Time {
-    /// On the wall.
+    /// Wall time.
     pub wall: f64,
-    /// Of the process, all threads together.
+    /// Processor time of the process, all threads together.
     pub cpu: f64,
 }
 
 impl Time {
-    /// Does `work` once.
+    /// Does `work` once and measures it.
     pub fn of<T>(work: impl FnOnce() -> T) -> (T, Self) {
         let (cpu, wall) = (processor(), Instant::now());
         let result = work();
@@ -22,7 +22,7 @@ impl Time {
         (result, Self { wall, cpu: processor() - cpu })
     }
 
-    /// As `run.py` reads it.
+    /// Returns the time as `run.py` reads it.
     pub fn to_json(&self) -> Value {
         json!({ "wall": self.wall, "cpu": self.cpu })
     }

@@ -1,4 +1,4 @@
-//! The synthetic maps and the copy of the other benches.
+//! The synthetic maps and the copy that the other benches use.
 
 #![allow(dead_code, reason = "not all of it is needed here")]
 
@@ -6,7 +6,7 @@
 pub mod copy;
 #[path = "../../common/maps.rs"]
 pub mod maps;
-#[path = "../../../examples/generate_fixtures/fixtures/noise.rs"]
+#[path = "../../studies/generate_fixtures/fixtures/noise.rs"]
 mod noise;
-#[path = "../../../examples/generate_fixtures/fixtures/picture.rs"]
+#[path = "../../studies/generate_fixtures/fixtures/picture.rs"]
 mod picture;

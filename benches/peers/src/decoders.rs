@@ -12,13 +12,13 @@ use zune_core::options::DecoderOptions;
 use crate::Failure;
 use crate::clock::Time;
 
-/// Texels beyond which zune's decoders would refuse: none of ours.
+/// Largest side of an image that zune's decoders accept. No input has a larger side.
 const MAX_SIDE: usize = 1 << 16;
 
 /// Times `decoder` once.
 ///
 /// # Errors
-/// Where the file cannot be decoded, or nothing has that name.
+/// When the file cannot be decoded, or no decoder has that name.
 pub fn measure(decoder: &str, image: &Path) -> Result<Value, Failure> {
     let file = std::fs::read(image)?;
     let file = black_box(file.as_slice());
@@ -34,10 +34,10 @@ pub fn measure(decoder: &str, image: &Path) -> Result<Value, Failure> {
     Ok(time.to_json())
 }
 
-/// Times what a bake decodes, by Roughcast's own decoders: `in turn` or `side by side`.
+/// Times Roughcast's decoders on the images of a bake, `in turn` or `side by side`.
 ///
 /// # Errors
-/// Where a file cannot be decoded, or the order is neither.
+/// When a file cannot be decoded, or the order is neither of the two.
 pub fn images(order: &str, images: [&Path; 2]) -> Result<Value, Failure> {
     let [first, second] = images.map(std::fs::read);
     let (first, second) = (first?, second?);

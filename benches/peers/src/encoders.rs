@@ -14,17 +14,18 @@ use crate::Failure;
 use crate::basisu::{self, Interface};
 use crate::clock::Time;
 
-/// Who encodes.
+/// An encoder.
 #[derive(Clone, Copy)]
 pub enum Encoder {
-    /// Ours.
+    /// Roughcast's encoder.
     Roughcast(Metric, Effort),
     /// basis_universal at a level from 0 to 4.
     Basisu(u32, Interface),
 }
 
 impl Encoder {
-    /// By its name: `fast`, `best`, `fast rgb`, `fast surface` and so on, `level 0`, `level 0 with statistics` and so on.
+    /// Finds an encoder by name: `fast`, `best`, `fast rgb`, `fast surface` and so on, `level 0`, `level 0 with
+    /// statistics` and so on.
     fn named(name: &str) -> Option<Self> {
         Some(match name {
             "fast" => Self::Roughcast(Metric::Direction, Effort::Fast),
@@ -43,10 +44,10 @@ impl Encoder {
         })
     }
 
-    /// One level of RGBA8 texels to blocks.
+    /// Encodes one level of RGBA8 texels to blocks.
     ///
     /// # Errors
-    /// Where basis_universal fails.
+    /// When basis_universal fails.
     pub fn blocks(self, rgba: &[u8], width: u32, height: u32) -> Result<Vec<u8>, Failure> {
         match self {
             Self::Roughcast(metric, effort) => {
@@ -60,7 +61,7 @@ impl Encoder {
         }
     }
 
-    /// The level as an engine decodes it: by Roughcast's decoder, whoever encoded.
+    /// Decodes the level as an engine would, with Roughcast's decoder for every encoder.
     ///
     /// # Errors
     /// As [`Encoder::blocks`].
@@ -73,7 +74,7 @@ impl Encoder {
 /// Times the encoder of that name on `image`, once.
 ///
 /// # Errors
-/// Where the image cannot be read, or nothing has that name.
+/// When the image cannot be read, or no encoder has that name.
 pub fn measure(contender: &str, image: &Path) -> Result<Value, Failure> {
     let encoder = Encoder::named(contender).ok_or("an encoder's name")?;
     let (rgba, width, height) = read(image)?;
@@ -83,16 +84,16 @@ pub fn measure(contender: &str, image: &Path) -> Result<Value, Failure> {
     Ok(time.to_json())
 }
 
-/// An image as opaque RGBA8, with its size.
+/// Reads an image as opaque RGBA8, with its size.
 ///
 /// # Errors
-/// Where it cannot be read.
+/// When the image cannot be read.
 pub fn read(image: &Path) -> Result<(Vec<u8>, u32, u32), Failure> {
     let image = decode(&std::fs::read(image)?, &DecodeOptions::default())?;
     Ok((rgba(&image), image.width, image.height))
 }
 
-/// Grey becomes three equal channels; alpha is dropped.
+/// Converts an image: grey becomes three equal channels, and alpha is dropped.
 pub fn rgba(image: &Image) -> Vec<u8> {
     let channels = image.channels as usize;
     let colours = if channels < 3 { [0, 0, 0] } else { [0, 1, 2] };

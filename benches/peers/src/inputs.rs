@@ -1,4 +1,4 @@
-//! The inputs: always the same for the same data.
+//! Makes the inputs, which are equal for equal data.
 
 use std::fs::{self, File};
 use std::io::BufWriter;
@@ -11,11 +11,11 @@ use serde_json::{Value, json};
 use crate::Failure;
 use crate::mosaic::Mosaic;
 
-/// Writes `count` assets of one material to `folder`, each with a normal and a roughness map of `size` x `size` texels. The maps of
-/// all assets are links to `normal.png` and `surface.png` of the same folder's `maps`.
+/// Writes `count` assets of one material to `folder`, each with a normal map and a roughness map of `size` x `size`
+/// texels. The maps of all assets are links to `normal.png` and `surface.png` in the folder `maps`.
 ///
 /// # Errors
-/// The system's, and those of maps that cannot be read.
+/// Errors of the system, and of maps that cannot be read.
 pub fn assets(folder: &Path, size: u32, count: usize, data: Option<&Path>) -> Result<Value, Failure> {
     let maps = folder.join("maps");
     fs::create_dir_all(&maps)?;
@@ -46,7 +46,8 @@ pub fn assets(folder: &Path, size: u32, count: usize, data: Option<&Path>) -> Re
     Ok(json!({ "size": size, "count": count }))
 }
 
-/// An RGB PNG as tools write it, zlib's default level and the filter chosen row by row; never whole in memory.
+/// Writes an RGB PNG as tools do, with zlib's default level and the filter chosen row by row. The image is never whole
+/// in memory.
 fn png(path: &Path, size: u32, mosaic: &Mosaic) -> Result<(), Failure> {
     let mut encoder = png::Encoder::new(BufWriter::new(File::create(path)?), size, size);
     encoder.set_color(png::ColorType::Rgb);
@@ -65,10 +66,10 @@ fn png(path: &Path, size: u32, mosaic: &Mosaic) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The image as a JPEG of quality 90.
+/// Writes the image as a JPEG of quality 90.
 ///
 /// # Errors
-/// The system's, and those of an image that cannot be read.
+/// Errors of the system, and of an image that cannot be read.
 pub fn jpeg(image: &Path, out: &Path) -> Result<Value, Failure> {
     let image = decode(&fs::read(image)?, &DecodeOptions::default())?;
     let encoder = jpeg_encoder::Encoder::new_file(out, 90)?;

@@ -1,4 +1,5 @@
-//! The lobe error of baked normals whose blocks each encoder made; `examples/encoding.rs` has the same for Roughcast's own formats.
+//! Measures the lobe error of baked normals for the blocks of each encoder. `benches/studies/encoding.rs` does so for
+//! Roughcast's own formats.
 
 use std::path::Path;
 
@@ -20,26 +21,27 @@ use crate::Failure;
 use crate::basisu::{self, Interface};
 use crate::encoders::{Encoder, rgba};
 
-/// Of the material.
+/// Alpha of the material.
 const ALPHA: f32 = 0.2;
-/// Those that are judged.
+/// Levels that are measured.
 const LEVELS: std::ops::RangeInclusive<u32> = 1..=4;
-/// Texels of each level that are judged.
+/// Texels of each level that are measured.
 const TEXELS: usize = 64;
-/// What makes the blocks of normals.
+/// Encoders of the normals.
 const ENCODERS: [(&str, Encoder); 4] = [
     ("fast", Encoder::Roughcast(Metric::Direction, Effort::Fast)),
     ("best", Encoder::Roughcast(Metric::Direction, Effort::Best)),
     ("level 0", Encoder::Basisu(0, Interface::Plain)),
     ("level 1", Encoder::Basisu(1, Interface::Plain)),
 ];
-/// Not encoded, then [`ENCODERS`].
+/// Columns: not encoded, then [`ENCODERS`].
 const COLUMNS: usize = 1 + ENCODERS.len();
 
-/// Mean lobe error of levels 1 to 4 of each normal map; roughness and anisotropy are half floats throughout.
+/// Returns the mean lobe error of levels 1 to 4 of each normal map. Roughness and anisotropy are half floats
+/// throughout.
 ///
 /// # Errors
-/// Where an image cannot be read, baked or encoded.
+/// When an image cannot be read, baked or encoded.
 pub fn measure(images: &[&str]) -> Result<Value, Failure> {
     basisu::prepare();
     let mut maps = Map::new();
@@ -58,10 +60,10 @@ pub fn measure(images: &[&str]) -> Result<Value, Failure> {
 fn errors(image: &Image) -> Result<[f64; COLUMNS], Failure> {
     let map = || NormalMap::new(image.clone(), NormalLayout::Auto, false);
     let surface = Surface::of_map(&map()?, SquaredAlpha::isotropic(Alpha(ALPHA)));
-    let own = BaseRoughness { image: None, factor: Roughness::from(Alpha(ALPHA)).0 };
+    let base = BaseRoughness { image: None, factor: Roughness::from(Alpha(ALPHA)).0 };
     let settings =
-        Settings { model: Model::Anisotropic, target: Target::Float, provenance: false, ..Settings::default() };
-    let baked = bake_map(&BumpMap::Normals(map()?), Some(&own), &settings)?;
+        Settings::default().with_model(Model::Anisotropic).with_target(Target::Float).with_provenance(false);
+    let baked = bake_map(&BumpMap::Normals(map()?), Some(&base), &settings)?;
     let files: Vec<_> = baked.textures.iter().map(|t| (t.content, t.mip_chain.to_ktx2(&[]).unwrap())).collect();
     let mut sums = [0.0; COLUMNS];
     for level in LEVELS {

@@ -1,6 +1,6 @@
-//! What `run.py` measures and cannot measure from outside: each subcommand prints one line of JSON.
+//! Measurements that `run.py` cannot take from outside. Each subcommand prints one line of JSON.
 //!
-//! A process does one thing once, so that runs alternate and the memory of each is its own.
+//! Each process measures one thing once, so that runs alternate and each has its own peak memory.
 
 mod basisu;
 mod clock;
@@ -19,7 +19,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-/// Whatever ends a measurement.
+/// An error that ends a measurement.
 type Failure = Box<dyn Error>;
 
 const USAGE: &str = "expected one of

@@ -1,5 +1,5 @@
-//! A stand-in for `ktx create --generate-mipmap --encode uastc --uastc-quality 0 --zstd 5`, which is in no registry: the same
-//! decoding, mips and encoder, with zstd as Roughcast's `fast` has it, by the `png` crate, boxes and basis_universal's level 0.
+//! A stand-in for `ktx create --generate-mipmap --encode uastc --uastc-quality 0 --zstd 5`, which no registry has. It
+//! uses the `png` crate, box-filtered mips, basis_universal's level 0, and zstd as in Roughcast's `fast`.
 
 use std::path::Path;
 
@@ -17,7 +17,7 @@ use crate::encoders::{Encoder, read};
 /// Packs `image` to `out`.
 ///
 /// # Errors
-/// Where a file cannot be read or written, or a level not encoded.
+/// When a file cannot be read or written, or a level cannot be encoded.
 pub fn measure(image: &Path, out: &Path) -> Result<Value, Failure> {
     basisu::prepare();
     let (mut texels, width, height) = read(image)?;
@@ -35,7 +35,7 @@ pub fn measure(image: &Path, out: &Path) -> Result<Value, Failure> {
     Ok(json!({ "bytes": file.len() }))
 }
 
-/// Boxes of 2 x 2 texels; the last column and row of odd sizes are left out.
+/// Averages boxes of 2 x 2 texels. The last column and row of odd sizes are left out.
 fn halved(rgba: &[u8], (fine_width, fine_height): (u32, u32), (width, _): (u32, u32)) -> Vec<u8> {
     let (texels, fine_width, fine_height) = (rgba.as_chunks::<4>().0, fine_width as usize, fine_height as usize);
     let width = width as usize;

@@ -1,4 +1,4 @@
-//! How near decoded blocks are to their source, map by map.
+//! Measures the error of decoded blocks, map by map.
 
 use std::ops::Range;
 use std::path::Path;
@@ -12,8 +12,8 @@ use crate::Failure;
 use crate::basisu::{self, Interface};
 use crate::encoders::{Encoder, read};
 
-/// What is compared, by the names of the table. PSNR goes by those that fit colours, that of green by those that fit roughness,
-/// angles by those that fit directions.
+/// The encoders to compare, by their names in the table: for PSNR those that fit colours, for PSNR of green those that
+/// fit roughness, for angles those that fit directions.
 const ENCODERS: [(&str, Encoder); 9] = [
     ("fast rgb", Encoder::Roughcast(Metric::Rgb, Effort::Fast)),
     ("best rgb", Encoder::Roughcast(Metric::Rgb, Effort::Best)),
@@ -26,11 +26,11 @@ const ENCODERS: [(&str, Encoder); 9] = [
     ("level 2", Encoder::Basisu(2, Interface::Plain)),
 ];
 
-/// PSNR of each encoder on each image; on normal maps (by their name) the angle between normals, on all others the PSNR of
-/// green.
+/// Returns the PSNR of each encoder on each image. Normal maps (by name) also get the angle between normals, and all
+/// other maps get the PSNR of green.
 ///
 /// # Errors
-/// Where an image cannot be read or encoded.
+/// When an image cannot be read or encoded.
 pub fn measure(images: &[&str]) -> Result<Value, Failure> {
     basisu::prepare();
     let mut maps = Map::new();
@@ -55,13 +55,13 @@ pub fn measure(images: &[&str]) -> Result<Value, Failure> {
     Ok(Value::Object(maps))
 }
 
-/// Whether a map of that name holds normals.
+/// Returns whether a map of that name holds normals.
 fn is_normal_map(name: &str) -> bool {
     let name = name.to_ascii_lowercase();
     name.contains("normal") || name.contains("_nor_")
 }
 
-/// The texels in [0, 255], source and decoded.
+/// Returns the source texels and the decoded texels, in [0, 255].
 fn pairs<'a>(rgba: &'a [u8], decoded: &'a Image) -> impl Iterator<Item = [[f64; 3]; 2]> + 'a {
     let channels = decoded.channels as usize;
     rgba.as_chunks::<4>().0.iter().enumerate().map(move |(i, texel)| {
@@ -70,24 +70,24 @@ fn pairs<'a>(rgba: &'a [u8], decoded: &'a Image) -> impl Iterator<Item = [[f64; 
     })
 }
 
-/// What stands for no difference, in dB: more than 8 bits can tell.
+/// PSNR in dB that stands for equal images, above what 8 bits can have.
 const EXACT: f64 = 99.0;
 
-/// Of these channels together, in dB.
+/// Returns the PSNR of these channels together, in dB.
 fn psnr(rgba: &[u8], decoded: &Image, channels: Range<usize>) -> f64 {
     let square = |[a, b]: [[f64; 3]; 2]| channels.clone().map(|c| (a[c] - b[c]).powi(2)).sum::<f64>();
     let mean = pairs(rgba, decoded).map(square).sum::<f64>() / (rgba.len() / 4 * channels.len()) as f64;
     (10.0 * (255.0 * 255.0 / mean).log10()).min(EXACT)
 }
 
-/// Root of the mean squared angle between normals, in degrees.
+/// Returns the root of the mean squared angle between normals, in degrees.
 fn degrees(rgba: &[u8], decoded: &Image) -> f64 {
     let unit = |texel: [f64; 3]| {
         let vector = texel.map(|c| c / 127.5 - 1.0);
         let length = vector.iter().map(|x| x * x).sum::<f64>().sqrt().max(f64::MIN_POSITIVE);
         vector.map(|x| x / length)
     };
-    // By the chord: the cosine loses small angles.
+    // The angle is computed from the chord, since the cosine loses small angles.
     let square = |[a, b]: [[f64; 3]; 2]| {
         let (a, b) = (unit(a), unit(b));
         let chord = (0..3).map(|c| (a[c] - b[c]).powi(2)).sum::<f64>().sqrt();

@@ -1,32 +1,35 @@
-//! Arithmetic on a number or on a vector of numbers, under one name.
+//! The trait of numbers and of vectors of numbers.
 
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Sub};
 
-use fearless_simd::{Select, Simd, SimdBase, SimdFloat, mask32x16, prelude::*};
+use fearless_simd::{Select, Simd, SimdBase, SimdFloat, prelude::*};
 
-use crate::Wide;
+use crate::{Wide, WideMask};
 
 /// A number, or a vector with one number in each lane.
+///
+/// All operations work lane by lane and give the same bits for a number and for a lane of a vector. Names that the
+/// vectors of `fearless_simd` already have are avoided (`splat`, `simd_le`), so that kernels on vectors can use both.
 pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> {
     /// One truth value for each lane.
     type Mask: Copy + BitAnd<Output = Self::Mask> + BitOr<Output = Self::Mask>;
 
-    /// Returns `value` in every lane of a number or vector of the same type as `self`.
+    /// Returns `value` in every lane. `self` only provides the type and the instruction set; its numbers are not used.
     fn splat_like(self, value: f32) -> Self;
 
-    /// Returns the square root, correctly rounded.
+    /// Returns the correctly rounded square root of each lane.
     fn sqrt(self) -> Self;
 
-    /// Returns the larger number of each lane. What NaN gives depends on the machine.
+    /// Returns the larger number of each lane. The result for NaN depends on the machine.
     fn max(self, other: Self) -> Self;
 
-    /// Returns the smaller number of each lane. What NaN gives depends on the machine.
+    /// Returns the smaller number of each lane. The result for NaN depends on the machine.
     fn min(self, other: Self) -> Self;
 
-    /// Compares lane by lane: set where `self` is at most `other`.
+    /// Compares lane by lane ("less or equal"): the mask is set where `self` is at most `other`.
     fn lanes_le(self, other: Self) -> Self::Mask;
 
-    /// Compares lane by lane: set where `self` is 0.
+    /// Compares lane by lane with 0: the mask is set where `self` is 0 or -0.
     fn is_zero(self) -> Self::Mask;
 
     /// Selects `self` where `mask` is set and `other` elsewhere.
@@ -81,7 +84,7 @@ impl Real for f32 {
 }
 
 impl<S: Simd> Real for Wide<S> {
-    type Mask = mask32x16<S>;
+    type Mask = WideMask<S>;
 
     #[inline(always)]
     fn splat_like(self, value: f32) -> Self {

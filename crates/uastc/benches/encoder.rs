@@ -1,6 +1,6 @@
-//! Blocks from texels, by metric and effort, and back: `cargo bench --bench encoder`.
+//! Times encoding by metric and effort, rate-distortion optimisation, and decoding: `cargo bench --bench encoder`.
 //!
-//! Items are texels. `BENCH_SIZE` is the side of the images in texels: 2048 unless set.
+//! Items are texels. `BENCH_SIZE` is the width and height of the images in texels, by default 2048.
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
@@ -13,12 +13,12 @@ fn main() {
     divan::main();
 }
 
-/// Side of the images in texels.
+/// Returns the width and height of the images in texels.
 fn size() -> u32 {
     std::env::var("BENCH_SIZE").ok().and_then(|size| size.parse().ok()).unwrap_or(2048)
 }
 
-/// An image whose texel at (x, y) is `texel` of both and of noise in 0..1.
+/// Makes an image whose texel at (x, y) is `texel` of x, y and noise in 0..1.
 fn image(texel: impl Fn(f32, f32, f32) -> [u8; 4]) -> Vec<u8> {
     let mut state = 1u32;
     let mut noise = || {
@@ -29,7 +29,7 @@ fn image(texel: impl Fn(f32, f32, f32) -> [u8; 4]) -> Vec<u8> {
     (0..size * size).flat_map(|i| texel((i % size) as f32, (i / size) as f32, noise())).collect()
 }
 
-/// Waves of three lengths under a grain that no compressor removes.
+/// Makes a normal map: waves of three lengths, and a grain that no compressor removes.
 fn normals() -> Vec<u8> {
     image(|x, y, noise| {
         let [u, v] = [(x, y), (y, x)].map(|(a, b)| {
@@ -41,7 +41,7 @@ fn normals() -> Vec<u8> {
     })
 }
 
-/// Smudges in green alone.
+/// Makes a roughness map: smudges in green, with constant red and blue.
 fn roughness() -> Vec<u8> {
     image(|x, y, noise| [255, (110.0 + 60.0 * (x * 0.05).sin() * (y * 0.04).cos() + 5.0 * noise) as u8, 0, 255])
 }

@@ -1,13 +1,13 @@
-//! Blocks side by side that are being searched, and their way from and to single ones.
+//! Blocks during a search, one in each lane, and conversion from and to single blocks.
 
-use fearless_simd::{Simd, SimdBase, SimdCvtFloat, SimdCvtTruncate, prelude::*, u32x16};
+use fearless_simd::{Simd, SimdBase, SimdCvtFloat, SimdCvtTruncate, prelude::*};
 
-use crate::lanes::{Grid, take};
+use crate::lanes::{Grid, set_where};
 use crate::pack::Block;
 use crate::tables::{MODE_0, Mode};
-use texel_simd::{LANES, Real, Wide};
+use texel_simd::{LANES, Real, Wide, WideU32};
 
-/// A [`Block`] in each lane, all its numbers as whole floats.
+/// A [`Block`] in each lane. All numbers are whole floats.
 #[derive(Clone, Copy)]
 pub(crate) struct Blocks<S: Simd> {
     pub modes: [&'static Mode; LANES],
@@ -19,7 +19,7 @@ pub(crate) struct Blocks<S: Simd> {
 }
 
 impl<S: Simd> Blocks<S> {
-    /// Blocks of one mode, all zeros.
+    /// Creates blocks of one mode whose numbers are all 0.
     #[inline(always)]
     pub fn empty(simd: S, mode: &'static Mode) -> Self {
         let zero = Wide::splat(simd, 0.0);
@@ -33,46 +33,47 @@ impl<S: Simd> Blocks<S> {
         }
     }
 
-    /// Blocks that any other is better than.
+    /// Creates blocks with infinite errors, which any other block replaces.
     #[inline(always)]
     pub fn none(simd: S) -> Self {
         Self { error: Wide::splat(simd, f32::INFINITY), ..Self::empty(simd, &MODE_0) }
     }
 
-    /// Becomes `other`, whose blocks are of one mode, where that is `allowed` and has the lesser error.
+    /// Replaces the blocks by those of `other` in the `allowed` lanes in which `other` has the smaller error. All
+    /// blocks of `other` have one mode.
     #[inline(always)]
-    pub fn offer(&mut self, other: &Self, allowed: <Wide<S> as Real>::Mask) {
+    pub fn keep_better(&mut self, other: &Self, allowed: <Wide<S> as Real>::Mask) {
         let is_better = other.error.simd_lt(self.error) & allowed;
         if is_better.any_true() {
-            self.take(other, is_better);
+            self.set_where(other, is_better);
         }
     }
 
-    /// Becomes `other`, whose blocks are of one mode, where `mask` holds.
+    /// Replaces the blocks by those of `other` where `mask` is set. All blocks of `other` have one mode.
     #[inline(always)]
-    pub fn take(&mut self, other: &Self, mask: <Wide<S> as Real>::Mask) {
+    pub fn set_where(&mut self, other: &Self, mask: <Wide<S> as Real>::Mask) {
         let mode = other.modes[0];
         for (j, own) in self.modes.iter_mut().enumerate() {
             if mask.to_bitmask() >> j & 1 == 1 {
                 *own = mode;
             }
         }
-        take(&mut self.pattern, other.pattern, mask);
-        take(&mut self.selector, other.selector, mask);
-        take(&mut self.error, other.error, mask);
+        set_where(&mut self.pattern, other.pattern, mask);
+        set_where(&mut self.selector, other.selector, mask);
+        set_where(&mut self.error, other.error, mask);
         for (own, other) in self.endpoints.iter_mut().zip(&other.endpoints).take(mode.subsets) {
             for (own, other) in own.as_flattened_mut().iter_mut().zip(other.as_flattened()).take(2 * mode.channels) {
-                take(own, *other, mask);
+                set_where(own, *other, mask);
             }
         }
         for (own, other) in self.weights.iter_mut().zip(&other.weights).take(mode.planes) {
             for (own, other) in own.iter_mut().zip(other) {
-                take(own, *other, mask);
+                set_where(own, *other, mask);
             }
         }
     }
 
-    /// The nearest level to a whole `level` that endpoints of the blocks' modes may have.
+    /// Returns the endpoint level nearest to `level` in the mode of each block.
     #[inline(always)]
     pub fn nearest(&self, simd: S, level: Wide<S>) -> Wide<S> {
         let mut levels: [f32; LANES] = level.into();
@@ -82,7 +83,7 @@ impl<S: Simd> Blocks<S> {
         Wide::simd_from(simd, levels)
     }
 
-    /// From single blocks.
+    /// Loads one block into each lane.
     #[inline(always)]
     pub fn load(simd: S, blocks: [&Block; LANES]) -> Self {
         let mut all = Self::empty(simd, blocks[0].mode);
@@ -99,7 +100,7 @@ impl<S: Simd> Blocks<S> {
         all
     }
 
-    /// To single blocks.
+    /// Stores the blocks to memory, from which [`Stored::block`] reads single blocks.
     #[inline(always)]
     pub fn store(&self) -> Stored {
         let mut stored = Stored {
@@ -127,14 +128,14 @@ pub(crate) struct Stored {
     patterns: [f32; LANES],
     selectors: [f32; LANES],
     pub errors: [f32; LANES],
-    /// Four bytes of each block, all of them in the order of [`Block::endpoints`].
+    /// The bytes of [`Block::endpoints`] of each block, in words of four.
     endpoints: [[u32; LANES]; 6],
-    /// Four bytes of each block, all of them in the order of [`Block::weights`].
+    /// The bytes of [`Block::weights`] of each block, in words of four.
     weights: [[u32; LANES]; 8],
 }
 
 impl Stored {
-    /// The block in a lane.
+    /// Returns the block in a lane.
     #[inline(always)]
     pub fn block(&self, lane: usize) -> Block {
         let mut block = Block {
@@ -157,7 +158,7 @@ impl Stored {
 /// Unpacks four bytes of each block into four vectors.
 #[inline(always)]
 fn unpacked<S: Simd>(simd: S, bytes: [[u8; 4]; LANES]) -> [Wide<S>; 4] {
-    let words = u32x16::simd_from(simd, bytes.map(u32::from_le_bytes));
+    let words = WideU32::simd_from(simd, bytes.map(u32::from_le_bytes));
     [
         Wide::float_from(words & 255),
         Wide::float_from((words >> 8) & 255),
@@ -169,7 +170,11 @@ fn unpacked<S: Simd>(simd: S, bytes: [[u8; 4]; LANES]) -> [Wide<S>; 4] {
 /// Packs four vectors into four bytes of each block.
 #[inline(always)]
 fn packed<S: Simd>([a, b, c, d]: &[Wide<S>; 4]) -> [u32; LANES] {
-    let [a, b, c, d] =
-        [u32x16::truncate_from(*a), u32x16::truncate_from(*b), u32x16::truncate_from(*c), u32x16::truncate_from(*d)];
+    let [a, b, c, d] = [
+        WideU32::truncate_from(*a),
+        WideU32::truncate_from(*b),
+        WideU32::truncate_from(*c),
+        WideU32::truncate_from(*d),
+    ];
     (a | b << 8 | c << 16 | d << 24).into()
 }

@@ -1,18 +1,18 @@
-//! Blocks of one given mode, fitted to their texels.
+//! Candidates: blocks of one given mode, fitted to their texels.
 
 #![expect(clippy::needless_range_loop, reason = "loops over channels read several arrays at one index")]
 
-use fearless_simd::{Select, Simd, SimdBase, SimdCvtFloat, prelude::*, u32x16};
+use fearless_simd::{Select, Simd, SimdBase, SimdCvtFloat, prelude::*};
 
 use crate::blocks::Blocks;
 use crate::lanes::Grid;
 use crate::line::{Line, Points};
 use crate::moments::{Moments, moments, principal_axis, scatter_along, trace};
-use crate::partition::Least;
-use crate::tables::{Mode, PATTERNS, THIRDS};
-use texel_simd::{LANES, Wide};
+use crate::partition::BestPatterns;
+use crate::tables::{Mode, PATTERNS_2, PATTERNS_3};
+use texel_simd::{LANES, Wide, WideU32};
 
-/// The channels of texel `i`.
+/// Returns the channels of texel `i`.
 #[inline(always)]
 pub(crate) fn texel<S: Simd, const N: usize>(texels: &[Grid<S>; N], i: usize) -> [Wide<S>; N] {
     let mut texel = [texels[0][i]; N];
@@ -22,25 +22,25 @@ pub(crate) fn texel<S: Simd, const N: usize>(texels: &[Grid<S>; N], i: usize) ->
     texel
 }
 
-/// The channel at `selector` and, `M` of them, the others.
+/// Splits the channels of texels into the channel at `selector` and the `M` other channels.
 #[inline(always)]
-pub(crate) fn parted<S: Simd, const N: usize, const M: usize>(
+pub(crate) fn split_channels<S: Simd, const N: usize, const M: usize>(
     texels: &[Grid<S>; N],
     selector: Wide<S>,
 ) -> ([Grid<S>; 1], [Grid<S>; M]) {
     let (mut single, mut others) = ([texels[0]], [texels[0]; M]);
     for i in 0..16 {
         let texel = texel(texels, i);
-        single[0][i] = alone(selector, &texel);
-        let left: [Wide<S>; M] = rest(selector, &texel);
+        single[0][i] = channel_at(selector, &texel);
+        let other: [Wide<S>; M] = other_channels(selector, &texel);
         for k in 0..M {
-            others[k][i] = left[k];
+            others[k][i] = other[k];
         }
     }
     (single, others)
 }
 
-/// A number per channel, in all lanes.
+/// Copies one number for each channel to all lanes.
 #[inline(always)]
 pub(crate) fn splat<S: Simd, const N: usize>(simd: S, numbers: &[f32; N]) -> [Wide<S>; N] {
     let mut all = [Wide::splat(simd, numbers[0]); N];
@@ -50,9 +50,9 @@ pub(crate) fn splat<S: Simd, const N: usize>(simd: S, numbers: &[f32; N]) -> [Wi
     all
 }
 
-/// The channels of a block but the one at `selector`.
+/// Returns all channels except the one at `selector`.
 #[inline(always)]
-pub(crate) fn rest<S: Simd, const N: usize, const M: usize>(
+pub(crate) fn other_channels<S: Simd, const N: usize, const M: usize>(
     selector: Wide<S>,
     channels: &[Wide<S>; N],
 ) -> [Wide<S>; M] {
@@ -63,9 +63,9 @@ pub(crate) fn rest<S: Simd, const N: usize, const M: usize>(
     rest
 }
 
-/// The channel at `selector`.
+/// Returns the channel at `selector`.
 #[inline(always)]
-pub(crate) fn alone<S: Simd, const N: usize>(selector: Wide<S>, channels: &[Wide<S>; N]) -> Wide<S> {
+pub(crate) fn channel_at<S: Simd, const N: usize>(selector: Wide<S>, channels: &[Wide<S>; N]) -> Wide<S> {
     let mut found = channels[0];
     for c in 1..N {
         found = selector.simd_eq(c as f32).select(channels[c], found);
@@ -74,9 +74,9 @@ pub(crate) fn alone<S: Simd, const N: usize>(selector: Wide<S>, channels: &[Wide
 }
 
 impl<S: Simd> Blocks<S> {
-    /// Takes over a line through the first channels, of the texels in `mask`.
+    /// Sets the endpoints of `subset` and the weights of the texels in `mask` to those of a line, and adds its error.
     #[inline(always)]
-    pub(crate) fn place<const N: usize>(&mut self, line: &Line<S, N>, subset: usize, mask: Option<&Grid<S>>) {
+    pub(crate) fn set_line<const N: usize>(&mut self, line: &Line<S, N>, subset: usize, mask: Option<&Grid<S>>) {
         for c in 0..N {
             self.endpoints[subset][c] = [line.low[c], line.high[c]];
         }
@@ -89,9 +89,9 @@ impl<S: Simd> Blocks<S> {
         self.error += line.error;
     }
 
-    /// Takes over the lines of two planes: of the channel at the selector, and of the others.
+    /// Sets endpoints, weights and error to those of two planes: the channel at the selector, and the other channels.
     #[inline(always)]
-    pub(crate) fn place_planes<const N: usize, const M: usize>(&mut self, single: &Line<S, 1>, others: &Line<S, M>) {
+    pub(crate) fn set_planes<const N: usize, const M: usize>(&mut self, single: &Line<S, 1>, others: &Line<S, M>) {
         for c in 0..N {
             let is_single = self.selector.simd_eq(c as f32);
             let is_before = self.selector.simd_gt(c as f32);
@@ -105,9 +105,9 @@ impl<S: Simd> Blocks<S> {
     }
 }
 
-/// Blocks of one line through the first `N` channels; `BITS` are the weight bits of `mode`, here and below.
+/// Returns blocks of one line through the first `N` channels.
 #[inline(always)]
-pub(crate) fn one_line<S: Simd, const N: usize, const BITS: u32>(
+pub(crate) fn one_line<S: Simd, const N: usize>(
     simd: S,
     texels: &[Grid<S>; N],
     all: &Moments<S, N>,
@@ -121,16 +121,16 @@ pub(crate) fn one_line<S: Simd, const N: usize, const BITS: u32>(
         || {
             let mut blocks = Blocks::empty(simd, mode);
             let scale = splat(simd, scale);
-            let points = Points { texels, subset: None, scale, range: mode.range };
-            blocks.place(&points.fit::<BITS>(simd, all, axis, rounds), 0, None);
+            let points = Points { texels, subset: None, scale, range: mode.range, ramp: mode.ramp() };
+            blocks.set_line(&points.fit(simd, all, axis, rounds), 0, None);
             blocks
         },
     )
 }
 
-/// Blocks whose channel `selector` has a line of its own beside that of the other channels.
+/// Returns blocks of two planes: one line for the channel at `selector` and one line for the other channels.
 #[inline(always)]
-pub(crate) fn two_planes<S: Simd, const N: usize, const BITS: u32>(
+pub(crate) fn two_planes<S: Simd, const N: usize>(
     simd: S,
     texels: &[Grid<S>; N],
     all: &Moments<S, N>,
@@ -142,15 +142,15 @@ pub(crate) fn two_planes<S: Simd, const N: usize, const BITS: u32>(
     simd.vectorize(
         #[inline(always)]
         || match N {
-            2 => planes::<S, N, 1, BITS>(simd, texels, all, selector, scale, mode, rounds),
-            _ => planes::<S, N, 2, BITS>(simd, texels, all, selector, scale, mode, rounds),
+            2 => planes::<S, N, 1>(simd, texels, all, selector, scale, mode, rounds),
+            _ => planes::<S, N, 2>(simd, texels, all, selector, scale, mode, rounds),
         },
     )
 }
 
 /// Implements [`two_planes`] with `M`, which is one less than `N`.
 #[inline(always)]
-fn planes<S: Simd, const N: usize, const M: usize, const BITS: u32>(
+fn planes<S: Simd, const N: usize, const M: usize>(
     simd: S,
     texels: &[Grid<S>; N],
     all: &Moments<S, N>,
@@ -161,34 +161,46 @@ fn planes<S: Simd, const N: usize, const M: usize, const BITS: u32>(
 ) -> Blocks<S> {
     let zero = Wide::splat(simd, 0.0);
     let scale = splat(simd, scale);
-    let (single, others) = parted::<_, N, M>(texels, selector);
+    let (single, others) = split_channels::<_, N, M>(texels, selector);
     let (mut own, mut columns, mut scatter) = ([zero; N], [[zero; N]; M], [[zero; M]; M]);
     for c in 0..N {
         own[c] = all.scatter[c][c];
-        let row: [Wide<S>; M] = rest(selector, &all.scatter[c]);
+        let row: [Wide<S>; M] = other_channels(selector, &all.scatter[c]);
         for k in 0..M {
             columns[k][c] = row[k];
         }
     }
     for k in 0..M {
-        scatter[k] = rest(selector, &columns[k]);
+        scatter[k] = other_channels(selector, &columns[k]);
     }
     let single_moments =
-        Moments { count: all.count, sums: [alone(selector, &all.sums)], scatter: [[alone(selector, &own)]] };
-    let other_moments = Moments { count: all.count, sums: rest(selector, &all.sums), scatter };
+        Moments { count: all.count, sums: [channel_at(selector, &all.sums)], scatter: [[channel_at(selector, &own)]] };
+    let other_moments = Moments { count: all.count, sums: other_channels(selector, &all.sums), scatter };
 
-    let points = Points { texels: &single, subset: None, scale: [alone(selector, &scale)], range: mode.range };
-    let single = points.fit::<BITS>(simd, &single_moments, &[Wide::splat(simd, 1.0)], rounds);
-    let points = Points { texels: &others, subset: None, scale: rest(selector, &scale), range: mode.range };
+    let points = Points {
+        texels: &single,
+        subset: None,
+        scale: [channel_at(selector, &scale)],
+        range: mode.range,
+        ramp: mode.ramp(),
+    };
+    let single = points.fit(simd, &single_moments, &[Wide::splat(simd, 1.0)], rounds);
+    let points = Points {
+        texels: &others,
+        subset: None,
+        scale: other_channels(selector, &scale),
+        range: mode.range,
+        ramp: mode.ramp(),
+    };
     let axis = principal_axis(simd, &other_moments.scatter);
-    let others = points.fit::<BITS>(simd, &other_moments, &axis, rounds);
+    let others = points.fit(simd, &other_moments, &axis, rounds);
     let mut blocks = Blocks::empty(simd, mode);
     blocks.selector = selector;
-    blocks.place_planes::<N, M>(&single, &others);
+    blocks.set_planes::<N, M>(&single, &others);
     blocks
 }
 
-/// The `K` subsets of a pattern, ready to be fitted.
+/// The `K` subsets of a pattern with their moments and principal axes.
 pub(crate) struct Split<S: Simd, const N: usize, const K: usize> {
     pattern: Wide<S>,
     masks: [Grid<S>; K],
@@ -196,11 +208,12 @@ pub(crate) struct Split<S: Simd, const N: usize, const K: usize> {
     axes: [[Wide<S>; N]; K],
 }
 
-/// 1 for the texels of a subset of a pattern, 0 for the others; `members` has bit i for texel i.
+/// Returns 1 for the texels of a subset of a pattern and 0 for the others. `members` returns the subset as bits, bit i
+/// for texel i.
 #[inline(always)]
 fn mask<S: Simd>(simd: S, pattern: Wide<S>, members: impl Fn(usize) -> u16) -> Grid<S> {
     let pattern: [f32; LANES] = pattern.into();
-    let bits = u32x16::simd_from(simd, pattern.map(|p| u32::from(members(p as usize))));
+    let bits = WideU32::simd_from(simd, pattern.map(|p| u32::from(members(p as usize))));
     let mut mask = [Wide::splat(simd, 0.0); 16];
     for (i, member) in mask.iter_mut().enumerate() {
         *member = Wide::float_from((bits >> i as u32) & 1);
@@ -208,17 +221,17 @@ fn mask<S: Simd>(simd: S, pattern: Wide<S>, members: impl Fn(usize) -> u16) -> G
     mask
 }
 
-/// The subsets of two-subset patterns.
+/// Returns the masks of the subsets of two-subset patterns.
 #[inline(always)]
-fn halves<S: Simd>(simd: S, pattern: Wide<S>) -> [Grid<S>; 2] {
-    let members = |p: usize| PATTERNS[p % PATTERNS.len()];
+fn two_subset_masks<S: Simd>(simd: S, pattern: Wide<S>) -> [Grid<S>; 2] {
+    let members = |p: usize| PATTERNS_2[p % PATTERNS_2.len()];
     [mask(simd, pattern, |p| !members(p)), mask(simd, pattern, members)]
 }
 
-/// The subsets of three-subset patterns.
+/// Returns the masks of the subsets of three-subset patterns.
 #[inline(always)]
-fn thirds<S: Simd>(simd: S, pattern: Wide<S>) -> [Grid<S>; 3] {
-    let members = |p: usize| THIRDS[p % THIRDS.len()];
+fn three_subset_masks<S: Simd>(simd: S, pattern: Wide<S>) -> [Grid<S>; 3] {
+    let members = |p: usize| PATTERNS_3[p % PATTERNS_3.len()];
     [
         mask(simd, pattern, |p| members(p)[0]),
         mask(simd, pattern, |p| members(p)[1]),
@@ -227,43 +240,44 @@ fn thirds<S: Simd>(simd: S, pattern: Wide<S>) -> [Grid<S>; 3] {
 }
 
 impl<S: Simd> Blocks<S> {
-    /// The subsets of blocks of one mode: 1 for a member, 0 for the rest; none where all texels belong to one.
+    /// Returns the masks of the subsets of blocks of one mode: 1 for a member, 0 for other texels. Returns `None` if
+    /// the mode has one subset.
     #[inline(always)]
     pub(crate) fn masks(&self, simd: S) -> Option<[Grid<S>; 3]> {
         match self.modes[0].subsets {
             1 => None,
             2 => {
-                let [zero, one] = halves(simd, self.pattern);
+                let [zero, one] = two_subset_masks(simd, self.pattern);
                 Some([zero, one, one])
             }
-            _ => Some(thirds(simd, self.pattern)),
+            _ => Some(three_subset_masks(simd, self.pattern)),
         }
     }
 }
 
 impl<S: Simd, const N: usize> Split<S, N, 2> {
-    /// Split by one of the two-subset patterns.
+    /// Splits texels by a two-subset pattern.
     #[inline(always)]
-    pub fn in_two(simd: S, texels: &[Grid<S>; N], pattern: Wide<S>) -> Self {
-        Self::new(simd, texels, pattern, halves(simd, pattern))
+    pub fn two_subsets(simd: S, texels: &[Grid<S>; N], pattern: Wide<S>) -> Self {
+        Self::new(simd, texels, pattern, two_subset_masks(simd, pattern))
     }
 }
 
 impl<S: Simd, const N: usize> Split<S, N, 3> {
-    /// Split by one of the three-subset patterns.
+    /// Splits texels by a three-subset pattern.
     #[inline(always)]
-    pub fn in_three(simd: S, texels: &[Grid<S>; N], pattern: Wide<S>) -> Self {
-        Self::new(simd, texels, pattern, thirds(simd, pattern))
+    pub fn three_subsets(simd: S, texels: &[Grid<S>; N], pattern: Wide<S>) -> Self {
+        Self::new(simd, texels, pattern, three_subset_masks(simd, pattern))
     }
 
-    /// The `M` three-subset patterns with the least squared error to expect of lines of 2-bit weights.
+    /// Returns the `M` three-subset patterns with the least squared errors expected for lines of 2-bit weights.
     #[inline(always)]
-    pub fn likely_thirds<const M: usize>(simd: S, texels: &[Grid<S>; N]) -> [Wide<S>; M] {
-        let mut least = Least::new(simd);
-        for pattern in 0..THIRDS.len() {
+    pub fn likely_patterns<const M: usize>(simd: S, texels: &[Grid<S>; N]) -> [Wide<S>; M] {
+        let mut least = BestPatterns::new(simd);
+        for pattern in 0..PATTERNS_3.len() {
             let pattern = Wide::splat(simd, pattern as f32);
-            let (off, along) = Self::in_three(simd, texels, pattern).scatter(simd);
-            least.offer(off + along / 12.0, pattern);
+            let (off_axis, along) = Self::three_subsets(simd, texels, pattern).scatter(simd);
+            least.insert(off_axis + along / 12.0, pattern);
         }
         least.patterns
     }
@@ -281,22 +295,22 @@ impl<S: Simd, const N: usize, const K: usize> Split<S, N, K> {
         Self { pattern, masks, moments: parts, axes }
     }
 
-    /// Scatter off the axes of the subsets, which stays as error, and scatter along them.
+    /// Returns the scatter off the axes of the subsets, which remains as error, and the scatter along the axes.
     #[inline(always)]
     pub fn scatter(&self, simd: S) -> (Wide<S>, Wide<S>) {
-        let [mut off, mut along] = [Wide::splat(simd, 0.0); 2];
+        let [mut off_axis, mut along] = [Wide::splat(simd, 0.0); 2];
         for (m, axis) in self.moments.iter().zip(&self.axes) {
             let on = scatter_along(simd, &m.scatter, axis);
-            off += trace(&m.scatter) - on;
+            off_axis += trace(&m.scatter) - on;
             along += on;
         }
-        (off, along)
+        (off_axis, along)
     }
 }
 
-/// Blocks of a line for each subset.
+/// Returns blocks of one line for each subset.
 #[inline(always)]
-pub(crate) fn split_lines<S: Simd, const N: usize, const K: usize, const BITS: u32>(
+pub(crate) fn split_lines<S: Simd, const N: usize, const K: usize>(
     simd: S,
     texels: &[Grid<S>; N],
     split: &Split<S, N, K>,
@@ -312,8 +326,8 @@ pub(crate) fn split_lines<S: Simd, const N: usize, const K: usize, const BITS: u
             let scale = splat(simd, scale);
             for (subset, mask) in split.masks.iter().enumerate() {
                 let (m, axis) = (&split.moments[subset], &split.axes[subset]);
-                let points = Points { texels, subset: Some(mask), scale, range: mode.range };
-                blocks.place(&points.fit::<BITS>(simd, m, axis, rounds), subset, Some(mask));
+                let points = Points { texels, subset: Some(mask), scale, range: mode.range, ramp: mode.ramp() };
+                blocks.set_line(&points.fit(simd, m, axis, rounds), subset, Some(mask));
             }
             blocks
         },

@@ -1,15 +1,16 @@
-//! From blocks back to texels.
+//! Decodes blocks to texels.
 
 use crate::BLOCK_BYTES;
 use crate::lanes::Texels;
 use crate::pack::Block;
 use crate::unpack::{Unpacked, unpack};
 
-/// Decodes one block to its 16 RGBA8 texels, row 0 first: all modes of the format, also those with alpha, which
-/// [`Encoder`](crate::Encoder) does not write.
+/// Decodes one block to its 16 RGBA8 texels, row 0 first.
 ///
-/// The result is that of linear data. (Blocks of sRGB images decode by a slightly different rule, as with ASTC.) It is
-/// `None` if the bytes are no block: a reserved mode or a pattern that does not exist.
+/// All modes of the format are decoded, including the modes with alpha, which [`Encoder`](crate::Encoder) does not
+/// write. Blocks are decoded as linear data. The format decodes sRGB images by a slightly different rule, as ASTC does.
+///
+/// Returns `None` if the bytes are not a valid block: the mode is reserved or the pattern does not exist.
 pub fn decode_block(block: &[u8; BLOCK_BYTES]) -> Option<[[u8; 4]; 16]> {
     Some(match unpack(block)? {
         Unpacked::Solid(colour) => [colour; 16],

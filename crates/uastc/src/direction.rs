@@ -1,10 +1,10 @@
-//! Blocks judged by the directions of the vectors that they decode to.
+//! Fits blocks of normals by the directions of the vectors that they decode to.
 //!
 //! Engines either read x, y, z and normalise (three, Babylon, Filament, PlayCanvas), or read x, y and rebuild z
-//! (Godot). To the first the length of a decoded vector means nothing, which squared differences of channels cannot
-//! know. All colours of a subset, its palette, are therefore turned into directions, and each texel takes the nearest:
-//! exact for any mode, and the error of any endpoints. What a departure from unit length costs keeps both kinds of
-//! engines right and textures filterable.
+//! (Godot). Engines that normalise ignore the length of a decoded vector; squared differences of channels do not.
+//! Here every colour of a subset's palette is converted to a direction, and each texel takes the nearest direction.
+//! The error is then exact for every mode and all endpoints. A penalty on departures from unit length serves both
+//! kinds of engines and keeps textures filterable.
 
 #![expect(clippy::needless_range_loop, reason = "loops over texels read several grids at one index")]
 
@@ -12,28 +12,30 @@ use fearless_simd::{Select, Simd, SimdBase, prelude::*};
 
 use crate::blocks::Blocks;
 use crate::candidate::texel;
-use crate::lanes::{Grid, look_up, sum, take};
-use crate::line::{decode, quantise, ramp, round};
-use crate::moments::{count, counted};
+use crate::lanes::{Grid, look_up, set_where, sum};
+use crate::line::{Ramp, decode, quantise, round};
+use crate::moments::{count, masked};
 use crate::tables::Range;
 use texel_simd::{LANES, Real, Wide};
 
-/// Unit normals of blocks side by side, in units of [`UNIT`].
+/// Unit normals of the texels of one block in each lane, multiplied by [`UNIT`].
 pub(crate) type Normals<S> = [Grid<S>; 3];
 
-/// Decoded levels are 127.5 (1 + component).
+/// Length of unit vectors in levels: a level is 127.5 (1 + component).
 pub(crate) const UNIT: f32 = 127.5;
 
-/// Share of engines that rebuild z in the error. At 0 they get larger angles than from squared differences of channels.
-pub(crate) const REBUILT: f32 = 0.25;
-/// Squared error of a vector that is too short or too long, by squared departure. Palettes between two unit vectors are
-/// short; at 0.15 for both a level of waves comes out 2 % short on average, which looks like mips that nobody
-/// normalised. With these numbers such levels are 1.2 % short at most, and a normal map of wool 1.7 %.
-pub(crate) const SHORT: f32 = 0.4;
-/// See [`SHORT`].
-pub(crate) const LONG: f32 = 0.1;
+/// Weight of engines that rebuild z in the error. At 0 these engines show larger angles than with squared differences
+/// of channels.
+pub(crate) const REBUILT_Z_SHARE: f32 = 0.25;
+/// Squared error of a vector shorter than unit length, for each unit of squared departure. Palettes between two unit
+/// vectors contain short vectors. With 0.15 for both penalties, a level of waves decodes 2 % short on average, like a
+/// mip chain that was not normalised. With these penalties such levels are at most 1.2 % short, and a normal map of
+/// wool 1.7 %.
+pub(crate) const SHORT_PENALTY: f32 = 0.4;
+/// Squared error of a vector longer than unit length, as with [`SHORT_PENALTY`].
+pub(crate) const LONG_PENALTY: f32 = 0.1;
 
-/// The normals that `texels` stand for.
+/// Returns the normals that `texels` encode.
 #[inline(always)]
 pub(crate) fn normals<S: Simd>(texels: &[Grid<S>; 3]) -> Normals<S> {
     let mut normals = *texels;
@@ -44,68 +46,76 @@ pub(crate) fn normals<S: Simd>(texels: &[Grid<S>; 3]) -> Normals<S> {
     normals
 }
 
-/// A vector at length [`UNIT`]. It is not 0, since levels are whole numbers.
+/// Returns a vector scaled to length [`UNIT`]. The vector is never 0, because levels are whole numbers.
 #[inline(always)]
 pub(crate) fn normal<F: Real>([x, y, z]: [F; 3]) -> [F; 3] {
     let scale = x.splat_like(UNIT) / (x * x + y * y + z * z).sqrt();
     [x * scale, y * scale, z * scale]
 }
 
-/// A decoded vector as engines see it, such that its error is a squared distance: the mean of its directions as read
-/// and as rebuilt, and the part of the error that does not depend on the normal.
+/// Returns the effective direction of a decoded vector, and the part of its error that does not depend on the normal.
+///
+/// The effective direction is the weighted mean of two directions: of engines that normalise and of engines that
+/// rebuild z. The error is its squared distance from the normal, plus the second result.
 #[inline(always)]
-pub(crate) fn seen<F: Real>([x, y, z]: [F; 3]) -> ([F; 3], F) {
+pub(crate) fn effective_direction<F: Real>([x, y, z]: [F; 3]) -> ([F; 3], F) {
     let splat = |value: f32| x.splat_like(value);
     let unit = splat(UNIT);
     let flat = x * x + y * y;
     let length = (flat + z * z).sqrt();
     let scale = unit / length;
     let rebuilt = (unit * unit - flat).max(splat(0.0)).sqrt();
-    let stay = splat(LONG).select(splat(SHORT), unit.lanes_le(length));
-    let mut loss = stay * (length - unit) * (length - unit);
+    let penalty = splat(LONG_PENALTY).select(splat(SHORT_PENALTY), unit.lanes_le(length));
+    let mut loss = penalty * (length - unit) * (length - unit);
     let mut direction = [x; 3];
     // (1 - r) |u - n|^2 + r |v - n|^2 = |w - n|^2 + r (1 - r) |u - v|^2 with w = (1 - r) u + r v.
     for (c, (read, rebuilt)) in [(x, x), (y, y), (z, rebuilt)].into_iter().enumerate() {
         let u = read * scale;
-        loss = loss + (u - rebuilt) * splat(REBUILT * (1.0 - REBUILT)) * (u - rebuilt);
-        direction[c] = u * splat(1.0 - REBUILT) + rebuilt * splat(REBUILT);
+        loss = loss + (u - rebuilt) * splat(REBUILT_Z_SHARE * (1.0 - REBUILT_Z_SHARE)) * (u - rebuilt);
+        direction[c] = u * splat(1.0 - REBUILT_Z_SHARE) + rebuilt * splat(REBUILT_Z_SHARE);
     }
     (direction, loss)
 }
 
-/// One of the vectors that all weights give between two endpoints.
+/// An entry of a palette: the vector that one weight (two with two planes) gives between two endpoints.
 #[derive(Clone, Copy)]
 struct Entry<S: Simd> {
-    /// Mean of the directions as read and as rebuilt.
+    /// The direction of [`effective_direction`].
     direction: [Wide<S>; 3],
-    /// Part of the error that does not depend on the normal.
+    /// The part of the error that does not depend on the normal.
     loss: Wide<S>,
 }
 
-/// Endpoints per channel of one subset: low, high.
+/// Endpoints of one subset for each channel: low, high.
 type Ends<S> = [[Wide<S>; 2]; 3];
 
-/// A subset of blocks with weights of `BITS` bits, whose palettes have `P` entries: a weight for all channels, or with
-/// two planes one for channel `alone` above one for the rest.
-struct Subset<'a, S: Simd, const P: usize, const BITS: u32> {
+/// The most entries that a palette has.
+const MAX_ENTRIES: usize = 32;
+
+/// A subset of blocks.
+///
+/// The index of an entry is the weight index of all channels. With two planes, its upper bits are the weight index of
+/// channel `selector`, and its lower bits that of the other channels.
+struct Subset<'a, S: Simd> {
     simd: S,
+    ramp: &'static Ramp,
     range: &'static Range,
-    alone: Option<usize>,
+    selector: Option<usize>,
     normals: &'a Normals<S>,
-    /// 1 for a member, 0 for the rest; none if all are members.
+    /// 1 for a member, 0 for other texels; `None` if all texels are members.
     mask: Option<Grid<S>>,
 }
 
-/// The weight indices that an entry of two planes is made of: of the channel alone, and of the others.
+/// Returns the two weight indices of an entry of two planes: of the selected channel, and of the others.
 #[inline(always)]
-fn indices<S: Simd, const BITS: u32>(entry: Wide<S>) -> [Wide<S>; 2] {
-    let count = (1 << BITS) as f32;
+fn weight_indices<S: Simd>(entry: Wide<S>, ramp: &Ramp) -> [Wide<S>; 2] {
+    let count = ramp.last + 1.0;
     // Entries are whole: a fraction less than a half keeps rounding down.
     let upper = round(entry * (1.0 / count) - (0.5 - 0.5 / count));
     [upper, entry - upper * count]
 }
 
-/// Endpoints with the best weights for them.
+/// Endpoints of a subset with the best palette entries for its texels.
 #[derive(Clone, Copy)]
 struct Fit<S: Simd> {
     ends: Ends<S>,
@@ -115,53 +125,60 @@ struct Fit<S: Simd> {
 }
 
 impl<S: Simd> Fit<S> {
-    /// Becomes `other` where that has the lesser error; whether it has anywhere.
+    /// Replaces `self` by `other` where `other` has the smaller error. Returns whether any lane changed.
     #[inline(always)]
-    fn offer(&mut self, other: &Self) -> bool {
+    fn keep_better(&mut self, other: &Self) -> bool {
         let is_better = other.error.simd_lt(self.error);
         if !is_better.any_true() {
             return false;
         }
         for (own, other) in self.ends.as_flattened_mut().iter_mut().zip(other.ends.as_flattened()) {
-            take(own, *other, is_better);
+            set_where(own, *other, is_better);
         }
         for (own, other) in self.entries.iter_mut().zip(&other.entries) {
-            take(own, *other, is_better);
+            set_where(own, *other, is_better);
         }
-        take(&mut self.error, other.error, is_better);
+        set_where(&mut self.error, other.error, is_better);
         true
     }
 }
 
-impl<S: Simd, const P: usize, const BITS: u32> Subset<'_, S, P, BITS> {
-    /// The weights, 0..=64, that an entry stands for: of channel `alone` and of the others.
+impl<S: Simd> Subset<'_, S> {
+    /// Returns the weights, 0..=64, of an entry: of the selected channel, and of the others.
     #[inline(always)]
     fn weights(&self, entry: Wide<S>) -> [Wide<S>; 2] {
-        if self.alone.is_none() {
-            return [ramp::<BITS, _>(entry); 2];
+        if self.selector.is_none() {
+            return [self.ramp.weight(entry); 2];
         }
-        let [single, others] = indices::<_, BITS>(entry);
-        [ramp::<BITS, _>(single), ramp::<BITS, _>(others)]
+        let [single, others] = weight_indices(entry, self.ramp);
+        [self.ramp.weight(single), self.ramp.weight(others)]
     }
 
-    /// Which of [`Self::weights`] is that of channel `c`.
+    /// Returns the index into [`Self::weights`] for channel `c`.
     #[inline(always)]
     fn plane(&self, c: usize) -> usize {
-        usize::from(self.alone != Some(c))
+        usize::from(self.selector != Some(c))
+    }
+
+    /// Returns how many entries the palette has.
+    #[inline(always)]
+    fn entries(&self) -> usize {
+        let weights = self.ramp.last as usize + 1;
+        if self.selector.is_some() { weights * weights } else { weights }
     }
 
     #[inline(always)]
-    fn palette(&self, ends: &Ends<S>) -> [Entry<S>; P] {
+    fn palette(&self, ends: &Ends<S>) -> [Entry<S>; MAX_ENTRIES] {
         let simd = self.simd;
         let zero = Wide::splat(simd, 0.0);
-        let mut palette = [Entry { direction: [zero; 3], loss: zero }; P];
-        for (at, entry) in palette.iter_mut().enumerate() {
-            (entry.direction, entry.loss) = seen(self.decoded(ends, Wide::splat(simd, at as f32)));
+        let mut palette = [Entry { direction: [zero; 3], loss: zero }; MAX_ENTRIES];
+        for (at, entry) in palette.iter_mut().take(self.entries()).enumerate() {
+            (entry.direction, entry.loss) = effective_direction(self.decoded(ends, Wide::splat(simd, at as f32)));
         }
         palette
     }
 
-    /// The vector of a palette's entry, in units of [`UNIT`].
+    /// Returns the decoded vector of an entry, where unit length is [`UNIT`].
     #[inline(always)]
     fn decoded(&self, ends: &Ends<S>, entry: Wide<S>) -> [Wide<S>; 3] {
         let weights = self.weights(entry);
@@ -173,9 +190,9 @@ impl<S: Simd, const P: usize, const BITS: u32> Subset<'_, S, P, BITS> {
         vector
     }
 
-    /// The nearest entry of every texel.
+    /// Chooses the nearest entry for every texel.
     #[inline(always)]
-    fn choose(&self, ends: &Ends<S>) -> Fit<S> {
+    fn best_entries(&self, ends: &Ends<S>) -> Fit<S> {
         let simd = self.simd;
         let palette = self.palette(ends);
         let zero = Wide::splat(simd, 0.0);
@@ -183,7 +200,7 @@ impl<S: Simd, const P: usize, const BITS: u32> Subset<'_, S, P, BITS> {
         for i in 0..16 {
             let [x, y, z] = texel(self.normals, i);
             let (mut least, mut at) = (Wide::splat(simd, f32::INFINITY), zero);
-            for (e, entry) in palette.iter().enumerate() {
+            for (e, entry) in palette.iter().take(self.entries()).enumerate() {
                 let [u, v, w] = entry.direction;
                 let (a, b, c) = (x - u, y - v, z - w);
                 let error = a * a + entry.loss + b * b + c * c;
@@ -195,12 +212,12 @@ impl<S: Simd, const P: usize, const BITS: u32> Subset<'_, S, P, BITS> {
         }
         let error = sum(
             #[inline(always)]
-            |i| counted(self.mask.as_ref(), i, errors[i]),
+            |i| masked(self.mask.as_ref(), i, errors[i]),
         );
         Fit { ends: *ends, entries, error }
     }
 
-    /// Endpoints that bring the weights of `entries` nearest to `targets`, channel by channel.
+    /// Returns the endpoints that fit the weights of `entries` best to `targets`, by regression in each channel.
     #[inline(always)]
     fn regress(&self, targets: &[Grid<S>; 3], entries: &Grid<S>) -> Ends<S> {
         let simd = self.simd;
@@ -209,8 +226,8 @@ impl<S: Simd, const P: usize, const BITS: u32> Subset<'_, S, P, BITS> {
         let zero = Wide::splat(simd, 0.0);
         let mut weights = [[zero; 2]; 16];
         for i in 0..16 {
-            let [own, others] = self.weights(entries[i]);
-            weights[i] = [counted(subset, i, own), counted(subset, i, others)];
+            let [single, others] = self.weights(entries[i]);
+            weights[i] = [masked(subset, i, single), masked(subset, i, others)];
         }
         let mut ends = [[zero; 2]; 3];
         for c in 0..3 {
@@ -225,7 +242,7 @@ impl<S: Simd, const P: usize, const BITS: u32> Subset<'_, S, P, BITS> {
             );
             let x = sum(
                 #[inline(always)]
-                |i| counted(subset, i, targets[c][i]),
+                |i| masked(subset, i, targets[c][i]),
             );
             let wx = sum(
                 #[inline(always)]
@@ -239,17 +256,19 @@ impl<S: Simd, const P: usize, const BITS: u32> Subset<'_, S, P, BITS> {
         ends
     }
 
-    /// Normals moved along themselves to where the vectors of `fit` are nearest: a squared distance to these, whose
-    /// channels regression can treat one by one, is one to the directions (and bounds it from above for others).
+    /// Returns the normals scaled to the lengths at which they are nearest to the vectors of `fit`.
+    ///
+    /// For the vectors of `fit`, the squared distance to these targets equals the error of directions. For other
+    /// vectors, it is an upper bound of this error. Regression can treat its channels one by one.
     #[inline(always)]
     fn targets(&self, fit: &Fit<S>) -> [Grid<S>; 3] {
         let mut targets = *self.normals;
         for i in 0..16 {
             let [x, y, z] = self.decoded(&fit.ends, fit.entries[i]);
             let along = (x * targets[0][i] + y * targets[1][i] + z * targets[2][i]) / (UNIT * UNIT);
-            let (short, long) = (Wide::splat(self.simd, SHORT), Wide::splat(self.simd, LONG));
-            let stay = along.simd_lt(1.0).select(short, long);
-            let length = along + stay * (1.0 - along);
+            let (short, long) = (Wide::splat(self.simd, SHORT_PENALTY), Wide::splat(self.simd, LONG_PENALTY));
+            let penalty = along.simd_lt(1.0).select(short, long);
+            let length = along + penalty * (1.0 - along);
             for c in 0..3 {
                 targets[c][i] *= length;
             }
@@ -257,22 +276,23 @@ impl<S: Simd, const P: usize, const BITS: u32> Subset<'_, S, P, BITS> {
         targets
     }
 
-    /// Regression on `entries`, then in turns with choice as long as that helps; `ends` as they are without a round.
+    /// Fits endpoints and entries in turns for at most `rounds` rounds, starting with regression on `entries`, while
+    /// the error falls. Keeps `ends` if `rounds` is 0.
     #[inline(always)]
     fn refine(&self, ends: &Ends<S>, entries: &Grid<S>, rounds: usize) -> Fit<S> {
         if rounds == 0 {
-            return self.choose(ends);
+            return self.best_entries(ends);
         }
-        let mut best = self.choose(&self.regress(self.normals, entries));
+        let mut best = self.best_entries(&self.regress(self.normals, entries));
         for _ in 1..rounds {
-            if !best.offer(&self.choose(&self.regress(&self.targets(&best), &best.entries))) {
+            if !best.keep_better(&self.best_entries(&self.regress(&self.targets(&best), &best.entries))) {
                 break;
             }
         }
         best
     }
 
-    /// Moves single endpoints to neighbouring levels as long as that helps.
+    /// Moves single endpoints to neighbouring levels while the error falls, at most `passes` times each.
     #[inline(always)]
     fn polish(&self, mut best: Fit<S>, passes: usize) -> Fit<S> {
         for _ in 0..passes {
@@ -281,7 +301,7 @@ impl<S: Simd, const P: usize, const BITS: u32> Subset<'_, S, P, BITS> {
                 let mut ends = best.ends;
                 let end = &mut ends[k / 4][k % 2];
                 *end = look_up(self.simd, &self.range.neighbour[usize::from(k % 4 < 2)], *end);
-                is_better |= best.offer(&self.choose(&ends));
+                is_better |= best.keep_better(&self.best_entries(&ends));
             }
             if !is_better {
                 break;
@@ -292,33 +312,25 @@ impl<S: Simd, const P: usize, const BITS: u32> Subset<'_, S, P, BITS> {
 }
 
 impl<S: Simd> Blocks<S> {
-    /// Fits blocks of one mode and selector to `normals` by direction: endpoints by `rounds` of regression, which
-    /// starts from the weights that the blocks have (0 leaves them), then by `passes` over single endpoints; and the
-    /// best weights for them. The error becomes that of the directions.
+    /// Fits blocks of one mode and selector to `normals` by direction.
+    ///
+    /// Endpoints are fitted by `rounds` of regression, starting from the weights of the blocks, and then by `passes`
+    /// over single endpoints. The weights become the best ones for these endpoints. The error becomes the error of
+    /// directions.
     #[inline(always)]
-    pub(crate) fn aim(&mut self, simd: S, normals: &Normals<S>, rounds: usize, passes: usize) {
-        match (self.modes[0].planes, self.modes[0].weight_bits) {
-            (2, _) => self.aim_in::<16, 2>(simd, normals, rounds, passes),
-            (_, 2) => self.aim_in::<4, 2>(simd, normals, rounds, passes),
-            (_, 3) => self.aim_in::<8, 3>(simd, normals, rounds, passes),
-            (_, 4) => self.aim_in::<16, 4>(simd, normals, rounds, passes),
-            _ => self.aim_in::<32, 5>(simd, normals, rounds, passes),
-        }
-    }
-
-    #[inline(always)]
-    fn aim_in<const P: usize, const BITS: u32>(&mut self, simd: S, normals: &Normals<S>, rounds: usize, passes: usize) {
+    pub(crate) fn fit_directions(&mut self, simd: S, normals: &Normals<S>, rounds: usize, passes: usize) {
         simd.vectorize(
             #[inline(always)]
             || {
                 let mode = self.modes[0];
+                let ramp = mode.ramp();
                 let selector: [f32; LANES] = self.selector.into();
-                let alone = (mode.planes == 2).then_some(selector[0] as usize);
+                let selector = (mode.planes == 2).then_some(selector[0] as usize);
                 let zero = Wide::splat(simd, 0.0);
                 let mut entries = self.weights[0];
-                if alone.is_some() {
+                if selector.is_some() {
                     for i in 0..16 {
-                        entries[i] += self.weights[1][i] * (1 << BITS) as f32;
+                        entries[i] += self.weights[1][i] * (ramp.last + 1.0);
                     }
                 }
                 let masks = self.masks(simd);
@@ -326,20 +338,20 @@ impl<S: Simd> Blocks<S> {
                 self.error = zero;
                 for subset in 0..mode.subsets {
                     let mask = masks.map(|masks| masks[subset]);
-                    let part = Subset::<_, P, BITS> { simd, range: mode.range, alone, normals, mask };
+                    let part = Subset { simd, ramp, range: mode.range, selector, normals, mask };
                     let [x, y, z, _] = self.endpoints[subset];
                     let ends = [x, y, z];
                     let fit = part.polish(part.refine(&ends, &entries, rounds), passes);
                     self.error += fit.error;
                     self.endpoints[subset][..3].copy_from_slice(&fit.ends);
                     for i in 0..16 {
-                        chosen[i] += counted(mask.as_ref(), i, fit.entries[i]);
+                        chosen[i] += masked(mask.as_ref(), i, fit.entries[i]);
                     }
                 }
                 self.weights[0] = chosen;
-                if alone.is_some() {
+                if selector.is_some() {
                     for i in 0..16 {
-                        [self.weights[1][i], self.weights[0][i]] = indices::<_, BITS>(chosen[i]);
+                        [self.weights[1][i], self.weights[0][i]] = weight_indices(chosen[i], ramp);
                     }
                 }
             },

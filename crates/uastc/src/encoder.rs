@@ -1,4 +1,4 @@
-//! From texels to blocks.
+//! Encodes texels to blocks.
 
 use fearless_simd::{Level, Simd};
 use rayon::prelude::*;
@@ -12,9 +12,9 @@ use crate::metric::{Effort, Metric};
 use crate::pack::pack_solid;
 use crate::row::{Row, groups};
 
-/// An encoder of opaque RGB with its settings. Alpha is ignored and decodes as 255.
+/// Encodes opaque RGB with given settings. Alpha is ignored and decodes as 255.
 ///
-/// The bytes that it writes depend on neither the machine, nor its instruction set, nor the number of threads.
+/// The encoded bytes do not depend on the machine, its instruction set or the number of threads.
 #[derive(Clone, Copy, Debug)]
 pub struct Encoder {
     metric: Metric,
@@ -23,15 +23,15 @@ pub struct Encoder {
 }
 
 impl Encoder {
-    /// Makes an encoder that uses the vectors of this machine's processor.
+    /// Creates an encoder that uses the best instruction set of this machine's processor.
     pub fn new(metric: Metric, effort: Effort) -> Self {
         Self { metric, effort, instructions: Level::new() }
     }
 
-    /// Encodes `image`, rows of blocks in parallel on the threads of the current rayon pool.
+    /// Encodes `image`. Rows of blocks are encoded in parallel on the current rayon pool.
     ///
-    /// The blocks come row by row, `width.div_ceil(4)` of them in each of `height.div_ceil(4)` rows. Blocks that reach
-    /// beyond the image repeat its last column and row there.
+    /// Returns `height.div_ceil(4)` rows of `width.div_ceil(4)` blocks, row by row. Blocks that reach beyond the image
+    /// repeat its last column and row.
     pub fn encode(&self, image: &Image<'_>) -> Vec<[u8; BLOCK_BYTES]> {
         let columns = image.columns();
         let mut blocks = vec![[0; BLOCK_BYTES]; columns * image.rows()];
@@ -41,13 +41,14 @@ impl Encoder {
         blocks
     }
 
-    /// Encodes four rows of RGBA8 texels to one row of blocks, on this thread: for images that are never in memory as a
-    /// whole.
+    /// Encodes four rows of RGBA8 texels to one row of blocks on the calling thread. Use this method for images that
+    /// are not held in memory as a whole.
     ///
-    /// The last texel of a row is repeated where its length is not a multiple of 4. Pass the last row of an image again
-    /// where its height is not a multiple of 4.
+    /// The last texel of a row is repeated if the length is not a multiple of 4. If the height of the image is not a
+    /// multiple of 4, pass its last row repeatedly.
     ///
-    /// # Errors [`SizeError::Rows`] if the rows are empty or differ in length, and [`SizeError::Blocks`] if `blocks`
+    /// # Errors
+    /// Returns [`SizeError::Rows`] if the rows are empty or differ in length. Returns [`SizeError::Blocks`] if `blocks`
     /// does not have one block for every four texels of a row, rounded up.
     pub fn encode_rows(&self, rows: [&[[u8; 4]]; 4], blocks: &mut [[u8; BLOCK_BYTES]]) -> Result<(), SizeError> {
         let widths = rows.map(<[_]>::len);
@@ -69,7 +70,8 @@ impl Encoder {
     }
 }
 
-/// Returns the block at column `left` of four rows of texels, opaque; the last texel of a row is repeated.
+/// Returns the texels of the block that begins at column `left` of four rows, made opaque. The last texel of a row is
+/// repeated.
 fn gather(rows: [&[[u8; 4]]; 4], left: usize) -> Texels {
     let mut texels = Texels::default();
     for (four, row) in texels.as_chunks_mut::<4>().0.iter_mut().zip(rows) {
@@ -82,7 +84,7 @@ fn gather(rows: [&[[u8; 4]]; 4], left: usize) -> Texels {
     texels
 }
 
-/// Encodes the blocks of a row. The order of operations, and so the bytes, are the same in every instruction set.
+/// Encodes the blocks of a row. The order of operations is fixed, so that every instruction set gives the same bytes.
 #[inline(always)]
 fn search_row<S: Simd>(simd: S, texels: Vec<Texels>, metric: Metric, effort: Effort, out: &mut [[u8; BLOCK_BYTES]]) {
     let mut varying = Vec::with_capacity(out.len());

@@ -1,24 +1,23 @@
-//! Transcoding hints: what the block says to whoever turns it into ETC1, ETC2 or BC1.
+//! Transcoding hints: fields of a block that help a transcoder to ETC1, ETC2 or BC1.
 //!
-//! A transcoder accepts any value here; good values keep its quick paths close to the source.
-//! Source: "UASTC LDR 4x4 Texture Specification", sections "ETC1 hints", "ETC2 hints" and "BC1
-//! hints". The hints are taken from the source texels, whose averages the decoded ones share up
-//! to rounding.
+//! A transcoder accepts any hints, and good hints keep its quick paths close to the source. They are described in the
+//! "UASTC LDR 4x4 Texture Specification", sections "ETC1 hints", "ETC2 hints" and "BC1 hints". The hints are computed
+//! from the source texels. Their averages are those of the decoded texels up to rounding.
 
 use fearless_simd::Simd;
 
 use crate::lanes::{Texels, channels};
 use crate::line::round;
-use crate::pack::{Bits, SolidEtc1};
+use crate::pack::{BitWriter, SolidEtc1};
 use crate::tables::Mode;
 use texel_simd::{LANES, Real};
 
-/// ETC1 intensity tables: the smaller and the larger offset, of either sign.
+/// ETC1 intensity tables: the magnitudes of the smaller and of the larger offset.
 pub(crate) const ETC1_OFFSETS: [[i32; 2]; 8] =
     [[2, 8], [5, 17], [9, 29], [13, 42], [18, 60], [24, 80], [33, 106], [47, 183]];
 
-/// The EAC hint of blocks whose alpha is 255 throughout, in modes that store alpha: table 11 (its offsets are evenly
-/// spread) in the low four bits, and the least multiplier.
+/// The EAC hint of opaque blocks in modes that store alpha: table 11, whose offsets are evenly spaced, in the low four
+/// bits, and the least multiplier above.
 const OPAQUE_EAC: u64 = 0x1b;
 
 /// Hints of a block that is not solid.
@@ -32,14 +31,14 @@ pub(crate) struct Hints {
     pub differential: bool,
     /// ETC1 intensity table per subblock.
     pub tables: [u8; 2],
-    /// How the ETC1 bases depart from the rounded averages.
+    /// How the ETC1 bases differ from the rounded averages.
     pub bias: u8,
 }
 
 impl Hints {
     /// Appends the fields that `mode` has.
     #[inline(always)]
-    pub fn write(&self, mode: &Mode, out: &mut Bits) {
+    pub fn write(&self, mode: &Mode, out: &mut BitWriter) {
         // BC1 hint 0 (endpoints rounded to 5:6:5 as they are) is never better than fitting them.
         out.push(0, 1);
         if mode.full_hints {
@@ -55,9 +54,9 @@ impl Hints {
         }
     }
 
-    /// Returns the fields as they stand in a block of `mode`, after its code.
+    /// Returns the bits of the fields in a block of `mode`, which follow the code of the mode.
     pub fn bits(&self, mode: &Mode) -> u128 {
-        let mut out = Bits::default();
+        let mut out = BitWriter::default();
         self.write(mode, &mut out);
         out.get()
     }
@@ -65,14 +64,14 @@ impl Hints {
     /// Chooses the hints for a block of `mode` that is made from `texels`.
     pub fn of(texels: &Texels, mode: &Mode) -> Self {
         let level = |c: usize| texels.map(|texel| f32::from(texel[c]));
-        Self::new(etc1(&[level(0), level(1), level(2)]), mode)
+        Self::new(etc1_fields(&[level(0), level(1), level(2)]), mode)
     }
 
     /// Chooses the hints of one block in each lane.
     #[inline(always)]
     pub fn of_lanes<S: Simd>(simd: S, texels: [&Texels; LANES], modes: [&Mode; LANES]) -> [Self; LANES] {
         let mut fields = [[0.0; LANES]; 5];
-        for (lanes, field) in fields.iter_mut().zip(etc1(&channels(simd, texels))) {
+        for (lanes, field) in fields.iter_mut().zip(etc1_fields(&channels(simd, texels))) {
             *lanes = field.into();
         }
         std::array::from_fn(|j| Self::new(fields.map(|field| field[j]), modes[j]))
@@ -90,10 +89,10 @@ impl Hints {
     }
 }
 
-/// The fields of [`Hints`] on ETC1, of one block or of several side by side: flip, differential, the index into
-/// [`LEAST_BIAS`] and both tables. All sums are whole numbers that floats hold.
+/// Computes the ETC1 fields of [`Hints`] for one block, or for one block in each lane: flip, differential, the index
+/// into [`LEAST_BIAS`] and both tables. All sums are whole numbers that an `f32` holds exactly.
 #[inline(always)]
-fn etc1<F: Real>(levels: &[[F; 16]; 3]) -> [F; 5] {
+fn etc1_fields<F: Real>(levels: &[[F; 16]; 3]) -> [F; 5] {
     let (zero, one) = (levels[0][0].splat_like(0.0), levels[0][0].splat_like(1.0));
     // Sums over the 2x2 quadrants, row 0 first.
     let mut quadrants = [[zero; 3]; 4];
@@ -112,7 +111,7 @@ fn etc1<F: Real>(levels: &[[F; 16]; 3]) -> [F; 5] {
             *sum = sum.select(stacked, is_side);
         }
     }
-    let (five, four) = (bases(&sums, 31.0), bases(&sums, 15.0));
+    let (five, four) = (nearest_bases(&sums, 31.0), nearest_bases(&sums, 15.0));
     let mut is_near = one.lanes_le(one);
     for c in 0..3 {
         let difference = five[c + 3] - five[c];
@@ -141,36 +140,36 @@ fn distance<F: Real>([a, b]: [[F; 3]; 2]) -> F {
     x * x + y * y + z * z
 }
 
-/// The nearest of 0..=`limit` to the means of both halves.
+/// Returns the means of both halves, scaled to 0..=`limit` and rounded.
 #[inline(always)]
-fn bases<F: Real>(sums: &[[F; 3]; 2], limit: f32) -> [F; 6] {
+fn nearest_bases<F: Real>(sums: &[[F; 3]; 2], limit: f32) -> [F; 6] {
     let zero = sums[0][0].splat_like(0.0);
     let mut bases = [zero; 6];
     for (base, sum) in bases.iter_mut().zip(sums.as_flattened()) {
-        // Its floor: fractions are multiples of 1/2040.
+        // The floor of `exact`, whose fraction is a multiple of 1/2040.
         let exact = (*sum * zero.splat_like(limit) + zero.splat_like(1020.0)) / zero.splat_like(2040.0);
         *base = round(exact - zero.splat_like(0.5 - 1.0 / 4096.0));
     }
     bases
 }
 
-/// Luma weights of the transcoder's choice of selectors, in 1/256.
+/// Returns the luma that transcoders choose selectors by, multiplied by 256.
 #[inline(always)]
 fn luma<F: Real>([r, g, b]: [F; 3]) -> F {
     r * r.splat_like(54.0) + g * r.splat_like(183.0) + b * r.splat_like(19.0)
 }
 
-/// The intensity table of each half, from its largest departure in luma.
+/// Returns the intensity table of each half, chosen by its largest departure in luma.
 #[inline(always)]
 fn intensity_tables<F: Real>(levels: &[[F; 16]; 3], sums: &[[F; 3]; 2], is_side: F::Mask) -> [F; 2] {
     let zero = levels[0][0].splat_like(0.0);
-    // Their floors: fractions are eighths.
+    // The floors of the means, whose fractions are eighths.
     let means = [
         round(luma(sums[0]) * zero.splat_like(0.125) - zero.splat_like(0.4375)),
         round(luma(sums[1]) * zero.splat_like(0.125) - zero.splat_like(0.4375)),
     ];
-    // The second quadrant is of the second half where halves stand side by side, the third where one is above the
-    // other.
+    // The second quadrant belongs to the second half if halves stand side by side. The third quadrant belongs to the
+    // second half if halves lie on top of each other.
     let of_quadrants = [means[0], means[1].select(means[0], is_side), means[0].select(means[1], is_side), means[1]];
     let mut reach = [zero; 4];
     for ((reach, mean), first) in reach.iter_mut().zip(of_quadrants).zip([0, 2, 8, 10]) {
@@ -181,14 +180,14 @@ fn intensity_tables<F: Real>(levels: &[[F; 16]; 3], sums: &[[F; 3]; 2], is_side:
     }
     let first = reach[0].max(reach[2].select(reach[1], is_side));
     let second = reach[3].max(reach[1].select(reach[2], is_side));
-    // 9/16 of the reach: full reach loses 1.5 dB of ETC1 on normals and gains 0.1 on ORM maps.
+    // 9/16 of the largest departure: the whole departure loses 1.5 dB of ETC1 on normals and gains 0.1 dB on ORM maps.
     [table_for(first * zero.splat_like(9.0 / 4096.0)), table_for(second * zero.splat_like(9.0 / 4096.0))]
 }
 
-/// The table whose larger offset suits departures up to `reach`.
+/// Returns the table whose larger offset suits departures up to `reach`.
 #[inline(always)]
 fn table_for<F: Real>(reach: F) -> F {
-    // The least whole numbers beyond half way between the larger offsets of neighbouring tables.
+    // The least whole numbers beyond the midpoints of the larger offsets of neighbouring tables.
     const LIMITS: [f32; 7] = [13.0, 24.0, 36.0, 52.0, 71.0, 94.0, 145.0];
     let (zero, one) = (reach.splat_like(0.0), reach.splat_like(1.0));
     let mut table = zero;
@@ -198,19 +197,19 @@ fn table_for<F: Real>(reach: F) -> F {
     table
 }
 
-/// Departure of each ETC1 base (first subblock's RGB, then the second's) under each bias.
+/// Change of each ETC1 base by each bias: red, green and blue of the first subblock, then of the second.
 const BIASES: [[i8; 6]; 32] = biases();
 
 const fn biases() -> [[i8; 6]; 32] {
     let mut all = [[0; 6]; 32];
-    // As a rule the digits of the bias to base 3, less 1, hold for both subblocks.
+    // Most biases change both subblocks by their digits to base 3, minus 1.
     let mut bias = 0;
     while bias < 32 {
         let digits = [(bias % 3) as i8 - 1, (bias / 3 % 3) as i8 - 1, (bias / 9 % 3) as i8 - 1];
         all[bias] = [digits[0], digits[1], digits[2], digits[0], digits[1], digits[2]];
         bias += 1;
     }
-    // These move one channel of one subblock.
+    // These biases change one channel of one subblock.
     let down = [2, 5, 6, 18, 19, 20];
     let up = [7, 11, 15, 21, 24, 8];
     let mut at = 0;
@@ -221,7 +220,7 @@ const fn biases() -> [[i8; 6]; 32] {
         all[up[at]][at] = 1;
         at += 1;
     }
-    // These move all channels of one subblock or of both.
+    // These biases change all channels of one subblock or of both.
     all[10] = [-2; 6];
     all[27] = [-1, -1, -1, 0, 0, 0];
     all[28] = [1, 1, 1, -1, -1, -1];
@@ -231,8 +230,8 @@ const fn biases() -> [[i8; 6]; 32] {
     all
 }
 
-/// For every combination of bases at 0 (digit 0 to base 3), inside (1) and at the limit (2), the
-/// bias that moves them least: departures are shifted inwards at both ends.
+/// The bias that changes the bases least, for every combination of bases at 0 (digit 0 to base 3), inside (digit 1) and
+/// at the limit (digit 2). Changes are shifted inwards at both ends.
 pub(crate) static LEAST_BIAS: [u8; 729] = least_biases();
 
 const fn least_biases() -> [u8; 729] {
@@ -267,7 +266,7 @@ const fn least_biases() -> [u8; 729] {
     table
 }
 
-/// The ETC1 block nearest to one colour, among those with 5-bit bases and the two gentlest tables.
+/// Returns the ETC1 block nearest to one colour, among blocks with 5-bit bases and the two tables of smallest offsets.
 pub(crate) fn solid_etc1(colour: [u8; 4]) -> SolidEtc1 {
     let mut best = SolidEtc1 { five_bits: true, table: 0, selector: 0, base: [0; 3] };
     let mut least = i32::MAX;

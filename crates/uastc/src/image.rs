@@ -1,4 +1,4 @@
-//! Images whose size fits their texels.
+//! Images whose size is known to fit their texels.
 
 use crate::BLOCK_BYTES;
 use crate::lanes::Texels;
@@ -11,14 +11,14 @@ pub struct Image<'a> {
     height: usize,
 }
 
-/// Lengths that do not fit each other.
+/// Texels or blocks whose number does not fit the size of an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SizeError {
-    /// The bytes are not those of an image of that size.
+    /// The slice does not have the length of an image of the given size.
     #[error(
         "expected 4 bytes for each of {width} x {height} texels and at least one texel, found {bytes} bytes; \
-         pass RGBA8 without padding"
+         pass RGBA8 texels without padding between rows"
     )]
     Texels {
         /// Columns of the image.
@@ -28,7 +28,7 @@ pub enum SizeError {
         /// The length of the slice.
         bytes: usize,
     },
-    /// The blocks are not as many as the image has.
+    /// The number of blocks is not that of the image.
     #[error("expected {expected} blocks of 4 x 4 texels, found {found}; pass the blocks of the same image")]
     Blocks {
         /// How many blocks the texels make.
@@ -48,10 +48,10 @@ pub enum SizeError {
 }
 
 impl<'a> Image<'a> {
-    /// Takes `rgba` for an image of `width` by `height` texels of four bytes.
+    /// Borrows `rgba` as an image of `width` by `height` texels of four bytes.
     ///
     /// # Errors
-    /// [`SizeError::Texels`] if `rgba` does not have `4 * width * height` bytes, or none at all.
+    /// Returns [`SizeError::Texels`] if `rgba` is empty or does not have `4 * width * height` bytes.
     pub fn new(rgba: &'a [u8], width: u32, height: u32) -> Result<Self, SizeError> {
         let (texels, rest) = rgba.as_chunks::<4>();
         let fits = rest.is_empty() && u64::from(width) * u64::from(height) == texels.len() as u64;
@@ -61,17 +61,17 @@ impl<'a> Image<'a> {
         Ok(Self { texels, width: width as usize, height: height as usize })
     }
 
-    /// Returns how many blocks stand side by side.
+    /// Returns the number of blocks in a row.
     pub(crate) fn columns(&self) -> usize {
         self.width.div_ceil(4)
     }
 
-    /// Returns how many rows of blocks there are.
+    /// Returns the number of rows of blocks.
     pub(crate) fn rows(&self) -> usize {
         self.height.div_ceil(4)
     }
 
-    /// Checks that `blocks` are as many as the image has.
+    /// Checks that the number of `blocks` is that of the image.
     pub(crate) fn check(&self, blocks: &[[u8; BLOCK_BYTES]]) -> Result<(), SizeError> {
         let (expected, found) = (self.columns() * self.rows(), blocks.len());
         if expected == found { Ok(()) } else { Err(SizeError::Blocks { expected, found }) }
@@ -83,17 +83,17 @@ impl<'a> Image<'a> {
         &self.texels[at..at + self.width]
     }
 
-    /// Returns the texels of the block at index `at`; texels beyond the image repeat the last column and row.
-    pub(crate) fn block(&self, at: usize) -> Texels {
-        let (left, top) = (at % self.columns() * 4, at / self.columns() * 4);
+    /// Returns the texels of the block at `index`; texels beyond the image repeat the last column and row.
+    pub(crate) fn block(&self, index: usize) -> Texels {
+        let (left, top) = (index % self.columns() * 4, index / self.columns() * 4);
         std::array::from_fn(|i| {
             let (x, y) = ((left + i % 4).min(self.width - 1), (top + i / 4).min(self.height - 1));
             self.texels[y * self.width + x]
         })
     }
 
-    /// Returns whether texel `i` of the block at index `at` lies inside the image.
-    pub(crate) fn contains(&self, at: usize, i: usize) -> bool {
-        at % self.columns() * 4 + i % 4 < self.width && at / self.columns() * 4 + i / 4 < self.height
+    /// Returns whether texel `i` of the block at `index` lies inside the image.
+    pub(crate) fn contains(&self, index: usize, i: usize) -> bool {
+        index % self.columns() * 4 + i % 4 < self.width && index / self.columns() * 4 + i / 4 < self.height
     }
 }

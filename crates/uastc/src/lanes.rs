@@ -1,36 +1,38 @@
-//! Blocks side by side.
+//! Vectors with one block in each lane.
 //!
-//! A block is small and its search full of sums and choices, which vectors of its own texels would do badly. So a
-//! vector holds one number of each of [`LANES`] blocks, and every block gets the bits that it would get alone.
+//! A block is small, and its search is full of sums and choices that vectors of one block's texels would compute
+//! badly. A vector therefore holds one number of each of [`LANES`] blocks. Each block gets the bits that a search of
+//! this block alone would give.
 //!
-//! All code on vectors must end up inside of the function that is compiled for the processor's instructions: functions
-//! and closures are `inline(always)`, and the standard library's `map`, `fold` and `from_fn`, which are not, see single
-//! numbers only. With them the encoder was no faster than one block at a time.
+//! All code on vectors must be inlined into the function that is compiled for the processor's instruction set.
+//! Functions and closures are therefore `inline(always)`. The standard library's `map`, `fold` and `from_fn` are not
+//! inlined reliably and process single numbers only. With vectors in them, the encoder was no faster than one block at
+//! a time.
 
-use fearless_simd::{Select, Simd, SimdBase, SimdCvtFloat, prelude::*, u32x16};
+use fearless_simd::{Select, Simd, SimdBase, SimdCvtFloat, prelude::*};
 
-use texel_simd::{LANES, Real, Wide};
+use texel_simd::{LANES, Real, Wide, WideU32};
 
-/// 1.5 * 2^23: adding and subtracting it rounds a number of less than 2^22 to the nearest integer,
-/// and the low bits of the sum are that integer. (`round` takes a call on baseline x86-64.)
+/// 1.5 * 2^23. Adding and subtracting this number rounds a number below 2^22 to the nearest integer, and the low bits
+/// of the sum are this integer. (The standard `round` is a function call on baseline x86-64.)
 pub(crate) const ROUND: f32 = 12_582_912.0;
 
-/// A number for each texel of a block, row 0 first, of blocks side by side.
+/// A number for each texel of the block in each lane, row 0 first.
 pub(crate) type Grid<S> = [Wide<S>; 16];
 
-/// A number for each texel of one block, row 0 first.
-pub(crate) type Lane = [f32; 16];
+/// A number for each texel of a single block, row 0 first.
+pub(crate) type ScalarGrid = [f32; 16];
 
 /// Texels of one block.
 pub(crate) type Texels = [[u8; 4]; 16];
 
-/// The first `N` channels of blocks side by side.
+/// Loads the first `N` channels of one block into each lane.
 #[inline(always)]
 pub(crate) fn channels<S: Simd, const N: usize>(simd: S, blocks: [&Texels; LANES]) -> [Grid<S>; N] {
     let mut grids = [[Wide::splat(simd, 0.0); 16]; N];
     for i in 0..16 {
         let words: [u32; LANES] = std::array::from_fn(|j| u32::from_le_bytes(blocks[j][i]));
-        let words = u32x16::simd_from(simd, words);
+        let words = WideU32::simd_from(simd, words);
         for (c, grid) in grids.iter_mut().enumerate() {
             grid[i] = Wide::float_from((words >> (8 * c as u32)) & 255);
         }
@@ -38,10 +40,10 @@ pub(crate) fn channels<S: Simd, const N: usize>(simd: S, blocks: [&Texels; LANES
     grids
 }
 
-/// Sum over the texels, of one block or of several side by side.
+/// Sums `v` over the texels, for one block or for one block in each lane.
 #[inline(always)]
 pub(crate) fn sum<F: Real>(v: impl Fn(usize) -> F) -> F {
-    // Four sums at once, so that none waits for the one before.
+    // Four independent sums, so that an addition does not wait for the addition before.
     let mut parts = [v(0), v(1), v(2), v(3)];
     for k in 1..4 {
         for (j, part) in parts.iter_mut().enumerate() {
@@ -51,19 +53,19 @@ pub(crate) fn sum<F: Real>(v: impl Fn(usize) -> F) -> F {
     (parts[0] + parts[2]) + (parts[1] + parts[3])
 }
 
-/// True in all lanes.
+/// Returns a mask that is set in all lanes.
 #[inline(always)]
-pub(crate) fn every<S: Simd>(simd: S) -> <Wide<S> as Real>::Mask {
+pub(crate) fn all_lanes<S: Simd>(simd: S) -> <Wide<S> as Real>::Mask {
     Wide::splat(simd, 0.0).simd_eq(0.0)
 }
 
-/// Sets `own` to `other` where `mask` holds.
+/// Sets `number` to `other` where `mask` is set.
 #[inline(always)]
-pub(crate) fn take<S: Simd>(own: &mut Wide<S>, other: Wide<S>, mask: <Wide<S> as Real>::Mask) {
-    *own = mask.select(other, *own);
+pub(crate) fn set_where<S: Simd>(number: &mut Wide<S>, other: Wide<S>, mask: <Wide<S> as Real>::Mask) {
+    *number = mask.select(other, *number);
 }
 
-/// `table` at whole numbers from 0 to 255.
+/// Returns the entries of `table` at whole numbers from 0 to 255.
 #[inline(always)]
 pub(crate) fn look_up<S: Simd>(simd: S, table: &[u8; 256], at: Wide<S>) -> Wide<S> {
     let at: [f32; LANES] = (at + ROUND).into();

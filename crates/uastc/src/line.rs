@@ -1,14 +1,15 @@
-//! One colour line: a pair of endpoints and a weight per texel, for one subset and one plane.
+//! Fits a colour line: a pair of endpoints and a weight for each texel, of one subset and one plane.
 //!
-//! Endpoints follow from linear regression on the weights, weights from projection on the endpoints, in turns. Only
-//! +, -, *, / of `f32` in a written order: the same bits on every machine.
+//! Two steps alternate: linear regression on the weights gives endpoints, and projection on the line between the
+//! endpoints gives weights. All arithmetic is +, -, * and / of `f32` in a fixed order, which gives the same bits on
+//! every machine.
 
 #![expect(clippy::needless_range_loop, reason = "loops over texels read several grids at one index")]
 
 use fearless_simd::{Select, Simd, SimdBase, prelude::*};
 
-use crate::lanes::{Grid, ROUND, look_up, sum, take};
-use crate::moments::{Moments, counted};
+use crate::lanes::{Grid, ROUND, look_up, set_where, sum};
+use crate::moments::{Moments, masked};
 use crate::tables::Range;
 use texel_simd::{Real, Wide};
 
@@ -18,58 +19,101 @@ pub(crate) struct Line<S: Simd, const N: usize> {
     /// Endpoint levels, 0..=255, as the quantised endpoints decode.
     pub low: [Wide<S>; N],
     pub high: [Wide<S>; N],
-    /// Weight indices; those outside of the subset mean nothing.
+    /// Weight indices; meaningless outside of the subset.
     pub weights: Grid<S>,
     /// Sum of squared differences between decoded and source levels over the subset.
     pub error: Wide<S>,
 }
 
-/// What a line is fitted to.
+/// The points that a line is fitted to.
 pub(crate) struct Points<'a, S: Simd, const N: usize> {
-    /// Levels of the channels, times `scale`.
+    /// Levels of the channels, multiplied by `scale`.
     pub texels: &'a [Grid<S>; N],
-    /// 1 for the texels that count, 0 for the rest; none if all do.
+    /// 1 for the texels of the subset, 0 for other texels; `None` if the subset has all texels.
     pub subset: Option<&'a Grid<S>>,
-    /// What a level counts for, by channel.
+    /// The factor of each channel in the metric.
     pub scale: [Wide<S>; N],
     /// The levels that endpoints may have.
     pub range: &'static Range,
+    /// The weights that indices stand for.
+    pub ramp: &'static Ramp,
 }
 
-/// The nearest whole number, which is less than 2^22.
+/// Rounds a number below 2^22 to the nearest integer.
 #[inline(always)]
 pub(crate) fn round<F: Real>(v: F) -> F {
     v + v.splat_like(ROUND) - v.splat_like(ROUND)
 }
 
-/// The weight ramp of the format: index to 0..=64, for 1 to 5 bits.
-#[inline(always)]
-pub(crate) fn ramp<const BITS: u32, F: Real>(index: F) -> F {
-    let splat = |value| index.splat_like(value);
-    // Halves and quarters without their fractions: nothing lies half way after the shift.
-    match BITS {
-        1 => index * splat(64.0),
-        2 => index * splat(21.0) + round(index * splat(0.5) - splat(0.25)),
-        3 => index * splat(9.0) + round(index * splat(0.25) - splat(0.375)),
-        4 => {
-            let (quarter, eighth) = (index * splat(0.25), index * splat(0.125));
-            index * splat(4.0) + round(quarter - splat(0.375)) + round(eighth - splat(0.4375))
-        }
-        _ => index * splat(2.0) + round(index * splat(0.0625) - splat(0.46875)) * splat(2.0),
+/// The weight that each index of a mode stands for, 0..=64: `gain * index` and two corrections.
+///
+/// The numbers are parameters, and not constants of the code, so that one search is compiled for all modes: code for
+/// each number of bits took the compiler twice as long.
+pub(crate) struct Ramp {
+    /// The largest index.
+    pub last: f32,
+    gain: f32,
+    /// A correction is `gain * round(slope * index - shift)`. Shifts are a half and less than one step of the index, so
+    /// that nothing lies half way and rounding goes down.
+    first: Correction,
+    /// Its gain is 1.
+    second: Correction,
+}
+
+struct Correction {
+    slope: f32,
+    shift: f32,
+    gain: f32,
+}
+
+const NO_CORRECTION: Correction = Correction { slope: 0.0, shift: 0.0, gain: 0.0 };
+
+/// The ramps of indices with 1 to 5 bits, in this order.
+static RAMPS: [Ramp; 5] = [
+    Ramp { last: 1.0, gain: 64.0, first: NO_CORRECTION, second: NO_CORRECTION },
+    Ramp { last: 3.0, gain: 21.0, first: Correction { slope: 0.5, shift: 0.25, gain: 1.0 }, second: NO_CORRECTION },
+    Ramp { last: 7.0, gain: 9.0, first: Correction { slope: 0.25, shift: 0.375, gain: 1.0 }, second: NO_CORRECTION },
+    Ramp {
+        last: 15.0,
+        gain: 4.0,
+        first: Correction { slope: 0.25, shift: 0.375, gain: 1.0 },
+        second: Correction { slope: 0.125, shift: 0.4375, gain: 1.0 },
+    },
+    Ramp {
+        last: 31.0,
+        gain: 2.0,
+        first: Correction { slope: 0.0625, shift: 0.46875, gain: 2.0 },
+        second: NO_CORRECTION,
+    },
+];
+
+impl Ramp {
+    /// Returns the ramp of indices with `bits` bits, 1 to 5.
+    pub fn of(bits: u32) -> &'static Self {
+        &RAMPS[bits.clamp(1, 5) as usize - 1]
+    }
+
+    /// Returns the weight of `index`.
+    #[inline(always)]
+    pub fn weight<F: Real>(&self, index: F) -> F {
+        let splat = |value| index.splat_like(value);
+        let Self { gain, first, second, .. } = self;
+        let correction = round(index * splat(first.slope) - splat(first.shift)) * splat(first.gain);
+        index * splat(*gain) + correction + round(index * splat(second.slope) - splat(second.shift))
     }
 }
 
-/// A decoded level: `astc` interpolation of 8-bit endpoints at a weight of 0..=64, that is
-/// floor((257 (64 low + (high - low) weight) + 32) / 2^14), in exact `f32` steps.
+/// Returns a decoded level: ASTC's interpolation of 8-bit endpoints at a weight of 0..=64, which is
+/// floor((257 (64 low + (high - low) weight) + 32) / 2^14), in exact `f32` steps. `step` is high - low.
 #[inline(always)]
 pub(crate) fn decode<F: Real>(low: F, step: F, weight: F) -> F {
     let splat = |value| low.splat_like(value);
-    // A multiple of 2^-14 below 2^8, shifted by 1/2 - 2^-15: rounding is then a floor without ties.
+    // The value is a multiple of 2^-14 below 2^8. The shift by 1/2 - 2^-15 turns `round` into floor without ties.
     let start = low * splat(257.0 / 256.0) + splat(32.0 / 16384.0 - (0.5 - 1.0 / 32768.0));
     round(start + step * splat(257.0 / 16384.0) * weight)
 }
 
-/// Nearest level of `range` to a value, which may lie outside of 0..=255.
+/// Returns the level of `range` nearest to a value, which may lie outside of 0..=255.
 #[inline(always)]
 pub(crate) fn quantise<S: Simd>(simd: S, range: &Range, value: Wide<S>) -> Wide<S> {
     let (zero, most) = (Wide::splat(simd, 0.0), Wide::splat(simd, 255.0));
@@ -77,31 +121,36 @@ pub(crate) fn quantise<S: Simd>(simd: S, range: &Range, value: Wide<S>) -> Wide<
 }
 
 impl<S: Simd, const N: usize> Points<'_, S, N> {
-    /// Fits a line of `BITS`-bit weights, starting along `axis`, with one or more `rounds` of regression; the best
-    /// round wins.
+    /// Fits a line by one or more `rounds` of regression, starting along `axis`. Returns the line
+    /// of the best round.
     #[inline(always)]
-    pub fn fit<const BITS: u32>(&self, simd: S, m: &Moments<S, N>, axis: &[Wide<S>; N], rounds: usize) -> Line<S, N> {
-        let weights = self.spread::<BITS>(simd, m, axis);
-        let (low, high) = self.regress(simd, m, &weights);
-        let (mut best, mut weights) = self.settle::<BITS>(simd, &low, &high);
-        for _ in 1..rounds {
-            let (low, high) = self.regress(simd, m, &weights);
-            let (line, next) = self.settle::<BITS>(simd, &low, &high);
-            let is_better = line.error.simd_lt(best.error);
-            if !is_better.any_true() {
-                break;
-            }
-            for i in 0..16 {
-                take(&mut weights[i], next[i], is_better);
-            }
-            best.take(&line, is_better);
-        }
-        best
+    pub fn fit(&self, simd: S, m: &Moments<S, N>, axis: &[Wide<S>; N], rounds: usize) -> Line<S, N> {
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let weights = self.initial_weights(simd, m, axis);
+                let (low, high) = self.regress(simd, m, &weights);
+                let (mut best, mut weights) = self.quantised_line(simd, &low, &high);
+                for _ in 1..rounds {
+                    let (low, high) = self.regress(simd, m, &weights);
+                    let (line, next) = self.quantised_line(simd, &low, &high);
+                    let is_better = line.error.simd_lt(best.error);
+                    if !is_better.any_true() {
+                        break;
+                    }
+                    for i in 0..16 {
+                        set_where(&mut weights[i], next[i], is_better);
+                    }
+                    best.set_where(&line, is_better);
+                }
+                best
+            },
+        )
     }
 
-    /// First weights: the texels' places between the ends of their projection on `axis`.
+    /// Returns initial weights: the positions of the texels on `axis`, relative to the least and the largest position.
     #[inline(always)]
-    fn spread<const BITS: u32>(&self, simd: S, m: &Moments<S, N>, axis: &[Wide<S>; N]) -> Grid<S> {
+    fn initial_weights(&self, simd: S, m: &Moments<S, N>, axis: &[Wide<S>; N]) -> Grid<S> {
         let zero = Wide::splat(simd, 0.0);
         let mut centre = zero;
         for c in 0..N {
@@ -115,30 +164,30 @@ impl<S: Simd, const N: usize> Points<'_, S, N> {
             for c in 0..N {
                 t += axis[c] * self.texels[c][i];
             }
-            weights[i] = counted(self.subset, i, t);
+            weights[i] = masked(self.subset, i, t);
             least = Real::min(least, weights[i]);
             most = Real::max(most, weights[i]);
         }
-        let last = ((1 << BITS) - 1) as f32;
+        let last = self.ramp.last;
         let scale = most.simd_gt(least).select(last / (most - least), zero);
         for weight in &mut weights {
-            *weight = ramp::<BITS, _>(round((*weight - least) * scale));
+            *weight = self.ramp.weight(round((*weight - least) * scale));
         }
         weights
     }
 
-    /// Endpoints that best explain the texels under fixed weights (0..=64), by linear regression;
-    /// the mean twice where all weights are equal.
+    /// Returns the endpoints that fit fixed weights (0..=64) best, by linear regression. If all weights are equal, both
+    /// endpoints are the mean.
     #[inline(always)]
     fn regress(&self, simd: S, m: &Moments<S, N>, weights: &Grid<S>) -> ([Wide<S>; N], [Wide<S>; N]) {
         let (zero, one) = (Wide::splat(simd, 0.0), Wide::splat(simd, 1.0));
         let w = sum(
             #[inline(always)]
-            |i| counted(self.subset, i, weights[i]),
+            |i| masked(self.subset, i, weights[i]),
         );
         let ww = sum(
             #[inline(always)]
-            |i| counted(self.subset, i, weights[i]) * weights[i],
+            |i| masked(self.subset, i, weights[i]) * weights[i],
         );
         let determinant = m.count * ww - w * w;
         let scale = determinant.simd_gt(0.0).select(one / determinant, zero);
@@ -147,7 +196,7 @@ impl<S: Simd, const N: usize> Points<'_, S, N> {
         for c in 0..N {
             let wx = sum(
                 #[inline(always)]
-                |i| counted(self.subset, i, weights[i]) * self.texels[c][i],
+                |i| masked(self.subset, i, weights[i]) * self.texels[c][i],
             );
             let slope = (m.count * wx - w * m.sums[c]) * scale;
             low[c] = (m.sums[c] - slope * w) * share;
@@ -156,21 +205,21 @@ impl<S: Simd, const N: usize> Points<'_, S, N> {
         (low, high)
     }
 
-    /// Quantises endpoints, chooses the weights anew and measures the error; the line and its weights
-    /// as 0..=64.
+    /// Quantises endpoints, chooses the best weights and measures the error. Returns the line and its weights as
+    /// 0..=64.
     #[inline(always)]
-    pub fn settle<const BITS: u32>(&self, simd: S, low: &[Wide<S>; N], high: &[Wide<S>; N]) -> (Line<S, N>, Grid<S>) {
+    pub fn quantised_line(&self, simd: S, low: &[Wide<S>; N], high: &[Wide<S>; N]) -> (Line<S, N>, Grid<S>) {
         let (mut low, mut high) = (*low, *high);
         for c in 0..N {
             low[c] = quantise(simd, self.range, low[c] / self.scale[c]);
             high[c] = quantise(simd, self.range, high[c] / self.scale[c]);
         }
-        self.chosen::<BITS>(simd, low, high)
+        self.line_between(simd, low, high)
     }
 
-    /// The line between quantised endpoints, with the best weights for them, and these as 0..=64.
+    /// Returns the line between quantised endpoints with the best weights, and these weights as 0..=64.
     #[inline(always)]
-    pub fn chosen<const BITS: u32>(&self, simd: S, low: [Wide<S>; N], high: [Wide<S>; N]) -> (Line<S, N>, Grid<S>) {
+    pub fn line_between(&self, simd: S, low: [Wide<S>; N], high: [Wide<S>; N]) -> (Line<S, N>, Grid<S>) {
         let zero = Wide::splat(simd, 0.0);
         let (mut step, mut length, mut start) = ([zero; N], zero, zero);
         for c in 0..N {
@@ -179,7 +228,7 @@ impl<S: Simd, const N: usize> Points<'_, S, N> {
             length += step[c] * step[c];
             start += step[c] * from;
         }
-        let last = Wide::splat(simd, ((1 << BITS) - 1) as f32);
+        let last = Wide::splat(simd, self.ramp.last);
         let scale = length.simd_gt(0.0).select(last / length, zero);
         let (mut indices, mut weights, mut errors) = ([zero; 16], [zero; 16], [zero; 16]);
         for i in 0..16 {
@@ -188,7 +237,7 @@ impl<S: Simd, const N: usize> Points<'_, S, N> {
                 t += step[c] * self.texels[c][i];
             }
             indices[i] = round(Real::min(Real::max(t * scale, zero), last));
-            weights[i] = ramp::<BITS, _>(indices[i]);
+            weights[i] = self.ramp.weight(indices[i]);
             for c in 0..N {
                 let d = self.scale[c] * decode(low[c], high[c] - low[c], weights[i]) - self.texels[c][i];
                 errors[i] += d * d;
@@ -196,23 +245,23 @@ impl<S: Simd, const N: usize> Points<'_, S, N> {
         }
         let error = sum(
             #[inline(always)]
-            |i| counted(self.subset, i, errors[i]),
+            |i| masked(self.subset, i, errors[i]),
         );
         (Line { low, high, weights: indices, error }, weights)
     }
 }
 
 impl<S: Simd, const N: usize> Line<S, N> {
-    /// Becomes `other` where `mask` holds.
+    /// Replaces the line by `other` where `mask` is set.
     #[inline(always)]
-    pub fn take(&mut self, other: &Self, mask: <Wide<S> as Real>::Mask) {
+    pub fn set_where(&mut self, other: &Self, mask: <Wide<S> as Real>::Mask) {
         for c in 0..N {
-            take(&mut self.low[c], other.low[c], mask);
-            take(&mut self.high[c], other.high[c], mask);
+            set_where(&mut self.low[c], other.low[c], mask);
+            set_where(&mut self.high[c], other.high[c], mask);
         }
         for i in 0..16 {
-            take(&mut self.weights[i], other.weights[i], mask);
+            set_where(&mut self.weights[i], other.weights[i], mask);
         }
-        take(&mut self.error, other.error, mask);
+        set_where(&mut self.error, other.error, mask);
     }
 }

@@ -1,18 +1,18 @@
-//! What the encoder is asked for.
+//! Settings of the encoder.
 
 /// How hard the encoder searches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
 pub enum Effort {
-    /// Estimates errors from the covariance of the colours and fits only the modes that can win: about as near to the
-    /// source as level 1 of basis_universal.
+    /// Estimates errors from the covariance of the colours and fits only the modes that can win. The quality is about
+    /// that of level 1 of basis_universal.
     Fast,
-    /// Fits all modes that pay and refines the winner: about as near as level 2 of basis_universal, and nearer by
-    /// direction.
+    /// Fits all modes that pay and refines the winner. The quality is about that of level 2 of basis_universal, and
+    /// better by [`Metric::Direction`].
     Best,
 }
 
-/// What an error costs: the encoder minimises the sum of these costs over the texels of a block.
+/// How errors are measured. The encoder minimises the sum of the errors over the texels of a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Metric {
@@ -20,17 +20,17 @@ pub enum Metric {
     Rgb,
     /// Squared differences of red, green and blue, each difference multiplied by its channel's weight first.
     ///
-    /// For textures whose channels hold unrelated quantities that are not equally important. At least one channel
-    /// should have full weight: the thresholds of the search are tuned for that.
+    /// Use this metric for textures whose channels hold unrelated quantities of different importance. At least one
+    /// channel should have full weight, because the thresholds of the search are tuned for full weights.
     Weighted([Weight; 3]),
-    /// Squared distances between directions, where a texel stands for the vector 2 rgb / 255 - 1: a normal map.
+    /// Squared distances between directions, for normal maps. A texel encodes the vector 2 rgb / 255 - 1.
     ///
-    /// Decoded vectors stay close to unit length (within 0.015 in the mean over a level of unit normals), so that
-    /// renderers which rebuild z from x and y see the same normal as those which normalise.
+    /// Decoded vectors stay close to unit length (within 0.015 in the mean over a level of unit normals). Renderers
+    /// that rebuild z from x and y therefore see the same normal as renderers that normalise.
     Direction,
 }
 
-/// What a difference in one channel counts for. Powers of two keep sums of differences exact.
+/// The factor of differences in one channel. All factors are powers of two, which keeps sums of differences exact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Weight {
@@ -43,7 +43,7 @@ pub enum Weight {
 }
 
 impl Metric {
-    /// Returns what a difference of one level counts for in red, green and blue.
+    /// Returns the factors of differences in red, green and blue.
     pub(crate) fn scale(self) -> [f32; 3] {
         match self {
             Self::Weighted(weights) => weights.map(Weight::factor),

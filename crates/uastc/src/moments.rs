@@ -1,7 +1,7 @@
 //! First and second moments of the colours of a block or subset.
 //!
-//! Sums of texels and of their products are whole numbers below 2^24, hence exact in `f32`
-//! whatever the order.
+//! Sums of texels and of their products are whole numbers below 2^24, which `f32` holds exactly in any order of
+//! addition.
 
 #![expect(clippy::needless_range_loop, reason = "loops over channels read several arrays at one index")]
 
@@ -10,7 +10,7 @@ use fearless_simd::{Select, Simd, SimdBase};
 use crate::lanes::{Grid, sum};
 use texel_simd::{Real, Wide};
 
-/// Count, sums and scatter (sum of products of the departures from the mean) of a subset.
+/// Count, sums and scatter matrix of a subset. The scatter is the sum of products of deviations from the mean.
 #[derive(Clone, Copy)]
 pub(crate) struct Moments<S: Simd, const N: usize> {
     pub count: Wide<S>,
@@ -18,16 +18,16 @@ pub(crate) struct Moments<S: Simd, const N: usize> {
     pub scatter: [[Wide<S>; N]; N],
 }
 
-/// `v`, of a texel that counts with 1 in its subset or with 0; without a subset all texels count.
+/// Returns `v` for texel `i` if the texel is in the subset, and 0 otherwise. Without a subset, all texels count.
 #[inline(always)]
-pub(crate) fn counted<S: Simd>(subset: Option<&Grid<S>>, i: usize, v: Wide<S>) -> Wide<S> {
+pub(crate) fn masked<S: Simd>(subset: Option<&Grid<S>>, i: usize, v: Wide<S>) -> Wide<S> {
     match subset {
         Some(subset) => subset[i] * v,
         None => v,
     }
 }
 
-/// Texels of a subset.
+/// Returns the number of texels in a subset.
 #[inline(always)]
 pub(crate) fn count<S: Simd>(simd: S, subset: Option<&Grid<S>>) -> Wide<S> {
     match subset {
@@ -39,7 +39,7 @@ pub(crate) fn count<S: Simd>(simd: S, subset: Option<&Grid<S>>) -> Wide<S> {
     }
 }
 
-/// Moments of the texels in `subset` (1 for a member, 0 for the rest), which has a member.
+/// Computes the moments of the texels in `subset` (1 for a member, 0 for other texels), which must not be empty.
 #[inline(always)]
 pub(crate) fn moments<S: Simd, const N: usize>(
     simd: S,
@@ -52,14 +52,14 @@ pub(crate) fn moments<S: Simd, const N: usize>(
     for a in 0..N {
         m.sums[a] = sum(
             #[inline(always)]
-            |i| counted(subset, i, texels[a][i]),
+            |i| masked(subset, i, texels[a][i]),
         );
     }
     for a in 0..N {
         for b in a..N {
             let products = sum(
                 #[inline(always)]
-                |i| counted(subset, i, texels[a][i]) * texels[b][i],
+                |i| masked(subset, i, texels[a][i]) * texels[b][i],
             );
             m.scatter[a][b] = products - m.sums[a] * m.sums[b] * share;
             m.scatter[b][a] = m.scatter[a][b];
@@ -68,7 +68,7 @@ pub(crate) fn moments<S: Simd, const N: usize>(
     m
 }
 
-/// Sum of the diagonal.
+/// Returns the sum of the diagonal.
 #[inline(always)]
 pub(crate) fn trace<S: Simd, const N: usize>(scatter: &[[Wide<S>; N]; N]) -> Wide<S> {
     let mut trace = scatter[0][0];
@@ -78,7 +78,7 @@ pub(crate) fn trace<S: Simd, const N: usize>(scatter: &[[Wide<S>; N]; N]) -> Wid
     trace
 }
 
-/// Squared length of a vector.
+/// Returns the squared length of a vector.
 #[inline(always)]
 fn squared_length<S: Simd, const N: usize>(vector: &[Wide<S>; N]) -> Wide<S> {
     let mut length = vector[0] * vector[0];
@@ -88,14 +88,14 @@ fn squared_length<S: Simd, const N: usize>(vector: &[Wide<S>; N]) -> Wide<S> {
     length
 }
 
-/// Direction of the largest scatter, of any length; zero where all texels are equal.
+/// Returns the direction of the largest scatter, of any length; 0 if all texels are equal.
 #[inline(always)]
 pub(crate) fn principal_axis<S: Simd, const N: usize>(simd: S, scatter: &[[Wide<S>; N]; N]) -> [Wide<S>; N] {
     let (zero, one) = (Wide::splat(simd, 0.0), Wide::splat(simd, 1.0));
     if N == 1 {
         return [one; N];
     }
-    // Eight power iterations as three squarings; the best-aligned column of the result.
+    // Three squarings are eight power iterations. The column with the largest diagonal element is aligned best.
     let mut power = *scatter;
     for _ in 0..3 {
         let trace = trace(&power);
@@ -128,7 +128,7 @@ pub(crate) fn principal_axis<S: Simd, const N: usize>(simd: S, scatter: &[[Wide<
     axis
 }
 
-/// Scatter along `axis`, the larger eigenvalue if the axis is principal.
+/// Returns the scatter along `axis`, which is the largest eigenvalue for the principal axis.
 #[inline(always)]
 pub(crate) fn scatter_along<S: Simd, const N: usize>(
     simd: S,
@@ -146,7 +146,7 @@ pub(crate) fn scatter_along<S: Simd, const N: usize>(
     length.simd_gt(0.0).select(along / length, zero)
 }
 
-/// `axis` with length 1; zero stays.
+/// Scales `axis` to length 1. A zero vector stays 0.
 #[inline(always)]
 pub(crate) fn unit<S: Simd, const N: usize>(simd: S, axis: &[Wide<S>; N]) -> [Wide<S>; N] {
     let (zero, one) = (Wide::splat(simd, 0.0), Wide::splat(simd, 1.0));

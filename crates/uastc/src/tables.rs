@@ -1,13 +1,14 @@
 //! The constants of the UASTC LDR 4x4 format: modes, endpoint ranges and partition patterns.
 //!
-//! Source: "UASTC LDR 4x4 Texture Specification" (BinomialLLC/basis_universal wiki) and, for the
-//! endpoint ranges, the Khronos Data Format Specification 1.3, section 23.12 "Endpoint
-//! unquantization" (ASTC).
+//! The source is the "UASTC LDR 4x4 Texture Specification" (BinomialLLC/basis_universal wiki). The endpoint ranges are
+//! those of the Khronos Data Format Specification 1.3, section 23.12 "Endpoint unquantization" (ASTC).
 
-/// Modes of the format.
+use crate::line::Ramp;
+
+/// Number of modes of the format.
 pub(crate) const MODES: usize = 19;
 
-/// What a mode stores.
+/// A mode of the format.
 pub(crate) struct Mode {
     /// Number in the specification.
     pub number: u8,
@@ -15,11 +16,11 @@ pub(crate) struct Mode {
     pub code: (u8, u8),
     /// Colour channels that the endpoints carry: 2 (grey and alpha), 3 (RGB) or 4 (RGBA).
     pub channels: usize,
-    /// Subsets of texels with their own pair of endpoints.
+    /// Number of subsets of texels, each with its own pair of endpoints.
     pub subsets: usize,
-    /// The patterns of two subsets: bit i is the subset of texel i, row 0 first.
-    pub halves: &'static [u16],
-    /// Weight planes: with two, one channel has weights of its own.
+    /// The two-subset patterns of the mode: bit i is the subset of texel i, row 0 first.
+    pub patterns: &'static [u16],
+    /// Number of weight planes. The second plane holds the weights of one selected channel.
     pub planes: usize,
     /// Bits of one weight.
     pub weight_bits: u32,
@@ -29,7 +30,7 @@ pub(crate) struct Mode {
     pub full_hints: bool,
 }
 
-/// How a block of a mode is laid out, in numbers alone, which a compiler can reckon with.
+/// The layout of a mode's blocks as plain numbers, which a compiler can evaluate as constants.
 #[derive(Clone, Copy)]
 pub(crate) struct Layout {
     /// As [`Mode::channels`].
@@ -47,36 +48,42 @@ pub(crate) struct Layout {
 }
 
 impl Layout {
-    /// Codes whose trits or quints share a number of base 3 or 5, and the bits of that number by how many of them there
-    /// are: trits by fives in 8 bits, quints by threes in 7; a last, incomplete group takes the bits that its largest
-    /// value needs.
+    /// Returns the size of groups of trits or quints, and the bits of a group by the number of its members.
+    ///
+    /// Five trits share 8 bits and three quints share 7 bits. The last, incomplete group has as many bits as its
+    /// largest value needs.
     #[inline(always)]
     pub fn groups(self) -> (usize, &'static [u32]) {
         match self.base {
             3 => (5, &[0, 2, 4, 5, 7, 8]),
             5 => (3, &[0, 3, 5, 7]),
-            // Neither: one group of nothing.
+            // A range without trits and quints has one group of no bits.
             _ => (18, &[0; 19]),
         }
     }
 }
 
 impl Mode {
-    /// The layout of its blocks.
+    /// Returns the layout of the mode's blocks.
     pub const fn layout(&self) -> Layout {
         let Self { channels, subsets, planes, weight_bits, range: Range { bits, base, .. }, .. } = *self;
         Layout { channels, subsets, planes, weight_bits, bits: *bits, base: *base }
     }
 
-    /// Whether blocks carry alpha.
+    /// Returns the weights that indices of the mode stand for.
+    pub fn ramp(&self) -> &'static Ramp {
+        Ramp::of(self.weight_bits)
+    }
+
+    /// Returns whether blocks carry alpha.
     pub fn has_alpha(&self) -> bool {
         self.channels != 3
     }
 }
 
 const fn rgb(number: u8, code: (u8, u8), weight_bits: u32, range: &'static Range) -> Mode {
-    let halves = &PATTERNS;
-    Mode { number, code, channels: 3, subsets: 1, halves, planes: 1, weight_bits, range, full_hints: true }
+    let patterns = &PATTERNS_2;
+    Mode { number, code, channels: 3, subsets: 1, patterns, planes: 1, weight_bits, range, full_hints: true }
 }
 
 const fn rgba(number: u8, code: (u8, u8), weight_bits: u32, range: &'static Range, full_hints: bool) -> Mode {
@@ -98,7 +105,7 @@ pub(crate) static MODE_5: Mode = rgb(5, (0xb, 5), 3, &RANGE_256);
 /// Mode 6: RGB, two planes of 4 weights.
 pub(crate) static MODE_6: Mode = Mode { planes: 2, ..rgb(6, (0x1b, 5), 2, &RANGE_160) };
 /// Mode 7: RGB, two subsets of 4 weights, in patterns of its own.
-static MODE_7: Mode = Mode { subsets: 2, halves: &MODE_7_PATTERNS, ..rgb(7, (0x7, 5), 2, &RANGE_40) };
+static MODE_7: Mode = Mode { subsets: 2, patterns: &MODE_7_PATTERNS, ..rgb(7, (0x7, 5), 2, &RANGE_40) };
 /// Mode 9: RGBA, two subsets of 4 weights.
 static MODE_9: Mode = Mode { subsets: 2, ..rgba(9, (0xf, 5), 2, &RANGE_16, true) };
 /// Mode 10: RGBA, 16 weights.
@@ -120,16 +127,16 @@ static MODE_17: Mode = Mode { channels: 2, planes: 2, ..rgb(17, (0x25, 6), 2, &R
 /// Mode 18: RGB, 32 weights.
 pub(crate) static MODE_18: Mode = rgb(18, (0x9, 4), 5, &RANGE_32);
 
-/// All modes but 8, those that the encoder chooses most first.
+/// All modes except mode 8, ordered by how often the encoder chooses them.
 pub(crate) static ALL: [&Mode; MODES - 1] = [
     &MODE_0, &MODE_4, &MODE_5, &MODE_6, &MODE_18, &MODE_1, &MODE_2, &MODE_3, &MODE_15, &MODE_7, &MODE_9, &MODE_10,
     &MODE_11, &MODE_12, &MODE_13, &MODE_14, &MODE_16, &MODE_17,
 ];
 
-/// Prefix code of mode 8, one colour for all texels.
+/// Prefix code of mode 8, in which all texels have one colour.
 pub(crate) const SOLID_CODE: (u8, u8) = (0x17, 5);
 
-/// One range of quantised endpoints ("BISE" range).
+/// A range of quantised endpoints (a range of ASTC's bounded integer sequence encoding).
 pub(crate) struct Range {
     /// Plain bits of a value.
     pub bits: u32,
@@ -139,7 +146,7 @@ pub(crate) struct Range {
     pub code: [u8; 256],
     /// The level that the nearest code stands for.
     pub level: [u8; 256],
-    /// The next levels below and above each of the range, or that level itself at either end.
+    /// The next level of the range below and above each level, or the level itself at either end.
     pub neighbour: [[u8; 256]; 2],
 }
 
@@ -188,21 +195,21 @@ impl Range {
         range
     }
 
-    /// The level that `code` stands for.
+    /// Returns the level of `code`.
     pub fn level_of(&self, code: u32) -> u8 {
         unquantize(code, self.bits, self.base) as u8
     }
 }
 
-/// Level 0..=255 of an endpoint code (Khronos Data Format 1.3, section 23.12, table 121).
+/// Returns the level, 0..=255, of an endpoint code (Khronos Data Format 1.3, section 23.12, table 121).
 const fn unquantize(code: u32, bits: u32, base: u32) -> u32 {
     let low = code & ((1 << bits) - 1);
     if base == 1 {
-        // Bit replication; the ranges here have 4 or more bits.
+        // Bit replication: ranges of bits alone have 4 or more bits here.
         return if bits == 8 { low } else { (low << (8 - bits)) | (low >> (2 * bits - 8)) };
     }
-    // Names as in the specification: a is bit 0 spread over nine bits, b the scattered upper
-    // bits, c the step of one trit or quint d.
+    // The names are those of the specification: a is bit 0 copied to nine bits, b the scattered upper bits, and c the
+    // step of one trit or quint d.
     let a = if low & 1 == 1 { 0x1ff } else { 0 };
     let upper = low >> 1;
     let (b, c) = match (base, bits) {
@@ -219,7 +226,7 @@ const fn unquantize(code: u32, bits: u32, base: u32) -> u32 {
 
 /// The two-subset patterns that ASTC and BC7 share, in the order of the format's pattern index: bit i is the subset of
 /// texel i, row 0 first.
-pub(crate) static PATTERNS: [u16; 30] = [
+pub(crate) static PATTERNS_2: [u16; 30] = [
     0xcccc, 0x8888, 0x1111, 0xecc8, 0x377f, 0xfeec, 0x0137, 0x137f, 0xc800, 0x0013, 0xfe80, 0x17ff, 0x0017, 0x00ff,
     0xfff0, 0x0fff, 0xff71, 0x8eff, 0x08ce, 0x008c, 0x7310, 0xceff, 0x7331, 0x088c, 0xceef, 0x6666, 0xf00f, 0x5555,
     0x0f0f, 0x36c9,
@@ -232,8 +239,8 @@ pub(crate) static MODE_7_PATTERNS: [u16; 19] = [
 ];
 
 /// The three-subset patterns that ASTC and BC7 share, in the order of the format's pattern index: bit i of member s
-/// tells whether texel i belongs to subset s.
-pub(crate) static THIRDS: [[u16; 3]; 11] = [
+/// is set if texel i belongs to subset s.
+pub(crate) static PATTERNS_3: [[u16; 3]; 11] = [
     [0x00ff, 0x3300, 0xcc00],
     [0x0f00, 0x00ff, 0xf000],
     [0x0ff0, 0x000f, 0xf000],

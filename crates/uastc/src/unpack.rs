@@ -1,22 +1,22 @@
-//! From sixteen bytes back to the block that they were packed from.
+//! Unpacks sixteen bytes to a block.
 
-use crate::lanes::Lane;
-use crate::line::{decode, ramp};
+use crate::lanes::ScalarGrid;
+use crate::line::decode;
 use crate::pack::Block;
-use crate::tables::{ALL, Mode, Range, SOLID_CODE, THIRDS};
+use crate::tables::{ALL, Mode, PATTERNS_3, Range, SOLID_CODE};
 
-/// What sixteen bytes hold.
+/// An unpacked block.
 pub(crate) enum Unpacked {
-    /// One colour for all texels.
+    /// A block of mode 8: one colour for all texels.
     Solid([u8; 4]),
     /// A block of any other mode.
     Block(Block),
 }
 
 impl Unpacked {
-    /// Returns the levels of red, green and blue that the texels of a block without alpha decode to.
+    /// Decodes red, green and blue of the texels of a block without alpha.
     #[inline(always)]
-    pub(crate) fn levels(&self) -> [Lane; 3] {
+    pub(crate) fn levels(&self) -> [ScalarGrid; 3] {
         match self {
             Self::Solid([r, g, b, _]) => [r, g, b].map(|&level| [level.into(); 16]),
             Self::Block(block) => block.levels(),
@@ -32,12 +32,12 @@ impl Unpacked {
     }
 }
 
-/// Reads a block, or `None` if it has alpha, is grey (modes 15 to 17) or cannot be read.
+/// Unpacks a block of RGB. Returns `None` if the block has alpha, is of grey and alpha (modes 15 to 17) or is invalid.
 pub(crate) fn unpack_rgb(bytes: &[u8; 16]) -> Option<Unpacked> {
     unpack(bytes).filter(Unpacked::is_rgb)
 }
 
-/// Reads a block, or `None` if its mode is reserved or its pattern does not exist.
+/// Unpacks a block. Returns `None` if its mode is reserved or its pattern does not exist.
 pub(crate) fn unpack(bytes: &[u8; 16]) -> Option<Unpacked> {
     let bits = u128::from_le_bytes(*bytes);
     let has_code = |(code, length): (u8, u8)| bits & ((1 << length) - 1) == u128::from(code);
@@ -49,16 +49,16 @@ pub(crate) fn unpack(bytes: &[u8; 16]) -> Option<Unpacked> {
     let mut block = Block::empty(mode);
     block.pattern = match mode.subsets {
         1 => 0,
-        2 => reader.take(5) as usize,
-        _ => reader.take(4) as usize,
+        2 => reader.read(5) as usize,
+        _ => reader.read(4) as usize,
     };
-    let patterns = if mode.subsets == 2 { mode.halves.len() } else { THIRDS.len() };
+    let patterns = if mode.subsets == 2 { mode.patterns.len() } else { PATTERNS_3.len() };
     if block.pattern >= patterns {
         return None;
     }
     if mode.planes == 2 {
         // Mode 17 stores no selector: alpha always has the second plane.
-        block.selector = if mode.channels == 2 { 3 } else { reader.take(2) as usize };
+        block.selector = if mode.channels == 2 { 3 } else { reader.read(2) as usize };
     }
     block.read_endpoints(&mut reader);
     block.read_weights(&mut reader);
@@ -66,7 +66,7 @@ pub(crate) fn unpack(bytes: &[u8; 16]) -> Option<Unpacked> {
 }
 
 impl Mode {
-    /// Returns how many bits the mode's code and its hints take.
+    /// Returns the number of bits of the mode's code and hints.
     pub fn header_bits(&self) -> u32 {
         let hints = if self.full_hints { 15 } else { 9 };
         u32::from(self.code.1) + hints + if self.has_alpha() { 8 } else { 0 }
@@ -86,14 +86,14 @@ impl Block {
         let (group, lengths) = self.mode.layout().groups();
         let mut codes = [0; 18];
         for group in codes[..count].chunks_mut(group) {
-            let mut number = reader.take(lengths[group.len()]);
+            let mut number = reader.read(lengths[group.len()]);
             for code in group {
                 *code = (number % range.base) << range.bits;
                 number /= range.base;
             }
         }
         for (k, code) in codes[..count].iter().enumerate() {
-            let level = range.level_of(code | reader.take(range.bits));
+            let level = range.level_of(code | reader.read(range.bits));
             self.endpoints[k / (2 * self.mode.channels)][k / 2 % self.mode.channels][k % 2] = level;
         }
     }
@@ -103,14 +103,14 @@ impl Block {
         for i in 0..16 {
             for plane in 0..self.mode.planes {
                 let is_anchor = u32::from(anchors >> i & 1);
-                self.weights[plane][i] = reader.take(self.mode.weight_bits - is_anchor) as u8;
+                self.weights[plane][i] = reader.read(self.mode.weight_bits - is_anchor) as u8;
             }
         }
     }
 
-    /// Returns the levels of red, green and blue that the texels decode to.
+    /// Decodes red, green and blue of the texels.
     #[inline(always)]
-    pub(crate) fn levels(&self) -> [Lane; 3] {
+    pub(crate) fn levels(&self) -> [ScalarGrid; 3] {
         let mut levels = [[0.0; 16]; 3];
         for (c, levels) in levels.iter_mut().enumerate() {
             *levels = self.channel(c, self.plane_of(c));
@@ -118,9 +118,9 @@ impl Block {
         levels
     }
 
-    /// Returns the levels that the stored channel `c` decodes to with the weights of `plane`.
+    /// Decodes the stored channel `c` with the weights of `plane`.
     #[inline(always)]
-    pub(crate) fn channel(&self, c: usize, plane: usize) -> Lane {
+    pub(crate) fn channel(&self, c: usize, plane: usize) -> ScalarGrid {
         let weights = self.ramps(plane);
         let mut levels = [0.0; 16];
         for subset in 0..self.mode.subsets {
@@ -134,28 +134,22 @@ impl Block {
         levels
     }
 
-    /// Returns the weights of a plane as the format interpolates with them, 0 to 64.
+    /// Returns the weights of a plane, 0 to 64.
     #[inline(always)]
-    pub(crate) fn ramps(&self, plane: usize) -> Lane {
-        let weights = &self.weights[plane];
-        let of = |ramp: fn(f32) -> f32| weights.map(|w| ramp(w.into()));
-        match self.mode.weight_bits {
-            1 => of(ramp::<1, f32>),
-            2 => of(ramp::<2, f32>),
-            3 => of(ramp::<3, f32>),
-            4 => of(ramp::<4, f32>),
-            _ => of(ramp::<5, f32>),
-        }
+    pub(crate) fn ramps(&self, plane: usize) -> ScalarGrid {
+        let ramp = self.mode.ramp();
+        self.weights[plane].map(|index| ramp.weight(f32::from(index)))
     }
 }
 
+/// Reads fields of bits, from the lowest bit upwards.
 struct Reader {
     bits: u128,
     at: u32,
 }
 
 impl Reader {
-    fn take(&mut self, length: u32) -> u32 {
+    fn read(&mut self, length: u32) -> u32 {
         let value = (self.bits >> self.at) as u32 & ((1 << length) - 1);
         self.at += length;
         value

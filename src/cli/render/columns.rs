@@ -1,4 +1,4 @@
-//! The columns of a sheet: a material as three bakes leave it, read from the baked files as an engine reads them.
+//! The columns of a sheet: a material after three bakes, read from the baked files as an engine reads them.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -6,28 +6,28 @@ use std::path::Path;
 use serde_json::Value;
 
 use super::RenderError;
-use crate::bake::{Baked, EXTENSION, Source, bake, fit_name};
-use crate::check::{RoughnessModel, RoughnessPyramid};
+use crate::bake::{BakedAsset, Source, bake_asset, fit_name};
 use crate::codec::Target;
 use crate::decode::decode;
 use crate::gltf::document::Document;
 use crate::gltf::material::{BumpSource, Layer, LayerKind, materials};
+use crate::gltf::roughness_pyramid::{EXTENSION, RoughnessModel, RoughnessPyramid};
 use crate::gltf::texture::{ImageLocation, texture_source};
 use crate::image::{DecodeOptions, Image, Rgba};
 use crate::ktx2::Ktx2;
-use crate::mip::{Level, Rows};
-use crate::render::{BaseAnisotropy, Bumps, LostBumps, Material, Ranged, Texture};
+use crate::mip::{Level, TexelRows};
+use crate::render::{BaseAnisotropy, Bumps, LostBumps, Material, RangedTexture, Texture};
 use crate::settings::{Form, Model, Profile, Settings};
 
 /// A material in all its forms.
 pub struct Columns {
     /// Its name, fit for a file name.
     pub name: String,
-    /// With plain normal mips, in half floats; its level 0 is the truth.
+    /// Plain normal mips in half floats. Level 0 is the reference.
     pub plain: Material,
-    /// Of the portable profile.
+    /// The portable profile.
     pub portable: Option<Material>,
-    /// Of the pyramid profile.
+    /// The pyramid profile.
     pub pyramid: Option<Material>,
 }
 
@@ -40,7 +40,7 @@ pub struct Column<'a> {
 }
 
 impl Columns {
-    /// The columns beside the supersampled one.
+    /// Returns the columns beside the supersampled column.
     pub fn filtered(&self) -> impl Iterator<Item = Column<'_>> {
         let baked = [("portable", &self.portable), ("pyramid", &self.pyramid)];
         let baked = baked.into_iter().filter_map(|(name, material)| Some((name, material.as_ref()?)));
@@ -48,14 +48,14 @@ impl Columns {
     }
 }
 
-/// Bakes `source` as `settings` say and reads back every material that has bumps on its base layer.
+/// Bakes `source` with `settings` and reads back every material that has bumps on its base layer.
 ///
 /// # Errors
-/// [`RenderError::NoBumps`] when no material has, and whatever the bake says.
+/// [`RenderError::NoBumps`] when no material has bumps, and the errors of the bake.
 pub fn columns(source: &Source<'_>, settings: &Settings) -> Result<Vec<Columns>, RenderError> {
-    let strict = Settings { form: Form::Strict, glb: false, provenance: false, ..*settings };
-    let of_profile = |profile| Settings { profile, ..strict };
-    let plain = Settings { model: Model::None, target: Target::Float, ..of_profile(Profile::Portable) };
+    let strict = settings.with_form(Form::Strict).with_glb(false).with_provenance(false);
+    let of_profile = |profile| strict.with_profile(profile);
+    let plain = of_profile(Profile::Portable).with_model(Model::None).with_target(Target::Float);
     let plain = read(source, &plain)?;
     let baked = |profile: Profile, wanted: bool| {
         if wanted { read(source, &of_profile(profile)) } else { Ok(Vec::new()) }
@@ -79,24 +79,29 @@ pub fn columns(source: &Source<'_>, settings: &Settings) -> Result<Vec<Columns>,
 /// Most bytes of the names of an asset and of a material in the name of a picture or a chart.
 const MOST_NAME: usize = 80;
 
-/// `helmet` and `Glass / Plastic` become `helmet.Glass___Plastic`; a number is added to names that are taken.
+/// Returns a file name: `helmet` and `Glass / Plastic` become `helmet.Glass___Plastic`. Adds a number to a name that is
+/// taken.
 pub fn file_name(stem: &str, material: &str, taken: &mut BTreeSet<String>) -> String {
     let safe = |c: char| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' };
     let name = fit_name(&material.chars().map(safe).collect::<String>(), MOST_NAME);
     let name = if stem.is_empty() { name } else { format!("{}.{name}", fit_name(stem, MOST_NAME)) };
     let numbered = |n: u32| if n == 1 { name.clone() } else { format!("{name}-{n}") };
-    // Case-insensitive file systems see one file where names differ by case only.
+    // On case-insensitive file systems, names that differ in case only are one file.
     (1..).map(numbered).find(|name| taken.insert(name.to_lowercase())).unwrap_or_default()
 }
 
-/// Bakes and reads back: names and materials, in the order of the document.
+/// Bakes `source` and reads back names and materials, in the order of the document.
 fn read(source: &Source<'_>, settings: &Settings) -> Result<Vec<(String, Material)>, RenderError> {
-    read_back(source, &bake(source, settings, &|_| {})?, settings.max_texels)
+    read_back(source, &bake_asset(source, settings, &|_| {})?, settings.max_texels)
 }
 
-/// Names and materials with bumps of what `source` became, in the order of the document.
-pub fn read_back(source: &Source<'_>, baked: &Baked, max_texels: u64) -> Result<Vec<(String, Material)>, RenderError> {
-    let Baked { document, files, .. } = baked;
+/// Reads back names and materials with bumps of `baked`, in the order of the document.
+pub fn read_back(
+    source: &Source<'_>,
+    baked: &BakedAsset,
+    max_texels: u64,
+) -> Result<Vec<(String, Material)>, RenderError> {
+    let BakedAsset { document, files, .. } = baked;
     let document = Document::parse(document)?;
     let read = |path: &Path| match files.iter().find(|file| file.path == path) {
         Some(file) => Ok(file.bytes.clone()),
@@ -163,9 +168,9 @@ impl Reader<'_> {
     fn pyramid(&self, value: &Value) -> Result<(Bumps, LostBumps), RenderError> {
         let json = |reason: String| RenderError::Extension { material: self.material.to_owned(), reason };
         let pyramid = RoughnessPyramid::read(value).map_err(json)?;
-        let ranged = |index: u32, min: &[f64], max: &[f64]| -> Result<Ranged, RenderError> {
+        let ranged = |index: usize, min: &[f64], max: &[f64]| -> Result<RangedTexture, RenderError> {
             let at = |bounds: &[f64]| [0, 1, 2].map(|c| bounds.get(c).copied().unwrap_or(0.0));
-            Ok(Ranged { texture: self.texture(index as usize)?.texture, min: at(min), max: at(max) })
+            Ok(RangedTexture { texture: self.texture(index)?.texture, min: at(min), max: at(max) })
         };
         let bumps = ranged(pyramid.offset_texture.index, &pyramid.offset_min, &pyramid.offset_max)?;
         let lost = match (&pyramid.roughness_model, &pyramid.roughness_texture) {
@@ -209,7 +214,7 @@ impl Reader<'_> {
         }
     }
 
-    /// All levels of a KTX2 file; those of a file that has only one are made.
+    /// Reads all levels of a KTX2 file. Makes the missing levels of a file that has one level only.
     fn ktx2(&self, bytes: &[u8]) -> Result<Loaded, crate::ktx2::ReadError> {
         let file = Ktx2::parse(bytes)?.with_max_texels(self.max_texels);
         let first = file.decode_level(0)?;
@@ -218,9 +223,9 @@ impl Reader<'_> {
         if file.level_count() == 1 {
             return Ok(Loaded { channels, texture: Texture::with_mips(first) });
         }
-        let coarser = (1..file.level_count()).map(|l| Ok(level(&file.decode_level(l)?)));
-        let coarser = coarser.collect::<Result<Vec<_>, crate::ktx2::ReadError>>()?;
-        Ok(Loaded { channels, texture: Texture::new(first, coarser) })
+        let rest = (1..file.level_count()).map(|l| Ok(level(&file.decode_level(l)?)));
+        let rest = rest.collect::<Result<Vec<_>, crate::ktx2::ReadError>>()?;
+        Ok(Loaded { channels, texture: Texture::new(first, rest) })
     }
 }
 

@@ -1,4 +1,4 @@
-//! Why nothing is drawn.
+//! Errors of drawing.
 
 use std::io;
 use std::path::PathBuf;
@@ -15,7 +15,7 @@ use crate::output::PublishError;
 /// Why nothing is drawn.
 #[derive(Debug, thiserror::Error)]
 pub enum RenderError {
-    #[error("expected a readable file, found: {0}")]
+    #[error("expected a readable file, found: {0}; check the path")]
     Read(io::Error),
     #[error(transparent)]
     Document(#[from] DocumentError),
@@ -39,6 +39,8 @@ pub enum RenderError {
     NoBumps,
     #[error(transparent)]
     Publish(#[from] PublishError),
+    #[error("expected to write compare.csv, found: {0}")]
+    Table(io::Error),
     #[error("expected to encode {}, found: {reason}; choose a smaller --width", path.display())]
     Encode { path: PathBuf, reason: String },
 }

@@ -1,4 +1,4 @@
-//! What is drawn: an asset, a bare map as the material of an asset of its own, or waves as a height map.
+//! The input of a drawing: an asset, a standalone map as the material of a new asset, or waves as a height map.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -7,13 +7,14 @@ use serde_json::json;
 
 use super::RenderError;
 use super::columns::{Columns, columns};
-use crate::bake::{Source, read_file};
-use crate::cli::sources::protect;
+use crate::bake::{Source, output_stem_of};
 use crate::gltf::document::Document;
 use crate::gltf::uri::encode_path;
 use crate::image::{Image, Samples};
+use crate::input_file::read_file;
 use crate::inspect::encode_exr;
 use crate::output::Guard;
+use crate::project::protect;
 use crate::render::{Subject, waves};
 use crate::settings::Settings;
 
@@ -37,24 +38,25 @@ pub enum Input {
         bytes: Vec<u8>,
         /// Its file name.
         name: String,
-        /// What it holds.
+        /// What the texels are.
         kind: MapKind,
     },
 }
 
-/// What an image holds.
+/// What the texels of an image are.
 #[derive(Clone, Copy)]
 pub enum MapKind {
     /// Normals.
     Normals,
     /// Heights, and their scale in widths of the map.
     Heights(f32),
-    /// The waves, whose height suits the subject.
+    /// The waves, whose height depends on the subject.
     Waves,
 }
 
 impl Input {
-    /// Reads the file at `path`, whose heights, if it holds any, have a scale; the waves without a path.
+    /// Reads the file at `path`, which holds heights if there is a `height_scale`. Makes the waves where there is no
+    /// path.
     pub fn read(path: Option<&Path>, height_scale: Option<f32>) -> Result<Self, RenderError> {
         let Some(path) = path else {
             let samples = Samples::F32(waves(WAVES));
@@ -67,14 +69,18 @@ impl Input {
         let extension = path.extension().unwrap_or_default();
         if ["gltf", "glb"].iter().any(|e| extension.eq_ignore_ascii_case(e)) {
             let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-            return Ok(Self::Asset { document: Box::new(Document::parse(&bytes)?), folder, stem: stem(path) });
+            return Ok(Self::Asset {
+                document: Box::new(Document::parse(&bytes)?),
+                folder,
+                stem: output_stem_of(path),
+            });
         }
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let kind = height_scale.map_or(MapKind::Normals, MapKind::Heights);
         Ok(Self::Map { bytes, name, kind })
     }
 
-    /// What keeps the input, which was read from `path`, and its files from being written over.
+    /// Returns a guard that keeps the input, which was read from `path`, and its files from being overwritten.
     pub fn guard(&self, path: Option<&Path>) -> Guard {
         let mut guard = Guard::default();
         match (self, path) {
@@ -84,7 +90,7 @@ impl Input {
         guard
     }
 
-    /// Bakes every material with bumps. A bare map gets `roughness`, else what suits `subject`.
+    /// Bakes every material with bumps. A standalone map gets `roughness`, else the roughness of `subject`.
     pub fn columns(
         &self,
         settings: &Settings,
@@ -94,8 +100,8 @@ impl Input {
         self.with_source(subject, roughness, |source| columns(source, settings))
     }
 
-    /// Hands the document to `then`. A bare map becomes the material of one, with `roughness`, else what suits
-    /// `subject`.
+    /// Passes the document to `then`. A standalone map becomes the material of a new document, with `roughness`, else
+    /// the roughness of `subject`.
     pub fn with_source<T>(
         &self,
         subject: Subject,
@@ -108,7 +114,7 @@ impl Input {
                 then(&Source { stem, document, files: &read })
             }
             Self::Map { bytes, name, kind } => {
-                let stem = stem(Path::new(name));
+                let stem = output_stem_of(Path::new(name));
                 let texture = json!({ "index": 0 });
                 let mut material = json!({
                     "name": stem,
@@ -140,8 +146,4 @@ impl Input {
             }
         }
     }
-}
-
-fn stem(path: &Path) -> String {
-    path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
 }

@@ -12,21 +12,22 @@ use clap::ValueEnum;
 use serde::Serialize;
 
 use super::options::{TextureOptions, finite, unit_interval};
-use super::progress::Progress;
+use super::progress::ProgressLine;
 use crate::cli::outcome::Outcome;
 use crate::lobe::Family;
 use crate::render::{
     Difference, EnvironmentFilter, Filter, Reflection, Shader, Subject, Tone, filtered, highlight, relative_l1,
     supersampled,
 };
-use crate::settings::Settings;
+use crate::run::Progress;
+
 use crate::text::printable;
 use columns::{Column, Columns};
 pub(super) use error::RenderError;
 use input::Input;
 use output::{Folder, Shown};
 
-/// Draw a material before and after the bake beside the truth, and print how far from it each is.
+/// Draw a material before and after the bake beside the reference, and print the error of each picture.
 ///
 /// Columns: plain (renormalised normal mips), portable and pyramid (the baked files, decoded as an engine decodes them)
 /// and supersampled (many samples per pixel of the unfiltered map). Without INPUT, the scenes of the paper with waves.
@@ -38,26 +39,26 @@ use output::{Folder, Shown};
     roughcast render helmet.gltf -o pictures --lobe beckmann")]
 #[command(mut_arg("profile", |profile| profile.default_value("both").help("Which baked columns to draw")))]
 pub struct Args {
-    /// .gltf or .glb, of which each material is drawn, or a bare normal or height map.
+    /// .gltf or .glb, whose materials are drawn, or a standalone normal or height map.
     input: Option<PathBuf>,
-    /// Output folder: a sheet of all columns for each scene, and each picture by itself.
+    /// Output folder: a sheet of all columns for each scene, and each picture alone.
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
     /// What to draw. [default: plane,sphere for an input, else lake,pattern,highlight]
     #[arg(long, value_enum, value_delimiter = ',', value_name = "SCENE")]
     scene: Vec<SceneName>,
-    /// Distances from the eye to the surface, in repeats of the map; a row for each. [default: what suits the scene]
+    /// Distances from the eye to the surface, in repeats of the map; a row for each. [default: depends on the scene]
     #[arg(long, value_parser = distance, allow_negative_numbers = true, value_delimiter = ',', value_name = "D")]
     distance: Vec<f64>,
-    /// The lobe that shades, which the columns are baked for.
-    #[arg(long, value_enum, default_value_t = LobeName::Ggx)]
-    lobe: LobeName,
+    /// The lobe that shades, and for which the columns are baked.
+    #[arg(long, value_enum, default_value_t = Reflection::Ggx)]
+    lobe: Reflection,
     /// How texture filtering averages texels.
-    #[arg(long, value_enum, default_value_t = FilterName::Anisotropic)]
-    filter: FilterName,
+    #[arg(long, value_enum, default_value_t = Filter::Anisotropic)]
+    filter: Filter,
     /// What filters the surroundings that a lobe reflects.
-    #[arg(long, value_enum, default_value_t = EnvironmentName::Ellipse)]
-    environment: EnvironmentName,
+    #[arg(long, value_enum, default_value_t = EnvironmentFilter::Ellipse)]
+    environment: EnvironmentFilter,
     /// Width of a picture in pixels.
     #[arg(long, default_value_t = 256, value_parser = clap::value_parser!(u32).range(8..=4096), value_name = "PX")]
     width: u32,
@@ -67,10 +68,10 @@ pub struct Args {
     /// INPUT is an image of heights, not of normals.
     #[arg(long)]
     height: bool,
-    /// BumpMap between heights 0 and 1, in widths of the map.
+    /// Distance between heights 0 and 1, in widths of the map.
     #[arg(long, value_parser = finite, default_value_t = 0.05, value_name = "S", allow_hyphen_values = true)]
     height_scale: f32,
-    /// Roughness of a bare map or the waves, 0 to 1. [default: what suits the scene]
+    /// Roughness of a standalone map or of the waves, 0 to 1. [default: depends on the scene]
     #[arg(long, value_parser = unit_interval, allow_negative_numbers = true, value_name = "R")]
     roughness: Option<f32>,
     /// Also write linear radiance as OpenEXR.
@@ -100,64 +101,17 @@ enum SceneName {
     Sphere,
 }
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum LobeName {
-    /// GGX, as glTF prescribes
-    Ggx,
-    /// Normally distributed slopes
-    Beckmann,
-    /// The paper's modified Blinn-Phong with the ellipse's own radius
-    BlinnPhong,
-    /// The same with the angle as the paper prints it, which is wrong unless the lobe is isotropic
-    BlinnPhongPrinted,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum FilterName {
-    /// One tap in the level that fits the longer side of a pixel's footprint
-    Trilinear,
-    /// Up to 16 taps along it
-    Anisotropic,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum EnvironmentName {
-    /// lambda_1 picks the mip level of the environment
-    Lambda1,
-    /// D spreads taps along the ellipse of reflected rays
-    Ellipse,
-}
-
-impl LobeName {
-    /// What to bake for: the paper takes its lobes for normal distributions.
-    fn family(self) -> Family {
-        match self {
-            Self::Ggx => Family::Ggx,
-            Self::Beckmann | Self::BlinnPhong | Self::BlinnPhongPrinted => Family::Beckmann,
-        }
+/// Returns the family of lobes to bake for. The paper takes its lobes for normal distributions.
+fn family(reflection: Reflection) -> Family {
+    match reflection {
+        Reflection::Ggx => Family::Ggx,
+        Reflection::Beckmann | Reflection::BlinnPhong | Reflection::BlinnPhongPrinted => Family::Beckmann,
     }
 }
 
 impl Args {
     fn shader(&self, f0: f64) -> Shader {
-        let reflection = match self.lobe {
-            LobeName::Ggx => Reflection::Ggx,
-            LobeName::Beckmann => Reflection::Beckmann,
-            LobeName::BlinnPhong => Reflection::BlinnPhong,
-            LobeName::BlinnPhongPrinted => Reflection::BlinnPhongPrinted,
-        };
-        let filter = match self.environment {
-            EnvironmentName::Lambda1 => EnvironmentFilter::Lambda1,
-            EnvironmentName::Ellipse => EnvironmentFilter::Ellipse,
-        };
-        Shader { reflection, filter, f0 }
-    }
-
-    fn filter(&self) -> Filter {
-        match self.filter {
-            FilterName::Trilinear => Filter::Trilinear,
-            FilterName::Anisotropic => Filter::Anisotropic,
-        }
+        Shader { reflection: self.lobe, filter: self.environment, f0 }
     }
 
     fn scenes(&self) -> Vec<SceneName> {
@@ -186,7 +140,7 @@ struct SheetReport {
 struct Row {
     distance: f64,
     columns: Vec<Scored>,
-    /// Relative L1 that the supersampled column is expected to have against one with endless samples.
+    /// Expected relative L1 of the supersampled column against a column with infinitely many samples.
     noise: f64,
 }
 
@@ -197,7 +151,7 @@ struct Scored {
     difference: Difference,
 }
 
-/// Draws what `args` name.
+/// Draws the scenes and prints their errors.
 ///
 /// # Errors
 /// When `out` or `err` cannot be written to.
@@ -241,7 +195,7 @@ fn draw_all(args: &Args) -> Result<Vec<SheetReport>, RenderError> {
     let input = Input::read(args.input.as_deref(), args.height.then_some(args.height_scale))?;
     let mut folder = Folder::new(&args.output, args.exr, input.guard(args.input.as_deref()));
     let scenes = args.scenes();
-    let progress = Progress::new(scenes.len(), args.quiet);
+    let progress = ProgressLine::new(scenes.len(), args.quiet);
     let mut sheets = Vec::new();
     for (index, scene) in scenes.into_iter().enumerate() {
         let subject = match scene {
@@ -266,11 +220,11 @@ fn draw_all(args: &Args) -> Result<Vec<SheetReport>, RenderError> {
                 continue;
             }
         };
-        let settings = Settings { family: args.lobe.family(), ..args.texture.settings() };
+        let settings = args.texture.settings().with_family(family(args.lobe));
         let materials = input.columns(&settings, subject, args.roughness)?;
         for (done, columns) in materials.iter().enumerate() {
             let advance = |share: f32| {
-                progress.set(index, (done as f32 + share) / materials.len() as f32, &columns.name);
+                progress.advance(index, (done as f32 + share) / materials.len() as f32, &columns.name);
             };
             sheets.push(draw(args, subject, columns, &mut folder, &advance)?);
         }
@@ -293,19 +247,19 @@ fn draw(
     for (done, &distance) in distances.iter().enumerate() {
         let scene = subject.scene(args.width, distance);
         let shader = args.shader(scene.f0);
-        // Filtered columns take no time beside the other.
+        // Filtered columns take little time beside the supersampled column.
         let advance = |share: f32| advance((done as f32 + share) / distances.len() as f32);
         let truth = supersampled(&scene, &columns.plain, &shader, args.samples, &advance);
-        let tone = Tone::of(&truth.picture, scene.key);
+        let tone = Tone::expose_for(&truth.picture, scene.key);
         let mut row = Row {
             distance,
             columns: Vec::new(),
-            // Halves differ by twice what their mean is expected to be off.
+            // The halves of the samples differ by twice the expected error of their mean.
             noise: relative_l1(&truth.half, &truth.picture),
         };
         let mut panels = Vec::new();
         for Column { name, material } in columns.filtered() {
-            let picture = filtered(&scene, material, &shader, args.filter(), &|_| {});
+            let picture = filtered(&scene, material, &shader, args.filter, &|_| {});
             let difference = Difference::between(&picture, &truth.picture, &tone);
             let label = format!("L1 {:.3}  SSIM {:.3}", difference.relative_l1, difference.ssim);
             panels.push(Shown { name, picture, labels: vec![name.to_owned(), label], tone });
@@ -320,7 +274,7 @@ fn draw(
     Ok(SheetReport { path, material: Some(columns.name.clone()), scene: subject.name(), rows })
 }
 
-/// A distance that leaves the map somewhere to be.
+/// Parses a distance at which the map is in the picture.
 fn distance(text: &str) -> Result<f64, String> {
     let number = f64::from(finite(text)?);
     if (1e-3..=1e4).contains(&number) { Ok(number) } else { Err(format!("expected 0.001 to 10000, found {number}")) }

@@ -1,4 +1,4 @@
-//! Pictures as files: a sheet, and each by itself.
+//! Pictures as files: a sheet, and each picture alone.
 
 use std::path::Path;
 
@@ -10,15 +10,15 @@ use crate::inspect::encode_exr;
 use crate::output::Guard;
 use crate::render::{Panel, Picture, Sheet, Tone};
 
-/// A picture and how it is shown.
+/// A picture and its presentation.
 pub struct Shown {
-    /// In file names.
+    /// The name, as in file names.
     pub name: &'static str,
     /// The picture.
     pub picture: Picture,
-    /// Lines below it.
+    /// The lines below the picture.
     pub labels: Vec<String>,
-    /// How it is displayed.
+    /// The tone mapping.
     pub tone: Tone,
 }
 
@@ -40,7 +40,8 @@ pub struct Folder<'a> {
 }
 
 impl<'a> Folder<'a> {
-    /// Returns the folder `output`, in which `guard` decides what may be written. Pictures are EXR files too if `has_exr`.
+    /// Returns the folder `output`, in which `guard` decides what may be written. If `has_exr`, pictures are also
+    /// written as EXR files.
     pub fn new(output: &'a Path, has_exr: bool, guard: Guard) -> Self {
         Self { output, has_exr, guard }
     }
@@ -52,7 +53,7 @@ impl<'a> Folder<'a> {
             let distance = distance.map_or(String::new(), |d| format!(".d{d}"));
             for Shown { name, picture, tone, .. } in row {
                 let stem = format!("{stem}{distance}.{name}");
-                self.write_sheet(&stem, Sheet::of(picture, tone))?;
+                self.write_sheet(&stem, Sheet::from_picture(picture, tone))?;
                 if self.has_exr {
                     let path = self.output.join(format!("{stem}.exr"));
                     let [width, height] = picture.size;
@@ -64,7 +65,7 @@ impl<'a> Folder<'a> {
         }
         let sheet: Vec<Vec<Panel<'_>>> =
             rows.iter().map(|(distance, row)| row.iter().map(|shown| shown.panel(*distance)).collect()).collect();
-        self.write_sheet(stem, Sheet::of_rows(&sheet))
+        self.write_sheet(stem, Sheet::from_rows(&sheet))
     }
 
     fn write_sheet(&mut self, stem: &str, sheet: Option<Sheet>) -> Result<String, RenderError> {
@@ -77,9 +78,9 @@ impl<'a> Folder<'a> {
     }
 
     fn write_file(&mut self, path: &Path, encoded: Result<Vec<u8>, String>) -> Result<String, RenderError> {
-        let place = self.guard.place(path)?;
+        let output = self.guard.reserve_file(path)?;
         let bytes = encoded.map_err(|reason| RenderError::Encode { path: path.to_owned(), reason })?;
-        place.write(&bytes)?;
+        output.write(&bytes)?;
         Ok(path.display().to_string())
     }
 }

@@ -1,32 +1,32 @@
-//! Documents that are cut off, damaged, or lead nowhere.
+//! Documents that are truncated, damaged, or refer to nothing.
 
 use std::fs;
 
 use super::*;
 
 #[test]
-fn a_document_that_is_no_json() {
+fn rejects_a_document_that_is_not_json() {
     let scene = Scene::new();
     cut_in_half(&scene.bad("brushed.gltf"));
-    assert_says(&scene.complaint(&[]), &["bad/brushed.gltf: ", "JSON"]);
+    assert_contains(&scene.error_line(&[]), &["bad/brushed.gltf: ", "JSON"]);
 }
 
 #[test]
-fn an_empty_document() {
+fn rejects_an_empty_document() {
     let scene = Scene::new();
     fs::write(scene.bad("brushed.gltf"), "").expect("a file");
-    assert_says(&scene.complaint(&[]), &["bad/brushed.gltf: ", "found an empty file"]);
+    assert_contains(&scene.error_line(&[]), &["bad/brushed.gltf: ", "found an empty file"]);
 }
 
 #[test]
-fn a_document_of_one_bracket_repeated() {
+fn rejects_a_document_of_repeated_brackets() {
     let scene = Scene::new();
     fs::write(scene.bad("brushed.gltf"), "[".repeat(1 << 20)).expect("a file");
-    assert_says(&scene.complaint(&[]), &["bad/brushed.gltf: ", "JSON"]);
+    assert_contains(&scene.error_line(&[]), &["bad/brushed.gltf: ", "JSON"]);
 }
 
 #[test]
-fn values_of_other_types() {
+fn rejects_values_of_wrong_types() {
     for (old, new) in [
         ("\"index\": 1", "\"index\": -1"),
         ("\"index\": 1", "\"index\": \"1\""),
@@ -38,23 +38,23 @@ fn values_of_other_types() {
             scene.edit("\"pbrMetallicRoughness\"", "\"was\"");
         }
         scene.edit(old, new);
-        assert_says(&scene.complaint(&[]), &["bad/brushed.gltf: ", "Brushed steel", "expected"]);
+        assert_contains(&scene.error_line(&[]), &["bad/brushed.gltf: ", "Brushed steel", "expected"]);
     }
 }
 
 #[test]
-fn a_cut_off_glb() {
+fn rejects_a_truncated_glb() {
     let scene = Scene::new();
     let whole = fs::read(fixtures().join("waves/waves.glb")).expect("a fixture");
     fs::remove_file(scene.bad("brushed.gltf")).expect("a file");
     for end in [0, 3, 4, 11, 12, 19, 20, 400, whole.len() / 2, whole.len() - 1] {
         fs::write(scene.bad("lake.glb"), &whole[..end]).expect("a file");
-        assert_says(&scene.complaint(&[]), &["bad/lake.glb: ", "expected"]);
+        assert_contains(&scene.error_line(&[]), &["bad/lake.glb: ", "expected"]);
     }
 }
 
 #[test]
-fn an_index_out_of_range() {
+fn rejects_an_index_out_of_range() {
     for (old, new, parts) in [
         ("\"index\": 1", "\"index\": 99", &["Brushed steel", "normal", "textures[99]"] as &[&str]),
         ("\"index\": 2", "\"index\": 99", &["Brushed steel", "roughness", "textures[99]"]),
@@ -64,19 +64,19 @@ fn an_index_out_of_range() {
     ] {
         let scene = Scene::new();
         scene.edit(old, new);
-        assert_says(&scene.complaint(&[]), &[&["bad/brushed.gltf: "], parts].concat());
+        assert_contains(&scene.error_line(&[]), &[&["bad/brushed.gltf: "], parts].concat());
     }
 }
 
 #[test]
-fn a_texture_without_an_image() {
+fn rejects_a_texture_without_an_image() {
     let scene = Scene::new();
     scene.edit("\"source\": 1", "\"name\": \"none\"");
-    assert_says(&scene.complaint(&[]), &["bad/brushed.gltf: ", "Brushed steel", "texture 1", "image"]);
+    assert_contains(&scene.error_line(&[]), &["bad/brushed.gltf: ", "Brushed steel", "texture 1", "image"]);
 }
 
 #[test]
-fn an_image_beyond_its_buffer() {
+fn rejects_an_image_beyond_its_buffer() {
     let scene = Scene::new();
     let text = fs::read_to_string(scene.bad("brushed.gltf")).expect("a document");
     let length = fs::metadata(scene.bad("brushed.bin")).expect("a file").len();
@@ -86,13 +86,16 @@ fn an_image_beyond_its_buffer() {
     );
     scene.edit("\"uri\": \"brushed_normal.png\"", "\"bufferView\": 0, \"mimeType\": \"image/png\"");
     assert_ne!(text, fs::read_to_string(scene.bad("brushed.gltf")).expect("a document"));
-    assert_says(&scene.complaint(&[]), &["bad/brushed.gltf: ", "Brushed steel", "buffer view 0", "expected", "found"]);
+    assert_contains(
+        &scene.error_line(&[]),
+        &["bad/brushed.gltf: ", "Brushed steel", "buffer view 0", "expected", "found"],
+    );
 }
 
 #[test]
-fn a_buffer_shorter_than_it_says() {
+fn rejects_a_buffer_that_is_too_short() {
     let scene = Scene::new();
     cut_in_half(&scene.bad("brushed.bin"));
-    assert_says(&scene.complaint(&[]), &["bad/brushed.gltf: ", "buffer", "25248", "12624"]);
-    assert_says(&scene.complaint(&["--glb"]), &["bad/brushed.gltf: ", "buffer", "25248", "12624"]);
+    assert_contains(&scene.error_line(&[]), &["bad/brushed.gltf: ", "buffer", "25248", "12624"]);
+    assert_contains(&scene.error_line(&["--glb"]), &["bad/brushed.gltf: ", "buffer", "25248", "12624"]);
 }

@@ -1,4 +1,4 @@
-//! Bad input gets one clear error and exit code 1, and everything else is still baked.
+//! Tests that bad input gives one clear error and exit code 1, and that every other asset is still baked.
 
 mod documents;
 mod images;
@@ -10,22 +10,20 @@ use std::path::{Path, PathBuf};
 
 use tempfile::{TempDir, tempdir};
 
-use super::process::{Run, copy, fixtures, hashes, roughcast};
+use super::process::{Run, bad_and_good_asset, copy, fixtures, hashes, roughcast};
 
-/// A bad asset (`in/bad`: the brushed sphere, to be damaged) and a good one (`in/good`: the lake), to be baked to `out`.
+/// A bad asset (`in/bad`, the brushed sphere, for tests to damage) and a good one (`in/good`, the lake). Both are baked
+/// to `out`.
 struct Scene {
     folder: TempDir,
 }
 
 impl Scene {
     fn new() -> Self {
-        let folder = tempdir().expect("a folder");
-        copy(&fixtures().join("brushed"), &folder.path().join("in/bad"));
-        copy(&fixtures().join("waves"), &folder.path().join("in/good"));
-        Self { folder }
+        Self { folder: bad_and_good_asset() }
     }
 
-    /// A file of the bad asset.
+    /// Returns the path of a file of the bad asset.
     fn bad(&self, name: &str) -> PathBuf {
         self.folder.path().join("in/bad").join(name)
     }
@@ -47,9 +45,9 @@ impl Scene {
         self
     }
 
-    /// Bakes both and expects one complaint about the bad asset, the good one baked, and no other trace. Returns the
-    /// complaint.
-    fn complaint(&self, options: &[&str]) -> String {
+    /// Bakes both assets. Expects one error about the bad asset, outputs of the good one and no other files. Returns
+    /// the error.
+    fn error_line(&self, options: &[&str]) -> String {
         let before = hashes(&self.input());
         let run = self.bake(options);
         assert_eq!(hashes(&self.input()), before, "a source changed");
@@ -69,7 +67,7 @@ impl Scene {
     }
 }
 
-/// The one line that `run`, which failed for good, wrote to standard error.
+/// Returns the only line that a permanently failed run wrote to standard error.
 fn one_line(run: &Run) -> String {
     let line = run.err.trim_end_matches('\n').to_owned();
     assert!(line.starts_with("error: ") && !line.contains('\n'), "expected one line, found:\n{}", run.err);
@@ -78,8 +76,8 @@ fn one_line(run: &Run) -> String {
     line
 }
 
-/// Asserts that `line` has all `parts`, in this order.
-fn assert_says(line: &str, parts: &[&str]) {
+/// Asserts that `line` contains all `parts` in this order.
+fn assert_contains(line: &str, parts: &[&str]) {
     let mut rest = line;
     for part in parts {
         let at = rest.find(part).unwrap_or_else(|| panic!("expected {part:?} in its place in: {line}"));
@@ -87,13 +85,13 @@ fn assert_says(line: &str, parts: &[&str]) {
     }
 }
 
-/// Asserts that no temporary file is below `folder`.
+/// Asserts that there is no temporary file below `folder`.
 fn assert_no_leftovers(folder: &Path) {
     let leftovers: Vec<_> = hashes(folder).into_keys().filter(|name| name.contains(".roughcast-")).collect();
     assert!(leftovers.is_empty(), "{leftovers:?}");
 }
 
-/// The first half of a file's bytes.
+/// Truncates a file to the first half of its bytes.
 fn cut_in_half(path: &Path) {
     let bytes = fs::read(path).expect("a readable file");
     fs::write(path, &bytes[..bytes.len() / 2]).expect("a writable file");

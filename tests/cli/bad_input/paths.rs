@@ -1,32 +1,32 @@
-//! Files that are missing, or that no asset may name.
+//! Files that are missing, or that an asset must not refer to.
 
 use std::fs;
 
 use super::*;
 
 #[test]
-fn missing_files() {
+fn reports_missing_files() {
     for name in ["brushed_normal.png", "brushed_surface.png", "brushed_colour.png", "brushed.bin"] {
         let scene = Scene::new();
         fs::remove_file(scene.bad(name)).expect("a file");
-        assert_says(&scene.complaint(&[]), &["bad/brushed.gltf: ", "expected a readable file at ", name]);
+        assert_contains(&scene.error_line(&[]), &["bad/brushed.gltf: ", "expected a readable file at ", name]);
     }
 }
 
 #[test]
-fn a_folder_in_the_place_of_a_file() {
+fn rejects_a_folder_instead_of_a_file() {
     let scene = Scene::new();
     fs::remove_file(scene.bad("brushed_normal.png")).expect("a file");
     fs::create_dir(scene.bad("brushed_normal.png")).expect("a folder");
-    assert_says(
-        &scene.complaint(&[]),
+    assert_contains(
+        &scene.error_line(&[]),
         &["bad/brushed.gltf: ", "Brushed steel", "brushed_normal.png", "not an ordinary"],
     );
 }
 
-/// Each names a file that exists, or that no one may ask for.
+/// Each URI names a file that exists, or one that an asset must not ask for.
 #[test]
-fn uris_that_leave_the_folder() {
+fn rejects_uris_that_leave_the_folder() {
     let secret = |scheme: &str| format!("{scheme}{}", fixtures().join("brushed/brushed_normal.png").display());
     for (uri, part) in [
         ("../good/waves.glb".to_owned(), "inside the folder"),
@@ -42,22 +42,22 @@ fn uris_that_leave_the_folder() {
         for old in ["brushed_normal.png", "brushed_colour.png", "brushed.bin"] {
             let scene = Scene::new();
             scene.edit(old, &uri);
-            assert_says(&scene.complaint(&[]), &["bad/brushed.gltf: ", "expected", part]);
+            assert_contains(&scene.error_line(&[]), &["bad/brushed.gltf: ", "expected", part]);
         }
     }
 }
 
 #[test]
-fn data_uris_that_hold_no_data() {
+fn rejects_data_uris_without_data() {
     for (uri, part) in [("data:image/png;base64", "','"), ("data:image/png;base64,@@@@", "base64")] {
         let scene = Scene::new();
         scene.edit("brushed_normal.png", uri);
-        assert_says(&scene.complaint(&[]), &["bad/brushed.gltf: ", "expected", part]);
+        assert_contains(&scene.error_line(&[]), &["bad/brushed.gltf: ", "expected", part]);
     }
 }
 
 #[test]
-fn inputs_that_are_no_assets() {
+fn rejects_inputs_that_are_not_assets() {
     let scene = Scene::new();
     let empty = scene.folder.path().join("empty");
     fs::create_dir(&empty).expect("a folder");
@@ -67,7 +67,7 @@ fn inputs_that_are_no_assets() {
     for (bad, part) in [(empty, "found none"), (image, "roughcast map"), (missing, "No such file")] {
         let output = scene.output();
         let run = roughcast(["bake".as_ref(), bad.as_os_str(), good.as_os_str(), "-o".as_ref(), output.as_os_str()]);
-        assert_says(&one_line(&run), &["expected", part]);
+        assert_contains(&one_line(&run), &["expected", part]);
         assert!(output.join("waves.gltf").is_file(), "the other input is not baked");
         fs::remove_dir_all(output).expect("a folder");
     }

@@ -1,4 +1,4 @@
-//! Files that are none, that hold less than they claim, or that do not fit into memory: the asset fails, and every other one is
+//! Files that are not what they claim to be, or do not fit into memory. Their asset fails, and every other one is
 //! baked.
 
 use std::fs::{self, File};
@@ -10,22 +10,20 @@ use std::time::{Duration, Instant};
 use exr::prelude::{WritableImage, f16};
 use tempfile::{TempDir, tempdir};
 
-use crate::process::{Run, copy, fixtures};
+use crate::process::{Run, bad_and_good_asset};
 
-/// A bad asset (`in/bad`: the brushed sphere, to be damaged) and a good one (`in/good`: the lake), to be baked to `out`.
+/// A bad asset (`in/bad`, the brushed sphere, for tests to damage) and a good one (`in/good`, the lake). Both are baked
+/// to `out`.
 struct Scene {
     folder: TempDir,
 }
 
 impl Scene {
     fn new() -> Self {
-        let folder = tempdir().expect("a folder");
-        copy(&fixtures().join("brushed"), &folder.path().join("in/bad"));
-        copy(&fixtures().join("waves"), &folder.path().join("in/good"));
-        Self { folder }
+        Self { folder: bad_and_good_asset() }
     }
 
-    /// A scene whose bad asset has `bytes` in the place of its normal map, in a file with extension `extension`.
+    /// Returns a scene in which `bytes`, in a file with this extension, replace the normal map of the bad asset.
     fn with_normal_map(extension: &str, bytes: &[u8]) -> Self {
         let scene = Self::new();
         let (document, name) = (scene.bad("brushed.gltf"), format!("brushed_normal.{extension}"));
@@ -39,7 +37,7 @@ impl Scene {
         self.folder.path().join("in/bad").join(name)
     }
 
-    /// Bakes both, with `limit` KiB of address space if one is given.
+    /// Bakes both assets, with `limit` KiB of address space if one is given.
     fn bake(&self, limit: Option<u64>) -> Run {
         let limit = limit.map_or_else(String::new, |limit| format!("ulimit -v {limit}; "));
         let mut command = Command::new("sh");
@@ -48,8 +46,8 @@ impl Scene {
         finished(command)
     }
 
-    /// Bakes both and expects that only the good one is there, and what is said of the bad one.
-    fn complaint(&self, limit: Option<u64>, codes: &[i32]) -> String {
+    /// Bakes both assets, expects outputs of the good one only, and returns the error about the bad one.
+    fn error_line(&self, limit: Option<u64>, codes: &[i32]) -> String {
         let run = self.bake(limit);
         assert!(codes.contains(&run.code), "exit {}, {}", run.code, run.err);
         assert!(self.is_baked("good/waves.gltf"), "the good asset is not baked: {}", run.err);
@@ -66,7 +64,7 @@ impl Scene {
 /// Longest time for a run that may hang.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// Waits for `command`, whose standard input stays open, so that whatever reads it waits for ever.
+/// Waits for `command`. Its standard input stays open, so that a program that reads it would wait for ever.
 fn finished(mut command: Command) -> Run {
     command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = command.spawn().expect("the command starts");
@@ -90,12 +88,12 @@ fn mkfifo(path: &Path) {
 
 #[test]
 #[cfg(unix)]
-fn a_pipe_in_the_place_of_any_file_is_refused() {
+fn a_pipe_instead_of_any_file_is_refused() {
     for name in ["brushed_colour.png", "brushed_normal.png", "brushed_surface.png", "brushed.bin"] {
         let scene = Scene::new();
         fs::remove_file(scene.bad(name)).expect("a file");
         mkfifo(&scene.bad(name));
-        let line = scene.complaint(None, &[1]);
+        let line = scene.error_line(None, &[1]);
         assert!(line.contains(name) && line.contains("not an ordinary file"), "{line}");
     }
 }
@@ -115,14 +113,14 @@ fn links_to_a_pipe_a_device_and_a_socket_are_refused() {
         let image = scene.bad("brushed_colour.png");
         fs::remove_file(&image).expect("a file");
         symlink(target, image).expect("a link");
-        let line = scene.complaint(None, &[1]);
+        let line = scene.error_line(None, &[1]);
         assert!(line.contains("brushed_colour.png"), "{}: {line}", target.display());
     }
 }
 
 #[test]
 #[cfg(unix)]
-fn a_pipe_in_the_cache_is_no_entry() {
+fn a_pipe_in_the_cache_is_not_an_entry() {
     let scene = Scene::new();
     let bake = || {
         let mut command = Command::new(env!("CARGO_BIN_EXE_roughcast"));
@@ -141,7 +139,7 @@ fn a_pipe_in_the_cache_is_no_entry() {
     assert!(scene.is_baked("waves.gltf"));
 }
 
-/// A JPEG of noise, 128 x 128 texels.
+/// Returns a JPEG of noise with 128 x 128 texels.
 fn jpeg(progressive: bool) -> Vec<u8> {
     let mut file = Vec::new();
     let texels: Vec<u8> = (0..128 * 128 * 3usize).map(|i| (i * i * 7919 % 251) as u8).collect();
@@ -152,22 +150,22 @@ fn jpeg(progressive: bool) -> Vec<u8> {
 }
 
 #[test]
-fn a_jpeg_that_lost_a_part_is_refused_though_its_end_marker_is_there() {
+fn a_jpeg_with_a_missing_part_is_refused_even_with_its_end_marker() {
     for whole in [jpeg(false), jpeg(true)] {
         let (fifth, third) = (whole.len() / 5, whole.len() / 3);
         let cut = [&whole[..fifth], b"\xff\xd9"].concat();
-        let line = Scene::with_normal_map("jpg", &cut).complaint(None, &[1]);
+        let line = Scene::with_normal_map("jpg", &cut).error_line(None, &[1]);
         assert!(line.contains("JPEG file is cut off"), "{line}");
         let holed = [&whole[..third], &whole[2 * third..]].concat();
-        let line = Scene::with_normal_map("jpg", &holed).complaint(None, &[1]);
+        let line = Scene::with_normal_map("jpg", &holed).error_line(None, &[1]);
         assert!(line.contains("JPEG file is"), "{line}");
     }
 }
 
-/// Address space of the runs below, in KiB.
+/// Address space of the following runs, in KiB.
 const LIMIT: u64 = 2 << 20;
 
-/// A PNG of `side` x `side` texels of 64 bits without data: less than 100 bytes.
+/// Returns a PNG of `side` x `side` texels of 64 bits without data, in less than 100 bytes.
 fn empty_png(side: u32) -> Vec<u8> {
     let mut file = Vec::new();
     let mut encoder = png::Encoder::new(&mut file, side, side);
@@ -177,7 +175,7 @@ fn empty_png(side: u32) -> Vec<u8> {
     file
 }
 
-/// An EXR of 4 kB that claims 16384 x 16384 texels.
+/// Returns an EXR of 4 kB that claims 16384 x 16384 texels.
 fn small_exr() -> Vec<u8> {
     let mut file = std::io::Cursor::new(Vec::new());
     let texel = |x: exr::math::Vec2<usize>| (f16::from_f32(x.0 as f32), f16::ZERO, f16::ONE);
@@ -198,7 +196,7 @@ fn small_exr() -> Vec<u8> {
 #[cfg(target_os = "linux")]
 fn an_image_that_claims_more_than_memory_fails_its_asset() {
     for (extension, bytes) in [("png", empty_png(16384)), ("exr", small_exr())] {
-        let line = Scene::with_normal_map(extension, &bytes).complaint(Some(LIMIT), &[1, 4]);
+        let line = Scene::with_normal_map(extension, &bytes).error_line(Some(LIMIT), &[1, 4]);
         assert!(line.contains("Brushed steel") && line.contains(&format!("brushed_normal.{extension}")), "{line}");
     }
 }
@@ -206,7 +204,7 @@ fn an_image_that_claims_more_than_memory_fails_its_asset() {
 #[test]
 #[cfg(target_os = "linux")]
 fn an_image_that_is_larger_than_memory_fails_its_asset() {
-    // As dense as deflate gets, so nothing but memory speaks against it.
+    // The data is as dense as deflate allows, so that only memory limits the image.
     let mut png = Vec::new();
     let mut encoder = png::Encoder::new(&mut png, 16384, 16384);
     encoder.set_color(png::ColorType::Rgba);
@@ -218,13 +216,13 @@ fn an_image_that_is_larger_than_memory_fails_its_asset() {
     }
     stream.finish().expect("a file");
     drop(writer);
-    let line = Scene::with_normal_map("png", &png).complaint(Some(LIMIT / 2), &[4]);
+    let line = Scene::with_normal_map("png", &png).error_line(Some(LIMIT / 2), &[4]);
     assert!(line.contains("brushed_normal.png") && line.contains("MiB of free memory"), "{line}");
 }
 
 #[test]
 #[cfg(target_os = "linux")]
-fn a_buffer_that_is_larger_than_memory_is_copied_and_never_held() {
+fn a_buffer_larger_than_memory_is_copied() {
     let scene = Scene::new();
     File::options()
         .write(true)
@@ -238,10 +236,10 @@ fn a_buffer_that_is_larger_than_memory_is_copied_and_never_held() {
     assert_eq!(copy.len(), 3 << 30);
 }
 
-/// However much memory there is, the run ends by itself, and says so where it was not enough.
+/// Tests that a run ends with an error rather than a crash for any limit on memory.
 #[test]
 #[cfg(target_os = "linux")]
-fn no_limit_on_memory_ends_the_run() {
+fn a_run_ends_cleanly_for_any_limit_on_memory() {
     let side = 2048;
     let mut png = Vec::new();
     let mut encoder = png::Encoder::new(&mut png, side, side);
@@ -256,7 +254,7 @@ fn no_limit_on_memory_ends_the_run() {
     }
 }
 
-/// Whether a run says what it should of an image of 60,000 channels, in few words.
+/// An image of 60,000 channels gets a short message.
 #[test]
 fn an_exr_of_many_channels_gets_a_short_message() {
     let names: Vec<String> = (0..60_000).map(|i| format!("c{i}")).collect();
@@ -265,6 +263,6 @@ fn an_exr_of_many_channels_gets_a_short_message() {
     let channels = exr::prelude::AnyChannels::sort(names.iter().map(channel).collect());
     let mut file = std::io::Cursor::new(Vec::new());
     exr::image::Image::from_channels((1, 1), channels).write().to_buffered(&mut file).expect("an EXR");
-    let line = Scene::with_normal_map("exr", &file.into_inner()).complaint(None, &[1]);
+    let line = Scene::with_normal_map("exr", &file.into_inner()).error_line(None, &[1]);
     assert!(line.len() < 1000 && line.contains("more: name one"), "{} bytes: {line:.300}", line.len());
 }

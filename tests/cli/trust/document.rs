@@ -1,4 +1,4 @@
-//! Documents: what is in them afterwards, what is refused, and how much work large ones are.
+//! What documents contain after a bake, which documents are refused, and how much work large ones take.
 
 mod hostile;
 mod leftovers;
@@ -12,7 +12,7 @@ use tempfile::{TempDir, tempdir};
 
 use super::super::process::{bake, copy, files, fixtures, roughcast};
 
-/// A copy of the brushed sphere, to be changed.
+/// A copy of the brushed sphere, for tests to change.
 struct Sphere {
     folder: TempDir,
 }
@@ -24,7 +24,7 @@ impl Sphere {
         Self { folder }
     }
 
-    /// A file of the asset.
+    /// Returns the path of a file of the asset.
     fn file(&self, name: &str) -> PathBuf {
         self.folder.path().join("in").join(name)
     }
@@ -40,20 +40,20 @@ impl Sphere {
         fs::write(path, root.to_string()).expect("a writable file");
     }
 
-    /// Bakes the asset, which is not taken, and returns the complaint.
-    fn complaint(&self, options: &[&str]) -> String {
-        complaint(&self.file("brushed.gltf"), &self.output(), options)
+    /// Bakes the asset, expects a failure, and returns the error.
+    fn error_line(&self, options: &[&str]) -> String {
+        error_line(&self.file("brushed.gltf"), &self.output(), options)
     }
 
-    /// Bakes the asset and returns the document.
+    /// Bakes the asset and returns its document.
     fn baked(&self, options: &[&str]) -> Value {
         bake(&self.file("brushed.gltf"), &self.output(), options);
         document(&self.output().join("brushed.gltf"))
     }
 }
 
-/// Bakes `input`, which is not taken, and returns the one line that says why.
-fn complaint(input: &Path, output: &Path, options: &[&str]) -> String {
+/// Bakes `input`, expects a failure, and returns the only line of the error.
+fn error_line(input: &Path, output: &Path, options: &[&str]) -> String {
     let paths = ["bake".as_ref(), input.as_os_str(), "-o".as_ref(), output.as_os_str()];
     let run = roughcast(paths.into_iter().chain(options.iter().map(AsRef::as_ref)));
     let line = run.err.trim_end_matches('\n').to_owned();
@@ -67,7 +67,7 @@ fn document(path: &Path) -> Value {
     serde_json::from_slice(&fs::read(path).expect("a document")).expect("JSON")
 }
 
-/// JSON and BIN chunk of a GLB.
+/// Reads the JSON and the BIN chunk of a GLB.
 fn glb(path: &Path) -> (Value, Vec<u8>) {
     let bytes = fs::read(path).expect("a GLB");
     let length = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().expect("four bytes")) as usize;
@@ -76,7 +76,7 @@ fn glb(path: &Path) -> (Value, Vec<u8>) {
     (root, bytes.get(28 + json..).unwrap_or_default().to_vec())
 }
 
-/// A GLB of `root` and `bin`.
+/// Returns a GLB of `root` and `bin`.
 fn to_glb(root: &Value, bin: &[u8]) -> Vec<u8> {
     let mut json = root.to_string().into_bytes();
     json.resize(json.len().next_multiple_of(4), b' ');

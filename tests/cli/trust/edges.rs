@@ -1,4 +1,5 @@
-//! The edges of the command line: who reads its messages, what names and settings come from strangers, what it starts.
+//! The borders of the command line: readers of its messages, untrusted names and settings, and the programs that it
+//! starts.
 
 mod depfile;
 #[cfg(target_os = "linux")]
@@ -14,7 +15,7 @@ use tempfile::tempdir;
 use crate::process::{bake, copy, done, fixtures, hashes, roughcast_with, run};
 
 #[test]
-fn globs_of_any_size_are_one_message() {
+fn a_glob_of_any_size_gives_one_error() {
     let nested = format!("{}a{}", "{a,".repeat(150), "}".repeat(150));
     for (glob, part) in [
         (nested.as_str(), "found 150 in"),
@@ -34,7 +35,7 @@ fn globs_of_any_size_are_one_message() {
 }
 
 #[test]
-fn more_threads_than_help_are_not_started() {
+fn the_number_of_threads_is_limited() {
     let folder = tempdir().expect("a folder");
     let [usual, many] = ["usual", "many"].map(|name| folder.path().join(name));
     bake(&fixtures().join("waves"), &usual, &["--model=none"]);
@@ -56,7 +57,7 @@ fn more_threads_than_help_are_not_started() {
 
 #[cfg(unix)]
 #[test]
-fn an_asset_may_be_called_what_no_uri_can_name() {
+fn an_asset_may_have_a_name_that_no_uri_can_contain() {
     let judged = |name: &str, textures: &str| {
         let folder = tempdir().expect("a folder");
         fs::create_dir(folder.path().join("A")).expect("a folder");

@@ -1,4 +1,4 @@
-//! What files of strangers may not do: nothing is lost, and no one is let in.
+//! Tests that untrusted files cannot destroy files or reach other ones.
 
 mod decoders;
 mod document;

@@ -1,4 +1,5 @@
-//! What is published: inputs as they were planned, guard of their own, nothing stale, and of one run only.
+//! Tests what is published: inputs as they were planned, only files of the run, nothing stale, and outputs of one run
+//! only.
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
@@ -13,9 +14,9 @@ use roughcast::run::{Job, Lookup, MemoryBudget, RunError, finish, prepare};
 use serde_json::{Value, json};
 use tempfile::tempdir;
 
-#[cfg(target_os = "linux")]
-use super::super::process::skipped;
 use super::super::process::{copy, done, files, fixtures, hashes, run};
+#[cfg(target_os = "linux")]
+use super::super::skip::skip;
 
 /// Copies the fixture `name` to `to` in `folder`.
 fn fixture(folder: &Path, name: &str, to: &str) {
@@ -39,7 +40,7 @@ fn a_file_that_changes_before_it_is_copied_is_not_published() {
     let folder = scene.path();
     fixture(folder, "brushed", "in");
     let (source, out) = (folder.join("in/brushed.gltf"), folder.join("out"));
-    let settings = resolve(&[]).expect("defaults").values;
+    let settings = resolve(&[]).expect("defaults").values.to_members();
     let cache = Cache::new(Some(&folder.join("cache")), None, 1 << 30).expect("a cache");
     let job = Job::new(&source, &out, &settings).expect("a job");
     // Fills the cache.
@@ -60,13 +61,13 @@ fn a_file_that_changes_before_it_is_copied_is_not_published() {
                     None => fs::remove_file(&path).expect("a file"),
                 }
                 let found = finish(prepared).err();
-                let is_recorded = matches!(&found, Some(error @ RunError::Changed { path: told })
-                    if *told == path && error.is_passing());
+                let is_recorded = matches!(&found, Some(error @ RunError::Changed { path: changed })
+                    if *changed == path && error.is_passing());
                 assert!(is_recorded, "{name}, cached: {is_cached}: {found:?}");
                 let document = out.join("brushed.gltf");
                 assert!(!out.join(name).exists() && !document.exists(), "{name} was published");
                 fs::write(&path, &bytes).expect("a file");
-                // Files that did not change may be there already.
+                // Files that did not change may exist already.
                 let _ = fs::remove_dir_all(&out);
             }
         }
@@ -80,10 +81,11 @@ fn a_file_that_changes_before_it_is_copied_is_not_published() {
     }
 }
 
-/// A disk of 20 kB, where this process may mount one: a scheduler runs the job again, and `plan merge --rest` keeps it.
+/// Bakes to a disk of 20 kB, if this process may mount one. A scheduler runs the job again, and `plan merge --rest`
+/// keeps it.
 #[cfg(target_os = "linux")]
 #[test]
-fn jobs_that_met_a_full_disk_are_worth_trying_again() {
+fn jobs_that_fail_on_a_full_disk_are_worth_a_retry() {
     let scene = tempdir().expect("a folder");
     let folder = scene.path();
     fixture(folder, "brushed", "in");
@@ -97,7 +99,7 @@ fn jobs_that_met_a_full_disk_are_worth_trying_again() {
     let output = command.current_dir(folder).output();
     let code = output.as_ref().ok().and_then(|output| output.status.code());
     let Some(output) = output.ok().filter(|output| code != Some(77) && !output.stderr.starts_with(b"unshare")) else {
-        return skipped("a full disk, which needs the right to mount one");
+        return skip("a full disk needs the right to mount one");
     };
     let err = String::from_utf8_lossy(&output.stderr);
     assert_eq!(code, Some(4), "{err}");
@@ -119,8 +121,7 @@ fn assets_whose_names_differ_in_case_only_are_refused() {
         fs::write(folder.join(name), &document).expect("a file");
     }
     if files(&folder.join("in")).len() < 4 {
-        // Here the file system does not take both.
-        return;
+        return skip("this file system ignores the case of names");
     }
     let found = run(folder, "bake in -o out -q --model none");
     assert_eq!((found.code, found.err.lines().count()), (1, 2), "{}", found.err);
@@ -137,7 +138,7 @@ fn assets_whose_names_differ_in_case_only_are_refused() {
 fn files_whose_names_differ_in_case_only_are_refused() {
     let scene = tempdir().expect("a folder");
     let folder = scene.path();
-    // Within an asset, and between two of one folder: an image that is only copied.
+    // An image that is only copied: within an asset, and between two assets of one folder.
     fixture(folder, "brushed", "one");
     fixture(folder, "brushed", "two/a");
     fixture(folder, "brushed", "two/b");
@@ -150,8 +151,7 @@ fn files_whose_names_differ_in_case_only_are_refused() {
     fs::write(&asset, document.to_string()).expect("a file");
     fs::write(folder.join("one/BRUSHED.BIN"), "another file").expect("a file");
     if names(&folder.join("one")).len() < 6 {
-        // Here the file system does not take both.
-        return;
+        return skip("this file system ignores the case of names");
     }
     for (inputs, parts) in [
         ("one", ["one/brushed.gltf: ", "BRUSHED.BIN", "brushed.bin"]),
@@ -170,7 +170,7 @@ fn an_output_of_another_source_is_not_replaced() {
     let folder = scene.path();
     fixture(folder, "brushed", "in");
     fs::copy(fixtures().join("waves/waves.glb"), folder.join("brushed.glb")).expect("a file");
-    // Also where nothing is to be baked any more.
+    // The output is kept even if nothing is to be baked.
     for options in ["", "--cache cache", "--cache cache"] {
         done(folder, "bake brushed.glb -o out -q");
         let before = hashes(&folder.join("out"));
@@ -180,7 +180,7 @@ fn an_output_of_another_source_is_not_replaced() {
             assert!(found.err.contains(part), "{part:?}: {}", found.err);
         }
         assert_eq!(hashes(&folder.join("out")), before);
-        // The cure, and the same source again.
+        // The remedy works, and so does the original source.
         fs::remove_dir_all(folder.join("out")).expect("a folder");
         done(folder, &format!("bake in/brushed.gltf -o out -q {options}"));
         done(folder, &format!("bake in/brushed.gltf -o out -q {options}"));
@@ -189,21 +189,21 @@ fn an_output_of_another_source_is_not_replaced() {
 }
 
 #[test]
-fn textures_that_an_asset_no_longer_has_go_and_nothing_else_does() {
+fn only_textures_that_an_asset_no_longer_has_are_removed() {
     let scene = tempdir().expect("a folder");
     let folder = scene.path();
     fixture(folder, "knobs", "in");
     for options in ["", "--cache cache"] {
         done(folder, &format!("bake in -o clean -q --gltf strict {options}"));
         done(folder, &format!("bake in -o out -q {options}"));
-        let own = folder.join("out/knobs.roughcast");
-        let stale: Vec<String> = names(&own).into_iter().filter(|name| name.ends_with(".png")).collect();
+        let textures_folder = folder.join("out/knobs.roughcast");
+        let stale: Vec<String> = names(&textures_folder).into_iter().filter(|name| name.ends_with(".png")).collect();
         assert!(stale.len() > 2, "{stale:?}");
-        // By hand, and somebody else's.
-        fs::write(own.join(&stale[0]), "edited").expect("a file");
-        fs::write(own.join("foreign.ktx2"), "foreign").expect("a file");
+        // A texture copied by hand, and a file of somebody else.
+        fs::write(textures_folder.join(&stale[0]), "edited").expect("a file");
+        fs::write(textures_folder.join("foreign.ktx2"), "foreign").expect("a file");
         fs::write(folder.join("victim"), "not an output").expect("a file");
-        // What a document says need not be true.
+        // A document may record files that it does not textures_folder.
         let document = folder.join("out/knobs.gltf");
         let mut forged: Value = serde_json::from_slice(&fs::read(&document).expect("a file")).expect("JSON");
         let outputs = forged["asset"]["extras"]["roughcast"]["outputs"].as_array_mut().expect("what was written");
@@ -246,7 +246,7 @@ fn outputs_of_earlier_bakes_are_left_out_of_folders_with_one_note() {
     done(folder, "bake . -o out -q");
     let planned = run(folder, "plan . -o out");
     assert_eq!((planned.code, planned.out.lines().count(), planned.err.as_str()), (0, 2, note));
-    // What is named is what is meant.
+    // Inputs that are named explicitly are baked.
     let named = run(folder, "bake earlier/brushed.gltf -o again");
     assert!(named.code == 1 && named.err.contains("bake from the original"), "{}", named.err);
     let only = run(folder, "bake earlier -o again");
@@ -255,8 +255,8 @@ fn outputs_of_earlier_bakes_are_left_out_of_folders_with_one_note() {
     assert!(!folder.join("again").exists());
 }
 
-/// Ways to bake whose outputs differ in bytes and names.
-const WAYS: [&str; 2] = ["--model=isotropic", "--model=isotropic --gltf=strict --target=float"];
+/// Settings whose outputs differ in bytes and names.
+const OPTIONS: [&str; 2] = ["--model=isotropic", "--model=isotropic --gltf=strict --target=float"];
 
 #[test]
 fn two_bakes_of_different_settings_into_one_folder_do_not_mix() {
@@ -265,26 +265,26 @@ fn two_bakes_of_different_settings_into_one_folder_do_not_mix() {
     for asset in ["brushed", "knobs", "waves"] {
         fixture(folder, asset, &format!("in/{asset}"));
     }
-    let wanted: Vec<BTreeMap<String, String>> = WAYS
+    let expected: Vec<BTreeMap<String, String>> = OPTIONS
         .iter()
-        .map(|way| {
-            done(folder, &format!("bake in -o wanted -q {way}"));
-            let wanted = hashes(&folder.join("wanted"));
-            fs::remove_dir_all(folder.join("wanted")).expect("a folder");
-            wanted
+        .map(|options| {
+            done(folder, &format!("bake in -o expected -q {options}"));
+            let expected = hashes(&folder.join("expected"));
+            fs::remove_dir_all(folder.join("expected")).expect("a folder");
+            expected
         })
         .collect();
     for round in 0..6 {
-        let start = |way: &&str| {
+        let start = |options: &&str| {
             let mut command = Command::new(env!("CARGO_BIN_EXE_roughcast"));
-            command.current_dir(folder).args("bake in -o out -q".split(' ')).args(way.split(' ')).spawn()
+            command.current_dir(folder).args("bake in -o out -q".split(' ')).args(options.split(' ')).spawn()
         };
-        let bakes: Vec<_> = WAYS.iter().map(|way| start(way).expect("the command starts")).collect();
+        let bakes: Vec<_> = OPTIONS.iter().map(|options| start(options).expect("the command starts")).collect();
         for mut bake in bakes {
             assert!(bake.wait().expect("an end").success());
         }
         let found = hashes(&folder.join("out"));
-        assert!(wanted.contains(&found), "round {round}: {:?}", found.keys());
+        assert!(expected.contains(&found), "round {round}: {:?}", found.keys());
     }
 }
 
@@ -297,7 +297,7 @@ fn a_bake_waits_for_one_that_writes_to_its_folder() {
     fs::create_dir(folder.join("out")).expect("a folder");
     let held = File::open(folder.join("out")).expect("a folder");
     if held.lock().is_err() {
-        return super::super::process::skipped("locks of folders, which this file system does not have");
+        return skip("this file system does not lock folders");
     }
     let start = |options: &str| {
         let mut command = Command::new(env!("CARGO_BIN_EXE_roughcast"));
@@ -316,7 +316,7 @@ fn a_bake_waits_for_one_that_writes_to_its_folder() {
     let mut rest = String::new();
     err.read_to_string(&mut rest).expect("text");
     assert_eq!(rest, "");
-    // Parts of one run write side by side.
+    // Parts of one run write at the same time.
     let held = File::open(folder.join("out")).expect("a folder");
     held.lock_shared().expect("a lock");
     assert!(start("--shard 1/1").wait().expect("an end").success());

@@ -1,4 +1,4 @@
-//! Digests, ids and paths of caches and plans are what they must be, or of no use.
+//! Tests that digests, ids and paths of caches and plans are validated before they are used.
 
 mod entries;
 mod names;

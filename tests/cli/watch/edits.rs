@@ -1,5 +1,5 @@
-//! Whatever is done to a folder in whatever order, in the end its outputs are those of a clean bake, beside the last good ones
-//! of assets that cannot be baked.
+//! Tests that any edits of a folder, in any order, lead to the outputs of a clean bake and the last good outputs of
+//! assets that cannot be baked.
 
 use std::fs;
 use std::io::Write;
@@ -16,7 +16,8 @@ use crate::random::Random;
 /// Most edits in a run.
 const EDITS: usize = 14;
 
-/// Folders of assets, names of documents, and images: some shared or linked, one outside the watched folder.
+/// Folders of assets, names of documents, and images. Some images are shared or linked, and one is outside the watched
+/// folder.
 const FOLDERS: [&str; 4] = ["assets", "assets/a", "assets/b/c", "assets/b"];
 const DOCUMENTS: [&str; 3] = ["one.gltf", "two.gltf", "One.gltf"];
 const IMAGES: [&str; 4] = ["assets/a.png", "assets/a/a.png", "assets/b/shared.png", "shared/far.png"];
@@ -39,7 +40,7 @@ fn image(random: &mut Random) -> Vec<u8> {
     fs::read(fixtures().join("maps").join(random.pick(&MAPS))).expect("a fixture")
 }
 
-/// Writes as programs do: at once, in two parts, beside and renamed, or with the old file out of the way first.
+/// Saves a file as programs do: at once, in two parts, by renaming a new file, or after removing the old file.
 fn save(random: &mut Random, path: &Path, bytes: &[u8]) {
     fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
     let beside = path.with_extension("tmp~");
@@ -64,7 +65,7 @@ fn save(random: &mut Random, path: &Path, bytes: &[u8]) {
     }
 }
 
-/// Writes every image and an asset in each folder.
+/// Writes every image, and an asset to each folder.
 fn fill(random: &mut Random, root: &Path) {
     for path in IMAGES {
         let bytes = image(random);
@@ -87,11 +88,11 @@ fn fill(random: &mut Random, root: &Path) {
     }
 }
 
-/// One edit; what it does, for a person.
+/// Makes one edit and returns its description.
 fn edit(random: &mut Random, root: &Path) -> String {
     let asset = Path::new(random.pick(&FOLDERS)).join(random.pick(&DOCUMENTS));
     let picture = random.pick(&IMAGES);
-    // What cannot be done, such as removing what is not there, is an edit, too.
+    // An edit that fails, such as removing a missing file, counts as an edit.
     match random.below(15) {
         0..=2 => {
             let uri = random.pick(&URIS);
@@ -141,7 +142,7 @@ fn edit(random: &mut Random, root: &Path) -> String {
             "write all".to_owned()
         }
         _ => {
-            // Away and back, as when a disk is mounted anew or a branch is checked out.
+            // The folder goes and returns, as when a disk is mounted again or a branch is checked out.
             let _ = fs::rename(root.join("assets"), root.join("elsewhere"));
             sleep(Duration::from_millis(random.below(30) as u64));
             fs::rename(root.join("elsewhere"), root.join("assets")).expect("a folder");

@@ -1,4 +1,4 @@
-//! A running `roughcast watch`, and what it tells.
+//! A running `roughcast watch` and its events.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -14,26 +14,26 @@ use serde_json::Value;
 
 use crate::process::{Run, hashes, roughcast_in};
 
-/// Nothing takes as long, on any machine: who waits longer waits for what does not come.
+/// Longest time to wait for an event, which no machine needs.
 const PATIENCE: Duration = Duration::from_secs(100);
 
 static MARKS: AtomicU64 = AtomicU64::new(0);
 
-/// The command at work in a folder, watching `assets` and baking to `out`.
+/// A command that watches `assets` in a folder and bakes to `out`.
 pub struct Session {
     child: Child,
     events: Receiver<Value>,
-    /// Files of the last good bake of each asset, as far as they were not told to be removed.
+    /// Files of the last good bake of each asset, without files that were reported as removed.
     baked: BTreeMap<String, BTreeSet<String>>,
 }
 
 impl Session {
-    /// Starts it with `options`.
+    /// Starts the command with `options`.
     pub fn start(folder: &Path, options: &str) -> Self {
         Self::start_by(Command::new(env!("CARGO_BIN_EXE_roughcast")), folder, options)
     }
 
-    /// Starts it by a command that runs it.
+    /// Starts the command through another command that runs it.
     pub fn start_by(mut command: Command, folder: &Path, options: &str) -> Self {
         command.current_dir(folder).args("watch assets -o out --json".split(' ')).args(options.split_whitespace());
         command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
@@ -52,7 +52,7 @@ impl Session {
         Self { child, events, baked: BTreeMap::new() }
     }
 
-    /// The next event, which satisfies the schema.
+    /// Returns the next event, which satisfies the schema.
     pub fn event(&mut self) -> Value {
         let Ok(event) = self.events.recv_timeout(PATIENCE) else {
             let _ = self.child.kill();
@@ -68,7 +68,7 @@ impl Session {
         event
     }
 
-    /// Takes note of files that came and went.
+    /// Records files that an event reports as written or removed.
     fn note(&mut self, event: &Value) {
         let Some(files) = event["files"].as_array() else { return };
         let files = files.iter().map(|file| file.as_str().expect("a path").to_owned()).collect();
@@ -79,13 +79,13 @@ impl Session {
         }
     }
 
-    /// Expects `out` to be what a bake of `assets` writes to a new folder, beside the last good outputs of assets that it cannot
-    /// bake.
+    /// Asserts that `out` equals a bake of `assets` to a new folder, with the last good outputs of assets that cannot
+    /// be baked.
     pub fn assert_as_baked(&self, folder: &Path, context: &str) {
         assert_as_baked_beside(folder, context, &self.baked);
     }
 
-    /// Events up to one of the kind `kind`, which is the last.
+    /// Returns the events up to the next one of this kind, which is the last.
     pub fn until(&mut self, kind: &str) -> Vec<Value> {
         let mut events = vec![self.event()];
         while events.last().expect("an event")["event"] != kind {
@@ -94,37 +94,38 @@ impl Session {
         events
     }
 
-    /// Adds an asset beside `assets/..` and waits until it is baked and nothing is left to do: whatever was done before is
-    /// then dealt with. Returns what was told of other assets, as `<event> <input>`.
+    /// Adds an asset beside `assets/..` and waits until it is baked and nothing is left to do, so that all earlier
+    /// changes are processed. Returns the events of other assets as `<event> <input>`.
     pub fn settle(&mut self, folder: &Path) -> Vec<String> {
-        // Another one each time, or it would not be baked; renamed, since a busy machine may stop between two writes.
+        // Each call adds another asset, because an equal one would not be baked. It is renamed into place, because a
+        // busy machine may pause between two writes.
         let number = MARKS.fetch_add(1, Ordering::Relaxed);
         let beside = folder.join("mark");
         fs::write(&beside, format!(r#"{{"asset":{{"version":"2.0","generator":"{number}"}}}}"#)).expect("a file");
         fs::rename(beside, folder.join("assets/mark.gltf")).expect("a file");
-        let mut told = Vec::new();
+        let mut reported = Vec::new();
         loop {
             for event in self.until("idle") {
                 let kind = event["event"].as_str().expect("an event");
                 if let Some(input) = event["input"].as_str() {
-                    told.push(format!("{kind} {input}"));
+                    reported.push(format!("{kind} {input}"));
                 }
             }
-            if told.iter().any(|event| event == "baked assets/mark.gltf") {
-                told.retain(|event| !event.ends_with("assets/mark.gltf"));
-                return told;
+            if reported.iter().any(|event| event == "baked assets/mark.gltf") {
+                reported.retain(|event| !event.ends_with("assets/mark.gltf"));
+                return reported;
             }
         }
     }
 
-    /// Sends it a signal, such as `-STOP`.
+    /// Sends a signal to the command, such as `-STOP`.
     #[cfg(unix)]
     pub fn signal(&self, signal: &str) {
         let status = Command::new("kill").args([signal, &self.child.id().to_string()]).status();
         assert!(status.expect("a signal").success());
     }
 
-    /// Ends it as Ctrl-C does.
+    /// Ends the command as Ctrl-C does.
     pub fn stop(mut self) -> Run {
         #[cfg(unix)]
         self.signal("-INT");
@@ -139,18 +140,18 @@ impl Session {
 
 impl Drop for Session {
     fn drop(&mut self) {
-        // A test that failed leaves nothing running.
+        // A failed test leaves no process running.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
 }
 
-/// Expects `out` to be what a bake of `assets` writes to a new folder.
+/// Asserts that `out` equals a bake of `assets` to a new folder.
 pub fn assert_as_baked(folder: &Path, context: &str) {
     assert_as_baked_beside(folder, context, &BTreeMap::new());
 }
 
-/// Expects that bake beside the files in `kept` of assets that it cannot bake.
+/// Asserts that `out` holds that bake and the files in `kept` of assets that cannot be baked.
 fn assert_as_baked_beside(folder: &Path, context: &str, kept: &BTreeMap<String, BTreeSet<String>>) {
     let clean = folder.join("clean");
     let run = roughcast_in(folder, "bake assets -o clean --json".split(' '));
@@ -161,7 +162,7 @@ fn assert_as_baked_beside(folder: &Path, context: &str, kept: &BTreeMap<String, 
     let failed = assets.filter(|asset| asset["status"] == "failed").filter_map(|asset| asset["input"].as_str());
     for file in failed.filter_map(|input| kept.get(input)).flatten() {
         let name = file.strip_prefix("out/").expect("an output").to_owned();
-        // Its bytes are those of a bake that is gone.
+        // The bytes are those of an earlier bake.
         let bytes = found.get(&name).cloned().unwrap_or_default();
         expected.entry(name).or_insert(bytes);
     }

@@ -1,99 +1,110 @@
-//! The pass over one band of blocks.
+//! Rewrites the blocks of one band.
 
 use fearless_simd::Simd;
 
-use super::bits::{Bits, LEAST, State};
-use super::donors::{Donor, Donors, Estimates, Spread};
-use super::lanes;
-use super::look::{look, target};
+use super::bits::{BitModel, MatchState, SHORTEST_MATCH};
+use super::grids;
+use super::points::{decoded_points, source_points};
+use super::recent::{Estimates, RecentBlock, RecentBlocks, SourceMoments};
 use super::refit::{refit_endpoints, refit_weights};
 use crate::Metric;
 use crate::hints::Hints;
-use crate::lanes::{Lane, Texels};
+use crate::lanes::{ScalarGrid, Texels};
 use crate::pack::Block;
 use crate::tables::{MODE_0, MODE_6};
 use crate::unpack::{Unpacked, unpack_rgb};
 
-/// Donors that are fitted for each half.
-const FITTED: usize = 6;
+/// How many recent blocks are refitted with new endpoints, and how many with new weights.
+const REFITTED: usize = 6;
 
-/// Bytes for a block.
+/// The cheapest candidate for a block so far.
 struct Choice {
     bytes: [u8; 16],
-    /// Error and `lambda` times bits.
+    /// The error, plus `lambda` times the bits.
     cost: f32,
-    after: State,
+    /// The state of the bit model after this candidate.
+    after: MatchState,
 }
 
 /// What a block is made from.
 struct Source<'a> {
     texels: &'a Texels,
     metric: Metric,
-    /// What the metric asks for.
-    goal: &'a [Lane; 3],
+    /// The texels as points of the metric.
+    points: [ScalarGrid; 3],
 }
 
-/// What candidates of one block are judged by.
-struct Judge<'a> {
-    bits: &'a Bits,
+/// What candidates for one block cost.
+struct CandidateCosts<'a> {
+    bits: &'a BitModel,
     lambda: f32,
-    at: usize,
-    state: State,
+    /// Index of the block in its band.
+    index: usize,
+    /// The state of the bit model before the block.
+    state: MatchState,
 }
 
-impl Judge<'_> {
-    fn offset(&self, donor: &Donor) -> u32 {
-        (self.at - donor.at) as u32
+impl CandidateCosts<'_> {
+    fn offset(&self, recent: &RecentBlock) -> u32 {
+        (self.index - recent.index) as u32
     }
 
-    /// Takes `bytes` of the given `error` where they cost less than `best`.
-    fn offer(&self, bytes: [u8; 16], error: f32, donor: &Donor, best: &mut Choice) {
+    /// Replaces `best` by `bytes`, which have the given `error` and may match the bytes of `recent`, if `bytes` cost
+    /// less.
+    fn keep_if_cheaper(&self, bytes: [u8; 16], error: f32, recent: &RecentBlock, best: &mut Choice) {
         if error >= best.cost {
             return;
         }
-        let (bits, after) = self.bits.with(&bytes, &donor.bytes, self.offset(donor), self.state);
+        let (bits, after) = self.bits.with_matches(&bytes, &recent.bytes, self.offset(recent), self.state);
         let cost = error + self.lambda * bits;
         if cost < best.cost {
             *best = Choice { bytes, cost, after };
         }
     }
 
-    /// Offers the blocks of the [`Self::nearest`] donors, after `fit` has changed each to suit `source`.
+    /// Tries the [`Self::nearest`] recent blocks after `fit` has changed each of them to suit `source`.
     #[inline(always)]
-    fn offer_nearest(
+    fn try_refitted(
         &self,
-        donors: &[Donor],
+        recent: &[RecentBlock],
         estimates: &[f32],
-        more: impl Fn(&Donor) -> f32,
+        extra_bits: impl Fn(&RecentBlock) -> f32,
         source: &Source<'_>,
         fit: impl Fn(&mut Block),
         best: &mut Choice,
     ) {
-        for donor in self.nearest(donors, estimates, more).into_iter().flatten().map(|k| &donors[k]) {
-            let Some(mut fitted) = donor.block.clone() else { continue };
+        for recent in self.nearest(recent, estimates, extra_bits).into_iter().flatten().map(|k| &recent[k]) {
+            let Some(mut fitted) = recent.block.clone() else { continue };
             fit(&mut fitted);
-            let error = look(source.metric, &fitted.levels()).error(source.goal);
+            let error = decoded_points(source.metric, &fitted.levels()).error(&source.points);
             if error < best.cost {
                 let hints = Hints::of(source.texels, fitted.mode);
-                self.offer(fitted.pack(&hints), error, donor, best);
+                self.keep_if_cheaper(fitted.pack(&hints), error, recent, best);
             }
         }
     }
 
-    /// Returns the indices of the donors with the least estimates; `None` fills up if there are fewer.
+    /// Returns the indices of the recent blocks with the least estimated costs, followed by `None` if there are fewer
+    /// than [`REFITTED`].
     #[inline(always)]
-    fn nearest(&self, donors: &[Donor], estimates: &[f32], more: impl Fn(&Donor) -> f32) -> [Option<usize>; FITTED] {
-        let mut nearest = [(f32::INFINITY, None); FITTED];
-        for (k, (donor, estimate)) in donors.iter().zip(estimates).enumerate() {
-            if *estimate >= nearest[FITTED - 1].0 {
+    fn nearest(
+        &self,
+        recent: &[RecentBlock],
+        estimates: &[f32],
+        extra_bits: impl Fn(&RecentBlock) -> f32,
+    ) -> [Option<usize>; REFITTED] {
+        let mut nearest = [(f32::INFINITY, None); REFITTED];
+        for (k, (recent, estimate)) in recent.iter().zip(estimates).enumerate() {
+            if *estimate >= nearest[REFITTED - 1].0 {
                 continue;
             }
-            let estimate = estimate + self.lambda * (self.state.of_match(self.offset(donor)) + more(donor));
-            let mut at = FITTED;
+            let bits = self.state.bits_of_match(self.offset(recent)) + extra_bits(recent);
+            let estimate = estimate + self.lambda * bits;
+            let mut at = REFITTED;
             while at > 0 && estimate < nearest[at - 1].0 {
                 at -= 1;
             }
-            if at < FITTED {
+            if at < REFITTED {
                 nearest[at..].rotate_right(1);
                 nearest[at] = (estimate, Some(k));
             }
@@ -102,91 +113,116 @@ impl Judge<'_> {
     }
 }
 
-/// Returns whether two blocks share bytes at an end that a match could take. Most do not, and are not looked at
-/// further.
+/// Returns whether two blocks share bytes at one end that zstd could match. Most pairs share none and need no further
+/// comparison.
 fn may_match(a: &[u8; 16], b: &[u8; 16]) -> bool {
     let differ = u128::from_le_bytes(*a) ^ u128::from_le_bytes(*b);
-    differ.trailing_zeros() >= 16 || differ.leading_zeros() >= 8 * LEAST
+    differ.trailing_zeros() >= 16 || differ.leading_zeros() >= 8 * SHORTEST_MATCH
 }
 
-/// Rewrites the blocks of a band, whose texels `texels` gives by the index of the block, so that the sum of errors and
-/// `lambda` times bits falls.
+/// Rewrites the blocks of a band so that the sum of their errors and of `lambda` times their bits falls. `texels`
+/// returns the source of the block at an index.
 #[inline(always)]
-pub(super) fn pass<S: Simd>(
+pub(super) fn rewrite_band<S: Simd>(
     simd: S,
     blocks: &mut [[u8; 16]],
     texels: &dyn Fn(usize) -> Texels,
     metric: Metric,
-    bits: &Bits,
+    bits: &BitModel,
     lambda: f32,
 ) {
     simd.vectorize(
         #[inline(always)]
         || {
-            let mut donors = Donors::new();
+            let mut recent = RecentBlocks::new();
             let mut estimates = Estimates::new();
-            let mut state = State::default();
-            for (at, block) in blocks.iter_mut().enumerate() {
-                let own = *block;
-                let Some(unpacked) = unpack_rgb(&own) else {
+            let mut state = MatchState::default();
+            for (index, block) in blocks.iter_mut().enumerate() {
+                let Some(unpacked) = unpack_rgb(block) else {
                     state = state.closed();
                     continue;
                 };
-                let judge = Judge { bits, lambda, at, state };
-                let texels = texels(at);
-                let goal = target(metric, &lanes(&texels));
-                let own_error = look(metric, &unpacked.levels()).error(&goal);
-                let cost = own_error + lambda * bits.alone(&own);
-                let mut best = Choice { bytes: own, cost, after: state.closed() };
-                let source = Source { texels: &texels, metric, goal: &goal };
-
-                let spread = Spread::of(&goal);
-                donors.estimate(&goal, &spread, &mut estimates);
-                for (donor, &whole) in donors.all().iter().zip(&estimates.whole) {
-                    if may_match(&own, &donor.bytes) {
-                        judge.offer(own, own_error, donor, &mut best);
-                    }
-                    judge.offer(donor.bytes, whole, donor, &mut best);
-                }
-                judge.offer_nearest(
-                    donors.all(),
-                    &estimates.weights,
-                    |_| 0.0,
-                    &source,
-                    #[inline(always)]
-                    |block| refit_endpoints(block, metric, &goal),
-                    &mut best,
-                );
-                if let Unpacked::Block(own) = &unpacked
-                    && own.mode.subsets > 1
-                {
-                    for (donor, estimate) in donors.all().iter().zip(&mut estimates.ends) {
-                        if let Some(block) = &donor.block
-                            && block.mode.subsets > 1
-                            && block.mode.code == own.mode.code
-                            && block.pattern == own.pattern
-                        {
-                            *estimate = own_error + own.distance(block);
-                        }
-                    }
-                }
-                // A block with other hints differs in its first bytes.
-                let hints = [&MODE_0, &MODE_6].map(|mode| Hints::of(&texels, mode).bits(mode));
-                let header = bits.alone(&own[..3]);
-                let more = |donor: &Donor| if hints.contains(&donor.hints) { 0.0 } else { header };
-                judge.offer_nearest(
-                    donors.all(),
-                    &estimates.ends,
-                    more,
-                    &source,
-                    #[inline(always)]
-                    |block| refit_weights(block, metric, &goal),
-                    &mut best,
-                );
+                let costs = CandidateCosts { bits, lambda, index, state };
+                let texels = texels(index);
+                let source = Source { texels: &texels, metric, points: source_points(metric, &grids(&texels)) };
+                let best = cheapest(*block, &unpacked, &source, &costs, &recent, &mut estimates);
                 *block = best.bytes;
                 state = best.after;
-                donors.add(best.bytes, at, metric);
+                recent.add(best.bytes, index, metric);
             }
         },
     );
+}
+
+/// Returns the cheapest candidate for a block: `original`, or one that reuses bytes of a recent block.
+#[inline(always)]
+fn cheapest(
+    original: [u8; 16],
+    unpacked: &Unpacked,
+    source: &Source<'_>,
+    costs: &CandidateCosts<'_>,
+    recent: &RecentBlocks,
+    estimates: &mut Estimates,
+) -> Choice {
+    let metric = source.metric;
+    let error = decoded_points(metric, &unpacked.levels()).error(&source.points);
+    let cost = error + costs.lambda * costs.bits.literals(&original);
+    let mut best = Choice { bytes: original, cost, after: costs.state.closed() };
+    recent.estimate(&source.points, &SourceMoments::of(&source.points), estimates);
+
+    // The original bytes, or all bytes of a recent block.
+    for (recent, &copied_error) in recent.all().iter().zip(&estimates.copied) {
+        if may_match(&original, &recent.bytes) {
+            costs.keep_if_cheaper(original, error, recent, &mut best);
+        }
+        costs.keep_if_cheaper(recent.bytes, copied_error, recent, &mut best);
+    }
+
+    // The weights of a recent block with new endpoints.
+    costs.try_refitted(
+        recent.all(),
+        &estimates.same_weights,
+        |_| 0.0,
+        source,
+        #[inline(always)]
+        |block| refit_endpoints(block, metric, &source.points),
+        &mut best,
+    );
+
+    // The endpoints of a recent block with new weights.
+    if let Unpacked::Block(block) = unpacked {
+        estimate_same_pattern(block, error, recent.all(), &mut estimates.same_endpoints);
+    }
+    // A block with other hints differs in its first bytes.
+    let hints = [&MODE_0, &MODE_6].map(|mode| Hints::of(source.texels, mode).bits(mode));
+    let header_bits = costs.bits.literals(&original[..3]);
+    let extra_bits = |recent: &RecentBlock| if hints.contains(&recent.hints) { 0.0 } else { header_bits };
+    costs.try_refitted(
+        recent.all(),
+        &estimates.same_endpoints,
+        extra_bits,
+        source,
+        #[inline(always)]
+        |block| refit_weights(block, metric, &source.points),
+        &mut best,
+    );
+    best
+}
+
+/// Estimates the errors of `block` with the endpoints of recent blocks that have several subsets and the mode and
+/// pattern of `block`. [`RecentBlocks::estimate`] leaves out blocks of several subsets.
+#[inline(always)]
+fn estimate_same_pattern(block: &Block, error: f32, recent: &[RecentBlock], estimates: &mut [f32]) {
+    if block.mode.subsets == 1 {
+        return;
+    }
+    for (recent, estimate) in recent.iter().zip(estimates) {
+        if let Some(other) = &recent.block
+            && other.mode.subsets > 1
+            && other.mode.code == block.mode.code
+            && other.pattern == block.pattern
+        {
+            *estimate = error + block.distance(other);
+        }
+    }
 }

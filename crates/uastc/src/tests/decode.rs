@@ -1,4 +1,4 @@
-//! Blocks decode to exactly what the encoder took them for.
+//! Tests that blocks decode exactly as the encoder predicts.
 
 use super::*;
 use crate::blocks::{Blocks, Stored};
@@ -15,9 +15,9 @@ use basisu::uastc::patterns::{ASTC_BC7_PATTERNS2, ASTC_BC7_PATTERNS3, BC7_3_ASTC
 use fearless_simd::{Level, Simd, SimdBase};
 use texel_simd::{LANES, Wide, dispatch};
 
-/// Blocks of every mode that the encoder writes, but those of one colour and of greys.
+/// Returns blocks of every mode that the encoder writes, except the modes of one colour and of grey and alpha.
 pub(super) fn every_mode(texels: &Texels) -> Vec<(u8, Block)> {
-    // Any lane will do.
+    // All lanes hold the same block.
     let blocks = dispatch!(Level::new(), simd => every_mode_with(simd, texels));
     let one = |(k, blocks): (usize, Stored)| blocks.block(k % LANES);
     blocks.into_iter().enumerate().map(one).map(|block| (block.mode.number, block)).collect()
@@ -31,27 +31,27 @@ fn every_mode_with<S: Simd>(simd: S, texels: &Texels) -> Vec<Stored> {
     let ones = &[1.0; 3];
     let mut blocks: Vec<Blocks<S>> = Vec::new();
     for rounds in [1, 3] {
-        blocks.push(one_line::<_, 3, 4>(simd, &lanes, &all, &axis, ones, &MODE_0, rounds));
-        blocks.push(one_line::<_, 3, 2>(simd, &lanes, &all, &axis, ones, &MODE_1, rounds));
-        blocks.push(one_line::<_, 3, 3>(simd, &lanes, &all, &axis, ones, &MODE_5, rounds));
-        blocks.push(one_line::<_, 3, 5>(simd, &lanes, &all, &axis, ones, &MODE_18, rounds));
+        blocks.push(one_line(simd, &lanes, &all, &axis, ones, &MODE_0, rounds));
+        blocks.push(one_line(simd, &lanes, &all, &axis, ones, &MODE_1, rounds));
+        blocks.push(one_line(simd, &lanes, &all, &axis, ones, &MODE_5, rounds));
+        blocks.push(one_line(simd, &lanes, &all, &axis, ones, &MODE_18, rounds));
         for selector in 0..3 {
-            blocks.push(two_planes::<_, 3, 2>(simd, &lanes, &all, splat(selector), ones, &MODE_6, rounds));
+            blocks.push(two_planes(simd, &lanes, &all, splat(selector), ones, &MODE_6, rounds));
         }
-        for pattern in 0..PATTERNS.len() {
-            let split = Split::in_two(simd, &lanes, splat(pattern));
-            blocks.push(split_lines::<_, 3, 2, 3>(simd, &lanes, &split, ones, &MODE_2, rounds));
-            blocks.push(split_lines::<_, 3, 2, 2>(simd, &lanes, &split, ones, &MODE_4, rounds));
+        for pattern in 0..PATTERNS_2.len() {
+            let split = Split::two_subsets(simd, &lanes, splat(pattern));
+            blocks.push(split_lines(simd, &lanes, &split, ones, &MODE_2, rounds));
+            blocks.push(split_lines(simd, &lanes, &split, ones, &MODE_4, rounds));
         }
-        for pattern in 0..THIRDS.len() {
-            let split = Split::in_three(simd, &lanes, splat(pattern));
-            blocks.push(split_lines::<_, 3, 3, 2>(simd, &lanes, &split, ones, &MODE_3, rounds));
+        for pattern in 0..PATTERNS_3.len() {
+            let split = Split::three_subsets(simd, &lanes, splat(pattern));
+            blocks.push(split_lines(simd, &lanes, &split, ones, &MODE_3, rounds));
         }
     }
     blocks.iter().map(Blocks::store).collect()
 }
 
-/// The specification's decoder, in its slowest form.
+/// Decodes a block as the specification is written, without optimisation.
 pub(super) fn expected(block: &Block) -> Texels {
     let mode = block.mode;
     let range = endpoint_range(mode);
@@ -68,7 +68,7 @@ pub(super) fn expected(block: &Block) -> Texels {
             }
             let plane = usize::from(mode.planes == 2 && block.selector == c);
             let index = u32::from(block.weights[plane][i]);
-            // The ramps are index * 64 / top, halves away from the middle for 4 bits and more.
+            // A weight is index * 64 / top; with 4 and 5 bits, halves are rounded away from the middle.
             let weight = match mode.weight_bits {
                 4 => [0, 4, 8, 12, 17, 21, 25, 29, 35, 39, 43, 47, 52, 56, 60, 64][index as usize],
                 5 => 2 * index + if index > 15 { 2 } else { 0 },
@@ -82,7 +82,7 @@ pub(super) fn expected(block: &Block) -> Texels {
     })
 }
 
-/// The index of a mode's endpoint range in the reference.
+/// Returns the index of a mode's endpoint range in `basisu`.
 fn endpoint_range(mode: &Mode) -> u32 {
     let levels = mode.range.base << mode.range.bits;
     (0..21).find(|&r| astc_get_levels(r) == levels).unwrap()
@@ -105,7 +105,7 @@ fn every_mode_decodes_as_predicted() {
 }
 
 #[test]
-fn blocks_of_all_modes_decode_as_with_basisu() {
+fn random_blocks_of_all_modes_decode_as_with_basisu() {
     let mut random = Random(17);
     let mut counts = [0; 20];
     // Prefix codes of modes have 7 bits at most.
@@ -116,12 +116,12 @@ fn blocks_of_all_modes_decode_as_with_basisu() {
         assert_eq!(found, unpack_uastc(&bytes, false).map(|texels| texels.map(|texel| texel.c)), "{bytes:x?}");
         counts[usize::from(HUFF_MODES[usize::from(prefix)])] += usize::from(found.is_some());
     }
-    // Mode 19 is reserved; mode 7 is the one with most patterns that do not exist.
+    // Mode 19 is reserved. Mode 7 has the most pattern indices that do not exist.
     assert!(counts[19] == 0 && counts[..19].iter().all(|&count| count > 200), "{counts:?}");
 }
 
 #[test]
-fn ranges_and_patterns_are_the_format_s() {
+fn ranges_and_patterns_equal_those_of_basisu() {
     for mode in ALL {
         let index = endpoint_range(mode);
         let levels: Vec<u32> = (0..astc_get_levels(index)).map(|code| unquant_astc_endpoint_val(code, index)).collect();
@@ -133,13 +133,13 @@ fn ranges_and_patterns_are_the_format_s() {
             assert_eq!(Some(level.abs_diff(target)), nearest);
         }
     }
-    let halves = PATTERNS.iter().zip(ASTC_BC7_PATTERNS2);
+    let halves = PATTERNS_2.iter().zip(ASTC_BC7_PATTERNS2);
     for (bits, pattern) in halves.chain(MODE_7_PATTERNS.iter().zip(BC7_3_ASTC2_PATTERNS2)) {
         for (i, subset) in pattern.into_iter().enumerate() {
             assert_eq!((bits >> i & 1) as u8, subset);
         }
     }
-    for (masks, pattern) in THIRDS.iter().zip(ASTC_BC7_PATTERNS3) {
+    for (masks, pattern) in PATTERNS_3.iter().zip(ASTC_BC7_PATTERNS3) {
         for (i, subset) in pattern.into_iter().enumerate() {
             assert_eq!(masks.map(|mask| mask >> i & 1 == 1), [0, 1, 2].map(|s| s == subset));
         }
@@ -147,7 +147,7 @@ fn ranges_and_patterns_are_the_format_s() {
 }
 
 #[test]
-fn rgb_is_opaque_and_ignores_alpha() {
+fn encoder_ignores_alpha_and_writes_opaque_blocks() {
     for texels in all_kinds() {
         for effort in EFFORTS {
             let block = encode_block(&texels, Metric::Rgb, effort);
@@ -172,7 +172,7 @@ fn solid_blocks_are_exact() {
 }
 
 #[test]
-fn up_to_eight_greys_in_a_row_are_exact() {
+fn up_to_eight_consecutive_greys_are_exact() {
     let mut random = Random(5);
     for _ in 0..2000 {
         let (least, span) = (random.byte().min(240), 1 + random.next() % 8);

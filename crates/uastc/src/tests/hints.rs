@@ -1,4 +1,4 @@
-//! Blocks transcode, by their hints, to textures that stay near the source.
+//! Tests that blocks transcode, guided by their hints, to textures close to the source.
 
 use super::*;
 use crate::hints::{Hints, LEAST_BIAS};
@@ -18,7 +18,7 @@ fn unpack(decode: impl FnOnce(&mut [u32])) -> Texels {
 
 const TARGETS: [&str; 6] = ["ETC1", "ETC2", "BC1", "BC3", "BC7", "ASTC"];
 
-/// What becomes of a block in each of [`TARGETS`].
+/// Transcodes a block to each of [`TARGETS`] and decodes the results.
 fn transcoded(block: &[u8; BLOCK_BYTES]) -> [Texels; 6] {
     let etc1 = uastc_to_etc1::transcode_uastc_to_etc1(block).unwrap();
     let etc2 = uastc_to_etc2::transcode_uastc_to_etc2_rgba(block).unwrap();
@@ -36,7 +36,7 @@ fn transcoded(block: &[u8; BLOCK_BYTES]) -> [Texels; 6] {
     ]
 }
 
-/// PSNR over RGB of each of [`TARGETS`].
+/// Returns the PSNR over RGB of each of [`TARGETS`].
 fn ratios(sources: &[Texels], effort: Effort) -> [f64; 6] {
     let blocks: Vec<[Texels; 6]> =
         sources.iter().map(|texels| transcoded(&encode_block(texels, Metric::Rgb, effort))).collect();
@@ -47,8 +47,8 @@ fn ratios(sources: &[Texels], effort: Effort) -> [f64; 6] {
 }
 
 #[test]
-fn transcoded_normals_stay_near() {
-    // Rather flat and rather rough normals; 1 dB below what was measured.
+fn transcoded_normals_keep_their_psnr() {
+    // Rather flat and rather rough normals; 1 dB below the measured PSNR.
     let smooth = [35.8, 35.8, 38.0, 38.0, 44.8, 45.6];
     let rough = [26.6, 26.6, 28.4, 28.4, 36.0, 36.1];
     for (noise, floors) in [(0.02, smooth), (0.4, rough)] {
@@ -68,7 +68,7 @@ fn transcoded_normals_stay_near() {
 }
 
 #[test]
-fn solid_blocks_stay_near() {
+fn transcoded_solid_blocks_differ_by_at_most_8_levels() {
     let mut random = Random(11);
     for _ in 0..500 {
         let colour: [u8; 4] = std::array::from_fn(|_| random.byte());
@@ -89,8 +89,8 @@ fn every_block_transcodes() {
         for (metric, effort) in METRICS.into_iter().flat_map(|m| EFFORTS.map(|e| (m, e))) {
             let block = encode_block(&texels, metric, effort);
             let results = transcoded(&block);
-            // BC7 and ASTC hold the block almost as it is (BC7 has 5 to 8 bits an endpoint, and the ASTC
-            // decoder rounds).
+            // BC7 and ASTC store the block almost unchanged: BC7 has endpoints of 5 to 8 bits, and the ASTC decoder
+            // rounds.
             let source = decoded(&block);
             for (at, bound) in [(4, 12), (5, 1)] {
                 for (a, b) in source.iter().zip(results[at]) {
@@ -102,7 +102,7 @@ fn every_block_transcodes() {
     }
 }
 
-/// Computes the ETC1 fields of [`Hints`] in whole numbers.
+/// Computes the ETC1 fields of [`Hints`] with integers: flip, differential, bias and tables.
 fn by_integers(texels: &Texels) -> (bool, bool, u8, [u8; 2]) {
     let is_second = |i: usize, flip: bool| if flip { i >= 8 } else { i % 4 >= 2 };
     let sums = |flip: bool| -> [[i32; 3]; 2] {
@@ -132,7 +132,7 @@ fn by_integers(texels: &Texels) -> (bool, bool, u8, [u8; 2]) {
 }
 
 #[test]
-fn hints_are_those_of_whole_numbers_in_every_lane() {
+fn hints_equal_those_of_integers_in_every_lane() {
     let mut random = Random(3);
     let mut blocks = all_kinds();
     blocks.extend((0..400).map(|i| {

@@ -1,4 +1,4 @@
-//! Whole levels: padding, threads, sizes.
+//! Tests of whole images: padding, sizes, threads and instruction sets.
 
 use super::*;
 use crate::SizeError;
@@ -30,7 +30,7 @@ fn odd_sizes_repeat_the_last_column_and_row() {
 }
 
 #[test]
-fn texels_of_another_size_are_no_image() {
+fn rejects_texels_of_another_size() {
     let texels = [0; 64];
     for (width, height) in [(0, 0), (0, 4), (4, 0), (4, 5), (3, 4), (u32::MAX, u32::MAX)] {
         let found = Image::new(&texels, width, height).err();
@@ -40,7 +40,7 @@ fn texels_of_another_size_are_no_image() {
 }
 
 #[test]
-fn rows_encode_as_the_image_does() {
+fn rows_and_the_whole_image_encode_to_the_same_blocks() {
     let texels = picture(13, 7);
     let lines: Vec<_> = texels.as_chunks::<4>().0.chunks(13).collect();
     let encoder = Encoder::new(Metric::Rgb, Effort::Fast);
@@ -52,7 +52,7 @@ fn rows_encode_as_the_image_does() {
 }
 
 #[test]
-fn rows_that_do_not_fit_are_refused() {
+fn rejects_rows_and_blocks_of_other_lengths() {
     let (encoder, row, mut blocks) = (Encoder::new(Metric::Rgb, Effort::Fast), [[0; 4]; 9], [[0; BLOCK_BYTES]; 4]);
     let mut refused = |rows, count: usize| encoder.encode_rows(rows, &mut blocks[..count]).unwrap_err();
     assert_eq!(refused([&row; 4], 2), SizeError::Blocks { expected: 3, found: 2 });
@@ -62,7 +62,7 @@ fn rows_that_do_not_fit_are_refused() {
 }
 
 #[test]
-fn threads_do_not_change_a_byte() {
+fn bytes_do_not_depend_on_threads() {
     let texels = picture(67, 45);
     for effort in EFFORTS {
         let with = |threads| {
@@ -73,7 +73,7 @@ fn threads_do_not_change_a_byte() {
     }
 }
 
-/// Blocks of all kinds beside each other, and their width.
+/// Returns a row of blocks of all kinds, and its width in texels.
 fn wide_row() -> (Vec<u8>, usize) {
     let kinds = all_kinds();
     let lines = (0..4).flat_map(|y| kinds.iter().flat_map(move |texels| &texels[4 * y..4 * y + 4]));
@@ -81,7 +81,7 @@ fn wide_row() -> (Vec<u8>, usize) {
 }
 
 #[test]
-fn blocks_do_not_depend_on_those_beside_them() {
+fn blocks_do_not_depend_on_their_neighbours() {
     let (texels, width) = wide_row();
     for (metric, effort) in METRICS.into_iter().flat_map(|m| EFFORTS.map(|e| (m, e))) {
         let row = encode(&texels, (width, 4), metric, effort);
@@ -92,7 +92,7 @@ fn blocks_do_not_depend_on_those_beside_them() {
 }
 
 #[test]
-fn instructions_do_not_change_a_byte() {
+fn bytes_do_not_depend_on_the_instruction_set() {
     let (texels, width) = wide_row();
     let image = image(&texels, (width, 4));
     for (metric, effort) in METRICS.into_iter().flat_map(|m| EFFORTS.map(|e| (m, e))) {
@@ -108,7 +108,7 @@ fn instructions_do_not_change_a_byte() {
 
 #[test]
 fn bytes_are_pinned() {
-    // A change of these hashes changes every texture that users encode: it belongs in the change log.
+    // If these hashes change, every texture that users encode changes. Record such a change in the change log.
     let hash = |bytes: &[u8]| {
         bytes
             .iter()

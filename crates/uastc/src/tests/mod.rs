@@ -1,5 +1,5 @@
-//! Tests of the encoder and the decoder. The judges are other people's decoders: `basisu` for UASTC and its
-//! transcoding, `texture2ddecoder` for what comes out of it.
+//! Tests of the encoder and the decoder against independent decoders: `basisu` for UASTC and for transcoding, and
+//! `texture2ddecoder` for the transcoded blocks.
 
 mod decode;
 mod direction;
@@ -12,7 +12,7 @@ use crate::lanes::Texels;
 use crate::{BLOCK_BYTES, Effort, Encoder, Image, Metric, Weight};
 use basisu::uastc::unpack::unpack_uastc;
 
-/// SplitMix64, so that the cases are the same everywhere.
+/// A random generator (SplitMix64) that gives the same test cases on every machine.
 pub(super) struct Random(pub u64);
 
 impl Random {
@@ -27,18 +27,18 @@ impl Random {
         self.next() as u8
     }
 
-    /// Uniform in 0..1.
+    /// Returns a number that is uniform in 0..1.
     pub fn unit(&mut self) -> f64 {
         (self.next() >> 11) as f64 / (1u64 << 53) as f64
     }
 }
 
-/// One block.
+/// Encodes one block.
 pub(super) fn encode_block(texels: &Texels, metric: Metric, effort: Effort) -> [u8; BLOCK_BYTES] {
     encode(texels.as_flattened(), (4, 4), metric, effort)[0]
 }
 
-/// The blocks of an image.
+/// Encodes an image.
 pub(super) fn encode(
     texels: &[u8],
     (width, height): (usize, usize),
@@ -52,23 +52,23 @@ pub(super) fn image(texels: &[u8], (width, height): (usize, usize)) -> Image<'_>
     Image::new(texels, width as u32, height as u32).expect("texels of that size")
 }
 
-/// What the reference transcoder makes of a block.
+/// Decodes a block with `basisu`.
 pub(super) fn decoded(block: &[u8; BLOCK_BYTES]) -> Texels {
     unpack_uastc(block, false).expect("a block of a known mode").map(|texel| texel.c)
 }
 
-/// Sum of squared differences of red, green and blue.
+/// Returns the sum of squared differences of red, green and blue.
 pub(super) fn squared_error(a: &Texels, b: &Texels) -> u32 {
     a.iter().zip(b).flat_map(|(a, b)| (0..3).map(move |c| u32::from(a[c].abs_diff(b[c])).pow(2))).sum()
 }
 
-/// Peak signal-to-noise ratio in dB, over RGB.
+/// Returns the peak signal-to-noise ratio in dB, over RGB.
 pub(super) fn psnr(a: &[Texels], b: &[Texels]) -> f64 {
     let error: f64 = a.iter().zip(b).map(|(a, b)| f64::from(squared_error(a, b))).sum();
     10.0 * (65025.0 * 48.0 * a.len() as f64 / error).log10()
 }
 
-/// A unit normal as an opaque texel.
+/// Encodes a unit normal as an opaque texel.
 pub(super) fn normal(x: f64, y: f64) -> [u8; 4] {
     let z = (1.0 - x * x - y * y).max(0.0).sqrt();
     let length = (x * x + y * y + z * z).sqrt();
@@ -76,7 +76,7 @@ pub(super) fn normal(x: f64, y: f64) -> [u8; 4] {
     [level(x), level(y), level(z), 255]
 }
 
-/// Blocks of unit normals of a smooth relief with noise of the given slope.
+/// Returns blocks of unit normals of a smooth surface with noise of the given slope.
 pub(super) fn normals(noise: f64, count: usize) -> Vec<Texels> {
     let mut random = Random(7);
     (0..count)
@@ -93,7 +93,7 @@ pub(super) fn normals(noise: f64, count: usize) -> Vec<Texels> {
         .collect()
 }
 
-/// One block of every kind that has its own way through the encoder.
+/// Returns blocks of every kind that the encoder treats differently.
 pub(super) fn all_kinds() -> Vec<Texels> {
     let mut random = Random(1);
     let mut blocks = vec![
@@ -152,7 +152,7 @@ pub(super) fn all_kinds() -> Vec<Texels> {
     blocks
 }
 
-/// Blocks of which only the green varies, by less than `spread`, between sides of every level.
+/// Returns blocks in which only green varies, by less than `spread`. Red and blue have random constant levels.
 pub(super) fn green(spread: u64) -> impl Iterator<Item = Texels> {
     let mut random = Random(spread);
     (0..16).map(move |_| {
@@ -162,6 +162,6 @@ pub(super) fn green(spread: u64) -> impl Iterator<Item = Texels> {
 }
 
 pub(super) const EFFORTS: [Effort; 2] = [Effort::Fast, Effort::Best];
-/// Green before red and blue.
+/// A metric in which green outweighs red and blue, as for roughness in ORM maps.
 pub(super) const SURFACE: Metric = Metric::Weighted([Weight::Quarter, Weight::Full, Weight::Quarter]);
 pub(super) const METRICS: [Metric; 3] = [Metric::Rgb, SURFACE, Metric::Direction];

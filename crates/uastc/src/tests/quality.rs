@@ -1,19 +1,19 @@
-//! How near the blocks are to their source.
+//! Tests how close blocks are to their source.
 
 use super::*;
 
-fn ratio(sources: &[Texels], effort: Effort) -> f64 {
+fn encoded_psnr(sources: &[Texels], effort: Effort) -> f64 {
     let blocks: Vec<Texels> =
         sources.iter().map(|texels| decoded(&encode_block(texels, Metric::Rgb, effort))).collect();
     psnr(sources, &blocks)
 }
 
 #[test]
-fn normals_keep_their_ratio() {
-    // From smooth to white noise; 0.3 dB below what was measured.
+fn normals_keep_their_psnr() {
+    // From smooth normals to white noise; 0.3 dB below the measured PSNR.
     for (noise, fast_floor, best_floor) in [(0.0, 46.1, 46.8), (0.1, 43.7, 44.3), (0.9, 29.6, 29.8)] {
         let sources = normals(noise, 256);
-        let (fast, best) = (ratio(&sources, Effort::Fast), ratio(&sources, Effort::Best));
+        let (fast, best) = (encoded_psnr(&sources, Effort::Fast), encoded_psnr(&sources, Effort::Best));
         assert!(fast >= fast_floor, "noise {noise}: fast has {fast:.2} dB");
         assert!(best >= best_floor, "noise {noise}: best has {best:.2} dB");
     }
@@ -29,8 +29,8 @@ fn best_is_never_worse_than_fast() {
 }
 
 #[test]
-fn surfaces_that_are_grey_by_weight_alone_keep_their_colour() {
-    // Red and blue are four times green: equal as the metric weighs them.
+fn texels_that_are_grey_only_after_weighting_keep_their_colour() {
+    // Red and blue vary four times as much as green: their weighted variations are equal.
     let texels: Texels =
         std::array::from_fn(|i| [200 + 4 * (i as u8 % 8), 50 + i as u8 % 8, 200 + 4 * (i as u8 % 8), 255]);
     for effort in EFFORTS {
@@ -40,8 +40,8 @@ fn surfaces_that_are_grey_by_weight_alone_keep_their_colour() {
 }
 
 #[test]
-fn surfaces_keep_roughness_before_occlusion_and_metal() {
-    // Sums of squared differences over all blocks, of roughness alone and with a sixteenth of the others.
+fn weights_lower_the_error_of_roughness() {
+    // Sums of squared differences over all blocks: of roughness alone, and with a sixteenth of red and blue.
     let sums = |metric, effort| {
         all_kinds().iter().fold([0.0, 0.0], |[roughness, weighted], texels| {
             let block = decoded(&encode_block(texels, metric, effort));
@@ -57,9 +57,8 @@ fn surfaces_keep_roughness_before_occlusion_and_metal() {
 }
 
 #[test]
-fn roughness_alone_stays_near() {
-    // Sums of squared differences over 16 blocks, a fifth above what was measured; those of red and blue count a
-    // sixteenth.
+fn roughness_with_constant_red_and_blue_keeps_its_error() {
+    // Sums of squared differences over 16 blocks, a fifth above the measured sums. Red and blue count a sixteenth.
     for (spread, most) in [(3, 0.0), (12, 88.0), (60, 361.0), (255, 1002.0)] {
         let [fast, best] = EFFORTS.map(|effort| {
             green(spread).fold(0.0, |sum, texels| {

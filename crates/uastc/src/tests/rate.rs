@@ -1,4 +1,4 @@
-//! Blocks that were rewritten for fewer bytes, judged by what the reference transcoder decodes them to.
+//! Tests of rate-distortion optimisation. Errors are measured on blocks decoded with `basisu`.
 
 use super::decode::{every_mode, expected};
 use super::*;
@@ -9,7 +9,7 @@ use crate::{SizeError, decode_block, lower_rate};
 use proptest::prelude::*;
 use texel_simd::instruction_sets;
 
-/// A level of smooth normals with noise of the given slope.
+/// Makes an image of smooth normals with noise of the given slope.
 fn level(width: usize, height: usize, noise: f64) -> Vec<u8> {
     let mut random = Random((width * 1000 + height) as u64);
     let texel = |k: usize| {
@@ -32,7 +32,7 @@ fn blocks_of(texels: &[u8], width: usize, height: usize) -> Vec<Texels> {
     (0..columns * height.div_ceil(4)).map(block).collect()
 }
 
-/// Squared errors over the texels that are inside of the level: by `metric`, and of red, green and blue.
+/// Returns squared errors over the texels inside of the image: by `metric`, and of red, green and blue.
 fn errors(blocks: &[[u8; BLOCK_BYTES]], texels: &[u8], (width, height): (usize, usize), metric: Metric) -> [f64; 2] {
     let columns = width.div_ceil(4);
     let mut errors = [0.0; 2];
@@ -57,13 +57,13 @@ fn errors(blocks: &[[u8; BLOCK_BYTES]], texels: &[u8], (width, height): (usize, 
 /// Blocks before and after.
 type Lowered = [Vec<[u8; BLOCK_BYTES]>; 2];
 
-/// By how many dB those errors grew.
+/// Returns by how many dB the [`errors`] grew.
 fn losses([before, after]: &Lowered, texels: &[u8], size: (usize, usize), metric: Metric) -> [f64; 2] {
     let [before, after] = [before, after].map(|blocks| errors(blocks, texels, size, metric));
     [0, 1].map(|k| if after[k] > before[k] { 10.0 * (after[k] / before[k]).log10() } else { 0.0 })
 }
 
-/// Directions are summed in single precision by the encoder: by how many dB it may be wrong.
+/// The tolerance in dB for errors of directions, which the encoder sums in single precision.
 const ROUNDING: f64 = 1e-4;
 
 fn lowered(texels: &[u8], size: (usize, usize), metric: Metric, effort: Effort, loss: f64) -> Lowered {
@@ -74,7 +74,7 @@ fn lowered(texels: &[u8], size: (usize, usize), metric: Metric, effort: Effort, 
 }
 
 #[test]
-fn blocks_come_back_as_they_were_packed() {
+fn unpacked_blocks_equal_packed_blocks() {
     let hints = Hints { bias: 13, flip: true, tables: [3, 6], ..Hints::default() };
     for texels in all_kinds() {
         for (_, block) in every_mode(&texels) {
@@ -93,7 +93,7 @@ fn blocks_come_back_as_they_were_packed() {
 }
 
 #[test]
-fn normals_become_smaller() {
+fn compressed_normals_become_smaller() {
     let size = (256, 256);
     for noise in [0.02, 0.1, 0.5] {
         let texels = level(size.0, size.1, noise);
@@ -107,7 +107,7 @@ fn normals_become_smaller() {
 }
 
 #[test]
-fn nothing_allowed_changes_nothing() {
+fn blocks_stay_if_no_loss_is_allowed() {
     let texels = level(37, 22, 0.3);
     for loss in [0.0, -1.0, f64::NAN] {
         let [before, after] = lowered(&texels, (37, 22), Metric::Direction, Effort::Fast, loss);
@@ -116,7 +116,7 @@ fn nothing_allowed_changes_nothing() {
 }
 
 #[test]
-fn blocks_of_another_image_are_refused() {
+fn rejects_blocks_of_another_image() {
     let texels = level(37, 22, 0.3);
     let mut blocks = encode(&texels, (37, 22), Metric::Rgb, Effort::Fast);
     let found = lower_rate(&mut blocks[..59], &image(&texels, (37, 22)), Metric::Rgb, 3.0);
@@ -124,7 +124,7 @@ fn blocks_of_another_image_are_refused() {
 }
 
 #[test]
-fn blocks_with_alpha_and_unreadable_ones_stay() {
+fn blocks_with_alpha_and_invalid_blocks_stay() {
     let (texels, size) = (level(256, 128, 0.3), (256, 128));
     let mut random = Random(5);
     let before: Vec<[u8; BLOCK_BYTES]> = (0..64 * 32).map(|_| std::array::from_fn(|_| random.byte())).collect();
@@ -138,7 +138,7 @@ fn blocks_with_alpha_and_unreadable_ones_stay() {
 }
 
 #[test]
-fn rates_do_not_depend_on_threads() {
+fn rewritten_bytes_do_not_depend_on_threads() {
     let texels = level(67, 301, 0.2);
     let with = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -148,7 +148,7 @@ fn rates_do_not_depend_on_threads() {
 }
 
 #[test]
-fn rates_do_not_depend_on_instructions() {
+fn rewritten_bytes_do_not_depend_on_the_instruction_set() {
     let (texels, size) = (level(67, 301, 0.2), (67, 301));
     for metric in METRICS {
         let [before, after] = lowered(&texels, size, metric, Effort::Fast, 1.0);
@@ -160,9 +160,9 @@ fn rates_do_not_depend_on_instructions() {
     }
 }
 
-/// Flat bands where the search looks first tell it nothing.
+/// The bands that the search samples first are flat, so they carry no information about lambda.
 #[test]
-fn flat_bands_do_not_keep_others_from_becoming_smaller() {
+fn flat_sample_bands_do_not_stop_the_search() {
     let size = (5, 15 * 128 + 5);
     let mut texels = level(size.0, size.1, 0.1);
     for (y, row) in texels.chunks_exact_mut(size.0 * 4).enumerate() {
@@ -175,7 +175,7 @@ fn flat_bands_do_not_keep_others_from_becoming_smaller() {
     assert!((0.8..1.0 + ROUNDING).contains(&lost[0].max(lost[1])), "{lost:?} dB of 1");
 }
 
-/// Sixteen bands of 128 rows are where every fourth is searched first, here with bands that are unlike the others.
+/// With sixteen bands of 128 rows, the search samples every fourth band first. Here these bands differ from the others.
 #[test]
 fn levels_of_many_bands_stay_below_the_bound() {
     let size = (5, 15 * 128 + 5);
@@ -187,7 +187,7 @@ fn levels_of_many_bands_stay_below_the_bound() {
             let blocks = lowered(&texels, size, metric, Effort::Fast, loss);
             let lost = losses(&blocks, &texels, size, metric);
             let most = lost[0].max(lost[1]);
-            // The least that was used of what is allowed is 0.82.
+            // The least share of the allowed loss that was measured is 0.82.
             assert!(
                 (0.8 * loss..loss + ROUNDING).contains(&most),
                 "noise {noise:?}, {metric:?}: {lost:?} dB of {loss}"
@@ -196,9 +196,9 @@ fn levels_of_many_bands_stay_below_the_bound() {
     }
 }
 
-/// Transcoders go by the hints: they suit the source, or another block with the same bytes.
+/// Hints suit the source of the block, or the source of another block with the same bytes.
 #[test]
-fn hints_stay_right() {
+fn hints_suit_the_source_after_rewriting() {
     let size = (128, 128);
     let texels = level(size.0, size.1, 0.1);
     let [before, after] = lowered(&texels, size, Metric::Direction, Effort::Fast, 0.5);
@@ -208,14 +208,14 @@ fn hints_stay_right() {
         Some(Unpacked::Block(block)) => block.mode.hints_in(bytes) == Hints::of(source, block.mode).bits(block.mode),
         _ => true,
     };
-    let mut own = 0;
+    let mut suited = 0;
     for (bytes, source) in after.iter().zip(&sources) {
-        let suits_it = suits(bytes, source);
-        own += usize::from(suits_it);
-        let of_another = || after.iter().zip(&sources).any(|(other, source)| other == bytes && suits(bytes, source));
-        assert!(suits_it || of_another(), "{bytes:x?}");
+        let suits_source = suits(bytes, source);
+        suited += usize::from(suits_source);
+        let suits_copy = || after.iter().zip(&sources).any(|(other, source)| other == bytes && suits(bytes, source));
+        assert!(suits_source || suits_copy(), "{bytes:x?}");
     }
-    assert!(own > after.len() / 2);
+    assert!(suited > after.len() / 2);
 }
 
 proptest! {

@@ -1,4 +1,4 @@
-//! Numbers that overflow, and documents that are large for no reason.
+//! Numbers that overflow, and documents that are unreasonably large.
 
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use super::*;
 
 #[test]
-fn scales_that_no_slope_has_are_refused() {
+fn scales_without_finite_slopes_are_refused() {
     for (member, part) in [("normalTexture", "normalTexture"), ("heightTexture", "heightTexture")] {
         for scale in [1e30, -1e9] {
             let sphere = Sphere::new();
@@ -19,7 +19,7 @@ fn scales_that_no_slope_has_are_refused() {
                     material[member]["scale"] = json!(scale);
                 }
             });
-            let line = sphere.complaint(&["--target", "float"]);
+            let line = sphere.error_line(&["--target", "float"]);
             assert!(line.contains(part) && line.contains("and the most that is read is"), "{line}");
         }
     }
@@ -37,9 +37,9 @@ fn assert_sound(sphere: &Sphere, options: &[&str]) {
     }
 }
 
-/// Normals of the largest scales lean by so much that their x rounds to 1; those of the smallest are flat.
+/// Normals of the largest scales are so steep that x rounds to 1. Normals of the smallest scales are flat.
 #[test]
-fn scales_of_any_size_leave_numbers() {
+fn scales_of_any_size_give_finite_values() {
     for scale in [1e4, -1e4, 3e3, 1e-7, -1e-30, 1e-44] {
         let sphere = Sphere::new();
         sphere.edit(|root| root["materials"][0]["normalTexture"]["scale"] = json!(scale));
@@ -47,9 +47,9 @@ fn scales_of_any_size_leave_numbers() {
     }
 }
 
-/// One texel of a normal map may be of any length; it does not spoil its level.
+/// One texel of a normal map may have any length, and does not damage its level.
 #[test]
-fn texels_of_any_length_leave_numbers() {
+fn normals_of_any_length_give_finite_values() {
     for (x, z) in [(f32::MAX, f32::MAX), (f32::MAX, 1.0), (f32::MAX, 2e19), (-f32::MAX, 0.5), (1e-30, 1e-38)] {
         let sphere = Sphere::new();
         fs::write(sphere.file("normal.exr"), exr([x, -0.25, z])).expect("a file");
@@ -59,7 +59,7 @@ fn texels_of_any_length_leave_numbers() {
 }
 
 #[test]
-fn colours_beyond_all_measure_leave_numbers() {
+fn huge_colours_give_finite_values() {
     let sphere = Sphere::new();
     fs::write(sphere.file("surface.exr"), exr([f32::MAX, 0.5, f32::MAX])).expect("a file");
     fs::write(sphere.file("axis.exr"), exr([-f32::MAX, f32::MAX, 1.0])).expect("a file");
@@ -68,8 +68,8 @@ fn colours_beyond_all_measure_leave_numbers() {
         let axis = root["textures"].as_array().expect("textures").len();
         push(root, "images", json!({ "uri": "axis.exr" }));
         push(root, "textures", json!({ "source": 3 }));
-        let own = json!({ "anisotropyStrength": 0.5, "anisotropyTexture": { "index": axis } });
-        root["materials"][0]["extensions"] = json!({ "KHR_materials_anisotropy": own });
+        let anisotropy = json!({ "anisotropyStrength": 0.5, "anisotropyTexture": { "index": axis } });
+        root["materials"][0]["extensions"] = json!({ "KHR_materials_anisotropy": anisotropy });
     });
     assert_sound(&sphere, &["--target", "float"]);
 }
@@ -78,11 +78,11 @@ fn push(root: &mut Value, array: &str, value: Value) {
     root[array].as_array_mut().expect("an array").push(value);
 }
 
-/// 16 x 16 texels of (-0.1, 0.2, 0.9), one of them `odd`.
-fn exr(odd: [f32; 3]) -> Vec<u8> {
+/// Returns 16 x 16 texels of (-0.1, 0.2, 0.9), one of them `texel`.
+fn exr(texel: [f32; 3]) -> Vec<u8> {
     use ::exr::prelude::{Encoding, Image, SpecificChannels, WritableImage};
     let pixel = |at: ::exr::math::Vec2<usize>| {
-        let [x, y, z] = if (at.x(), at.y()) == (5, 3) { odd } else { [-0.1, 0.2, 0.9] };
+        let [x, y, z] = if (at.x(), at.y()) == (5, 3) { texel } else { [-0.1, 0.2, 0.9] };
         (x, y, z)
     };
     let channels = SpecificChannels::build().with_channel("R").with_channel("G").with_channel("B").with_pixel_fn(pixel);
@@ -92,9 +92,9 @@ fn exr(odd: [f32; 3]) -> Vec<u8> {
     file.into_inner()
 }
 
-/// Vectors that overlap are none, so that nothing is known of the mesh.
+/// Overlapping vectors cannot be read, so that the mesh is unknown.
 #[test]
-fn meshes_that_cannot_be_read_leave_numbers() {
+fn unreadable_meshes_give_finite_values() {
     for stride in [1, 2, 3, 4, 252] {
         let sphere = Sphere::new();
         sphere.edit(|root| root["bufferViews"][0]["byteStride"] = json!(stride));
@@ -110,10 +110,10 @@ fn meshes_that_cannot_be_read_leave_numbers() {
     }
 }
 
-/// How long a bake may take before it counts as hanging; each of these takes seconds.
+/// Time after which a bake counts as hanging. Each of these bakes takes seconds.
 const HANG: Duration = Duration::from_secs(240);
 
-/// Bakes the sphere and stops it when it hangs.
+/// Bakes the sphere and kills the bake if it hangs.
 fn assert_ends(sphere: &Sphere, options: &[&str]) {
     let (input, output) = (sphere.file("brushed.gltf"), sphere.output());
     let mut command = Command::new(env!("CARGO_BIN_EXE_roughcast"));
@@ -149,7 +149,7 @@ fn many_primitives_with_materials_of_their_own_are_looked_up_once() {
         let (primitive, material) = (&root["meshes"][0]["primitives"][0], &root["materials"][0]);
         let numbered = |i: usize| {
             let mut primitive = primitive.clone();
-            // One triangle: the work is in finding it.
+            // One triangle, because the work is in finding it.
             primitive["indices"] = json!(root["accessors"].as_array().expect("accessors").len());
             primitive["material"] = json!(i);
             primitive
@@ -166,7 +166,7 @@ fn many_primitives_with_materials_of_their_own_are_looked_up_once() {
 }
 
 #[test]
-fn many_primitives_of_one_material_end() {
+fn a_bake_of_many_primitives_of_one_material_ends() {
     let sphere = Sphere::new();
     sphere.edit(|root| {
         let primitive = root["meshes"][0]["primitives"][0].clone();
@@ -175,9 +175,9 @@ fn many_primitives_of_one_material_end() {
     assert_ends(&sphere, &[]);
 }
 
-/// Nothing is copied for each texture that shares an image, which may be a data URI of megabytes.
+/// Textures that share an image do not copy it. It may be a data URI of megabytes.
 #[test]
-fn many_textures_of_one_image_share_it() {
+fn textures_of_one_image_share_its_data() {
     let sphere = Sphere::new();
     let png = fs::read(sphere.file("brushed_normal.png")).expect("an image");
     let encode = |byte: &u8| format!("%{byte:02X}");

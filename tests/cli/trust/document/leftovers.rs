@@ -1,8 +1,8 @@
-//! What only replaced images needed is gone, and what is left has its own name.
+//! Data that only replaced images needed is removed, and images keep distinct names.
 
 use super::*;
 
-/// How many bytes of `bin`, which is buffer 0, no view of `root` shows.
+/// Returns the number of bytes of `bin`, which is buffer 0, that no buffer view of `root` covers.
 fn unseen(root: &Value, bin: &[u8]) -> usize {
     let mut is_seen = vec![false; bin.len()];
     for view in root["bufferViews"].as_array().expect("views").iter().filter(|view| view["buffer"] == 0) {
@@ -12,7 +12,7 @@ fn unseen(root: &Value, bin: &[u8]) -> usize {
     is_seen.iter().filter(|is_seen| !**is_seen).count()
 }
 
-/// The bytes of image `index`.
+/// Returns the bytes of image `index`.
 fn image<'b>(root: &Value, bin: &'b [u8], index: usize) -> &'b [u8] {
     let view = &root["bufferViews"][root["images"][index]["bufferView"].as_u64().expect("a view") as usize];
     let number = |key: &str| view[key].as_u64().unwrap_or(0) as usize;
@@ -20,7 +20,7 @@ fn image<'b>(root: &Value, bin: &'b [u8], index: usize) -> &'b [u8] {
 }
 
 #[test]
-fn a_binary_keeps_no_byte_of_replaced_images() {
+fn a_glb_keeps_no_byte_of_replaced_images() {
     let lake = fixtures().join("waves/waves.glb");
     let (before, old) = glb(&lake);
     let normal = image(&before, &old, 0);
@@ -53,7 +53,7 @@ fn a_binary_keeps_no_byte_of_replaced_images() {
 }
 
 #[test]
-fn images_and_files_are_called_after_images() {
+fn baked_images_and_files_have_the_names_of_images() {
     let folder = tempdir().expect("a folder");
     bake(&fixtures().join("waves/waves.glb"), folder.path(), &["--profile", "both"]);
     let names: Vec<String> = files(&folder.path().join("waves.roughcast")).into_iter().map(|(name, _)| name).collect();
@@ -66,7 +66,8 @@ fn images_and_files_are_called_after_images() {
     for image in root["images"].as_array().expect("images") {
         let name = image["name"].as_str().expect("every image has a name");
         let uri = image["uri"].as_str().unwrap_or("waves_colour");
-        // The normal map has taken the place of the old one, with its name; new images have the names of their files.
+        // The new normal map has replaced the old one and keeps its name. Other new images have the names of their
+        // files.
         let expected = uri.trim_start_matches("waves.roughcast/").trim_end_matches(".ktx2").trim_end_matches(".png");
         assert!(name == expected || (name == "waves_normal" && expected == "waves_normal.normal"), "{name}: {uri}");
     }
@@ -75,9 +76,9 @@ fn images_and_files_are_called_after_images() {
     }
 }
 
-/// A GLB whose first buffer is a file: the BIN chunk is nobody's, and the file's URI stays.
+/// In a GLB whose first buffer is a file, no buffer uses the BIN chunk, and the URI of the file stays.
 #[test]
-fn a_first_buffer_that_is_a_file_stays_one() {
+fn a_first_buffer_that_is_a_file_stays_a_file() {
     let sphere = Sphere::new();
     let root = document(&sphere.file("brushed.gltf"));
     let path = sphere.file("brushed.glb");
@@ -92,7 +93,7 @@ fn a_first_buffer_that_is_a_file_stays_one() {
 }
 
 #[test]
-fn a_binary_chunk_without_a_buffer_makes_none() {
+fn a_bin_chunk_without_a_buffer_adds_no_buffer() {
     let sphere = Sphere::new();
     let mut root = document(&sphere.file("brushed.gltf"));
     for member in ["buffers", "bufferViews", "accessors", "meshes"] {

@@ -1,4 +1,4 @@
-//! Files that are no assets, or not all of one: each complaint says what they are and what to do.
+//! Files that are not assets or are incomplete. Each error says what they are and what to do.
 
 use super::*;
 
@@ -11,33 +11,33 @@ fn missing_files_are_named_together() {
     for name in ["brushed_colour.png", "brushed.bin"] {
         fs::remove_file(sphere.file(name)).expect("a file");
     }
-    let line = sphere.complaint(&[]);
-    let said =
+    let line = sphere.error_line(&[]);
+    let expected =
         "expected readable files at brushed_colour.png, brushed.bin, found none; put them there or fix their URIs";
-    assert!(line.contains(said), "{line}");
+    assert!(line.contains(expected), "{line}");
     sphere.edit(|root| {
         let absent = (0..20).map(|image| json!({ "uri": format!("absent{image}.png") }));
         root["images"].as_array_mut().expect("images").extend(absent);
     });
-    let line = sphere.complaint(&[]);
+    let line = sphere.error_line(&[]);
     assert!(line.contains("brushed_colour.png, absent0.png, ") && line.contains("absent8.png and 12 more"), "{line}");
 }
 
 #[test]
-fn pointers_of_git_lfs_say_what_to_run() {
+fn errors_on_git_lfs_pointers_name_the_command_to_run() {
     for name in ["brushed.gltf", "brushed_normal.png", "brushed_surface.png", "brushed.bin"] {
         let sphere = Sphere::new();
         fs::write(sphere.file(name), POINTER).expect("a file");
-        let line = sphere.complaint(&[]);
+        let line = sphere.error_line(&[]);
         assert!(line.contains("found a Git LFS pointer instead of the file; run `git lfs pull`"), "{name}: {line}");
     }
 }
 
 #[test]
-fn files_of_other_kinds_say_what_to_do() {
+fn errors_on_other_files_say_what_to_do() {
     let folder = tempdir().expect("a folder");
     let output = folder.path().join("out");
-    for (name, bytes, said) in [
+    for (name, bytes, expected) in [
         ("a.glb", &b""[..], "an empty file; copy or export it again"),
         ("a.glb", b"x\n", "a file that starts with \"x\\n\"; export the scene as glTF 2.0 (.glb or .gltf)"),
         ("a.glb", b"Kaydara FBX Binary  \0", "an FBX file; export the scene as glTF 2.0"),
@@ -49,8 +49,8 @@ fn files_of_other_kinds_say_what_to_do() {
     ] {
         let path = folder.path().join(name);
         fs::write(&path, bytes).expect("a file");
-        let line = complaint(&path, &output, &[]);
-        assert!(line.contains(&format!("found {said}")), "{name}: {line}");
+        let line = error_line(&path, &output, &[]);
+        assert!(line.contains(&format!("found {expected}")), "{name}: {line}");
     }
 }
 
@@ -58,7 +58,7 @@ fn files_of_other_kinds_say_what_to_do() {
 fn documents_of_other_versions_are_refused() {
     let folder = tempdir().expect("a folder");
     let path = folder.path().join("a.gltf");
-    for (text, said) in [
+    for (text, expected) in [
         ("null", "expected a GLB or a JSON object"),
         ("[]", "expected a GLB or a JSON object"),
         ("\"x\"", "expected a GLB or a JSON object"),
@@ -68,7 +68,7 @@ fn documents_of_other_versions_are_refused() {
         (r#"{"asset":{"version":"2.0","minVersion":"2.1"}}"#, "expected glTF 2.0, found \"2.1\" as asset.minVersion"),
     ] {
         fs::write(&path, text).expect("a file");
-        let line = complaint(&path, &folder.path().join("out"), &[]);
-        assert!(line.contains(said) && line.ends_with("(.glb or .gltf)"), "{line}");
+        let line = error_line(&path, &folder.path().join("out"), &[]);
+        assert!(line.contains(expected) && line.ends_with("(.glb or .gltf)"), "{line}");
     }
 }

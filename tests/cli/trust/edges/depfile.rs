@@ -1,18 +1,19 @@
-//! `--depfile`: whatever files are called, Make and Ninja run nothing but the rule and miss no change; or the bake fails.
+//! Tests of `--depfile` with any file names: either Make and Ninja run only the rule and miss no change, or the bake
+//! fails.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
-use std::sync::Once;
 use std::time::{Duration, SystemTime};
 
 use proptest::prelude::*;
 use tempfile::tempdir;
 
-use crate::process::{copy, files, fixtures, roughcast_in, run, skipped};
+use crate::process::{copy, files, fixtures, roughcast_in, run};
+use crate::skip::missing_tool;
 
-/// A tool as a build starts it, in English and without what the tests were started with.
+/// Returns a tool as a build starts it: in English, and without variables of the test run.
 fn tool(name: &str, folder: &Path) -> Command {
     let mut command = Command::new(name);
     command.current_dir(folder).env("LC_ALL", "C").env_remove("MAKEFLAGS").env_remove("MAKELEVEL");
@@ -23,21 +24,18 @@ fn text(output: &Output) -> String {
     [&output.stdout[..], &output.stderr].map(String::from_utf8_lossy).concat()
 }
 
-/// Seconds after 1970.
+/// Sets the time of a file, in seconds after 1970.
 fn set_time(path: &Path, seconds: u64) {
     let file = File::open(path).expect("a file");
     file.set_modified(SystemTime::UNIX_EPOCH + Duration::from_secs(seconds)).expect("a time");
 }
 
 fn has_ninja() -> bool {
-    static SAID: Once = Once::new();
-    let is_there = Command::new("ninja").arg("--version").output().is_ok();
-    if !is_there {
-        let missing = "depfiles as Ninja reads them: there is no `ninja`";
-        assert!(std::env::var("CI").as_deref() != Ok("true"), "{missing}");
-        SAID.call_once(|| skipped(missing));
+    let is_installed = Command::new("ninja").arg("--version").output().is_ok();
+    if !is_installed {
+        missing_tool("tests of depfiles need Ninja (Debian: `ninja-build`)");
     }
-    is_there
+    is_installed
 }
 
 /// Renames an image of the brushed sphere in `assets`, and its URI with it.
@@ -48,9 +46,9 @@ fn rename_image(assets: &Path, name: &str, uri: &str) {
     fs::write(document, text.replace("brushed_colour.png", uri)).expect("a file");
 }
 
-/// The Makefile of docs/pipeline.md.
+/// Runs the Makefile of docs/pipeline.md.
 #[test]
-fn a_name_that_is_a_command_of_make_is_refused_and_not_run() {
+fn a_name_that_is_a_make_command_is_refused_and_not_run() {
     let folder = tempdir().expect("a folder");
     let folder = folder.path();
     let assets = folder.join("assets");
@@ -69,25 +67,25 @@ fn a_name_that_is_a_command_of_make_is_refused_and_not_run() {
         set_time(&assets.join(changed), 1_000_000_000);
     }
     assert!(text(&make()).contains("is up to date"));
-    // Make would stop at the image that is gone.
+    // Make would stop at the missing image.
     fs::remove_file(folder.join("baked/brushed.gltf.d")).expect("the rules of the last bake");
     rename_image(&assets, "a;touch${IFS}PWNED;b.png", "a%3Btouch%24%7BIFS%7DPWNED%3Bb.png");
     fs::write(assets.join("a"), "").expect("a file");
     set_time(&assets.join("brushed.gltf"), 4_000_000_000);
     for _ in 0..3 {
         let refused = make();
-        let complaint = text(&refused);
+        let message = text(&refused);
         assert!(
-            !refused.status.success() && complaint.contains("found ';' in assets/a;touch${IFS}PWNED;b.png"),
-            "{complaint}"
+            !refused.status.success() && message.contains("found ';' in assets/a;touch${IFS}PWNED;b.png"),
+            "{message}"
         );
-        assert!(complaint.contains("rename the file"), "{complaint}");
+        assert!(message.contains("rename the file"), "{message}");
     }
     assert!(!folder.join("PWNED").exists() && !assets.join("PWNED").exists());
 }
 
 #[test]
-fn an_asset_that_has_no_rule_fails_alone() {
+fn an_asset_without_a_rule_fails_alone() {
     let folder = tempdir().expect("a folder");
     let folder = folder.path();
     copy(&fixtures().join("waves"), &folder.join("A/good"));
@@ -104,7 +102,7 @@ fn an_asset_that_has_no_rule_fails_alone() {
     assert_eq!((&failed["input"], &failed["status"]), (&"A/b=d/waves.glb".into(), &"failed".into()), "{report:#}");
 }
 
-/// Words that Make knows at the start of a line.
+/// Words with a meaning for Make at the start of a line.
 const DIRECTIVES: &[&str] = &["include", "-include", "define", "export", "ifeq", "else", "override", "vpath", ".PHONY"];
 
 /// Names for a folder, an asset without its extension, and two images.
@@ -115,7 +113,7 @@ struct Names {
     images: [String; 2],
 }
 
-/// A name that most file systems take; often one that a depfile takes, too.
+/// Returns names that most file systems allow. A depfile allows many of them, too.
 fn name() -> impl Strategy<Value = String> {
     let mild = "[ #%~(){}&'\"!,+@a-cé._-]{1,5}";
     let hostile = "[ #$%:;=|*?<>^`~()\\[\\]{}\\\\&'\"!,+@a-cé\u{7f}\n\t\r._-]{1,6}";
@@ -130,7 +128,7 @@ fn names() -> impl Strategy<Value = Names> {
     names.prop_filter("names of four files", |names| names.images[0] != names.images[1])
 }
 
-/// A folder that an asset of `names` is baked in, without textures to encode. Returns what it was made from, and the output.
+/// Writes a folder in which an asset of `names` is baked without textures to encode. Returns its inputs and the output.
 fn asset(folder: &Path, names: &Names) -> (Vec<PathBuf>, PathBuf) {
     let encoded = |name: &String| name.bytes().map(|byte| format!("%{byte:02X}")).collect::<String>();
     let images: Vec<_> = names.images.iter().map(|name| serde_json::json!({ "uri": encoded(name) })).collect();
@@ -146,7 +144,8 @@ fn asset(folder: &Path, names: &Names) -> (Vec<PathBuf>, PathBuf) {
     (inputs, Path::new("baked").join(&names.folder).join(format!("{}.gltf", names.stem)))
 }
 
-/// Expects `asks`, which tells whether a build system would bake again, to notice every change of an input and no other.
+/// Expects that `asks`, which returns whether a build system would bake again, notices every change of an input and
+/// nothing else.
 fn assert_notices(folder: &Path, inputs: &[PathBuf], asks: &dyn Fn() -> bool) -> Result<(), TestCaseError> {
     prop_assert!(!asks(), "nothing changed");
     for input in inputs {
@@ -161,7 +160,7 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, cases: 64, ..ProptestConfig::default() })]
 
     #[test]
-    fn whatever_files_are_called_no_change_is_missed_and_nothing_else_is_run(names in names()) {
+    fn no_change_is_missed_and_nothing_else_runs_for_any_file_names(names in names()) {
         let folder = tempdir().expect("a folder");
         let folder = folder.path();
         let (inputs, output) = asset(folder, &names);
@@ -169,7 +168,7 @@ proptest! {
         let rules = fs::read_to_string(folder.join("d")).unwrap_or_default();
         if run.code != 0 {
             let is_refused = run.err.contains("--depfile: expected") && run.err.contains("rename the file");
-            // What no URI may name is refused before.
+            // Names that a URI cannot contain are refused earlier.
             prop_assert!(is_refused || run.err.contains("expected a file name without"), "{}", run.err);
             prop_assert_eq!((run.code, rules.as_str()), (1, ""));
             return Ok(());
@@ -200,7 +199,7 @@ proptest! {
                 assert!(output.status.success(), "{}\n{rules}", text(&output));
                 !text(&output).contains("no work to do")
             };
-            // Once, for its log.
+            // Ninja runs once to write its log.
             ninja(&[]);
             assert_notices(folder, &inputs, &|| ninja(&["-n"]))?;
         }

@@ -1,4 +1,4 @@
-//! `--on-change`: what it starts ends with it, and its variables hold one path per line.
+//! Tests that programs of `--on-change` end with the tool, and that its variables hold one path per line.
 
 use std::fs;
 use std::thread::sleep;
@@ -9,7 +9,7 @@ use tempfile::{TempDir, tempdir};
 use crate::process::fixtures;
 use crate::watch::session::Session;
 
-/// `assets` with a waves.glb by each of `names`, and `hook.sh` with `script`.
+/// Writes `assets` with a waves.glb for each of `names`, and `hook.sh` with `script`.
 fn scene(names: &[&str], script: &str) -> TempDir {
     let folder = tempdir().expect("a folder");
     fs::create_dir(folder.path().join("assets")).expect("a folder");
@@ -20,7 +20,7 @@ fn scene(names: &[&str], script: &str) -> TempDir {
     folder
 }
 
-/// Waits until `is_so`, which is the case long before.
+/// Waits until `is_so` returns true, and fails after a time that no machine needs.
 fn wait_until(what: &str, is_so: &dyn Fn() -> bool) {
     let start = Instant::now();
     while !is_so() {
@@ -29,7 +29,7 @@ fn wait_until(what: &str, is_so: &dyn Fn() -> bool) {
     }
 }
 
-/// Whether a process runs; one that has ended and is not waited for does not.
+/// Returns whether a process runs. A process that has ended but was not waited for does not run.
 fn is_running(id: &str) -> bool {
     let state = fs::read_to_string(format!("/proc/{id}/stat"));
     state.is_ok_and(|state| state.rsplit(") ").next().is_some_and(|rest| !rest.starts_with('Z')))
@@ -39,7 +39,7 @@ fn is_running(id: &str) -> bool {
 fn an_interrupt_ends_all_that_the_hook_started() {
     for script in [
         "exec > /dev/null 2>&1\nsleep 300 & echo $! > pids.new\necho $$ >> pids.new\nmv pids.new pids\nsleep 300\n",
-        // Whoever does not hear is killed.
+        // Programs that ignore the signal are killed.
         "exec > /dev/null 2>&1\ntrap '' TERM INT\n(trap '' TERM INT; while :; do sleep 1; done) & echo $! > pids.new\nmv pids.new pids\nwait\n",
     ] {
         let folder = scene(&["waves.glb"], script);
@@ -56,10 +56,10 @@ fn an_interrupt_ends_all_that_the_hook_started() {
 
 #[test]
 fn a_path_of_two_lines_is_left_out_with_a_warning() {
-    let folder = scene(&["a\nb.glb", "c.glb"], "printf '%s\\n' \"$ROUGHCAST_OUTPUTS\" > told.new\nmv told.new told\n");
+    let folder = scene(&["a\nb.glb", "c.glb"], "printf '%s\\n' \"$ROUGHCAST_OUTPUTS\" > list.new\nmv list.new list\n");
     let mut session = Session::start(folder.path(), "--model=none --on-change sh${IFS}hook.sh");
     session.until("idle");
-    assert_eq!(fs::read_to_string(folder.path().join("told")).expect("a file"), "out/c.gltf\n");
+    assert_eq!(fs::read_to_string(folder.path().join("list")).expect("a file"), "out/c.gltf\n");
     let run = session.stop();
     assert_eq!(run.code, 0);
     let expected = "warning: out/a\\u{a}b.gltf: expected a path of one line, found a line break in it; ROUGHCAST_OUTPUTS \

@@ -1,4 +1,4 @@
-//! Readers of messages and results that have gone, or have no room: the same is baked, and the exit code is the same.
+//! Standard output and standard error that are closed or full change neither the outputs nor the exit code.
 
 use std::fs::{self, File};
 use std::io;
@@ -11,19 +11,19 @@ use tempfile::{TempDir, tempdir};
 
 use crate::process::{copy, done, fixtures, hashes};
 
-/// A pipe whose reader has gone.
+/// Returns a pipe whose reader has closed.
 fn unread() -> Stdio {
     let (reader, writer) = io::pipe().expect("a pipe");
     drop(reader);
     writer.into()
 }
 
-/// A disk without room.
+/// Returns a full disk.
 fn full() -> Stdio {
     File::options().write(true).open("/dev/full").expect("Linux has it").into()
 }
 
-/// `A`: a broken asset and two good ones; `B`: what one was baked to, and a texture that was left behind.
+/// Writes `A`, a broken asset and two good ones, and `B`, the outputs of one of them and a texture that is left over.
 fn template() -> TempDir {
     let folder = tempdir().expect("a folder");
     for name in ["1", "2", "3"] {
@@ -39,7 +39,7 @@ fn template() -> TempDir {
     folder
 }
 
-/// The exit code of `line` in a copy of `template`, and all files afterwards.
+/// Runs `line` in a copy of `template`. Returns the exit code and all files.
 fn ended(template: &Path, line: &str, out: Stdio, err: Stdio) -> (i32, Vec<(String, String)>) {
     let folder = tempdir().expect("a folder");
     copy(template, folder.path());
@@ -50,11 +50,11 @@ fn ended(template: &Path, line: &str, out: Stdio, err: Stdio) -> (i32, Vec<(Stri
 }
 
 #[test]
-fn readers_that_have_gone_and_full_disks_decide_nothing() {
+fn closed_and_full_streams_change_no_result() {
     let template = template();
     let template = template.path();
     let map = format!("map {} -o O/map.ktx2 --model none", fixtures().join("maps/line_normal.png").display());
-    // What each command prints to standard output, and how it ends.
+    // What each command prints to standard output, and its exit code.
     for (line, code, prints) in [
         ("bake A -o O -q --model none", 1, false),
         ("bake A/2 -o O --model none", 0, true),
@@ -88,14 +88,14 @@ fn readers_that_have_gone_and_full_disks_decide_nothing() {
             assert_eq!(ended(template, line, Stdio::null(), reader()), (code, files.clone()), "{line} 2> {name}");
         }
         assert_eq!(ended(template, line, unread(), unread()), (code, files.clone()), "{line} > unread 2> unread");
-        // What was asked for and could not be printed may be printed another time.
+        // A requested result that could not be printed is worth another try.
         let expected = if prints && matches!(code, 0 | 3) { 4 } else { code };
         assert_eq!(ended(template, line, full(), full()), (expected, files), "{line} > full 2> full");
     }
 }
 
 #[test]
-fn watching_goes_on_when_nobody_listens() {
+fn watching_continues_without_a_reader() {
     let folder = tempdir().expect("a folder");
     let folder = folder.path();
     copy(&fixtures().join("waves"), &folder.join("A"));

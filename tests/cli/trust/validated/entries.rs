@@ -1,4 +1,4 @@
-//! Entries of a cache that others fill: no bake reads, writes or removes anything elsewhere because of them.
+//! Cache entries written by others: no bake reads, writes or removes other files because of them.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,10 +8,10 @@ use tempfile::{TempDir, tempdir};
 
 use crate::process::{Run, copy, files, fixtures, hashes, run};
 
-/// A change, and what is told of it.
+/// A change, and what the warning says about it.
 type Change<'c> = (&'c dyn Fn(&mut Value), &'c str);
 
-/// The folder `A` with `assets` in it, baked to `O` through the cache `C`.
+/// Returns a folder in which `A`, with `assets`, was baked to `O` through the cache `C`.
 fn baked(assets: &[&str]) -> TempDir {
     let folder = tempdir().expect("a folder");
     for asset in assets {
@@ -22,7 +22,7 @@ fn baked(assets: &[&str]) -> TempDir {
     folder
 }
 
-/// Removes the outputs and bakes once more.
+/// Removes the outputs and bakes again.
 fn again(folder: &Path) -> Run {
     let _ = fs::remove_dir_all(folder.join("O"));
     let run = run(folder, "bake A -o O -q --cache C --model none");
@@ -34,7 +34,7 @@ fn entries(folder: &Path) -> Vec<PathBuf> {
     files(&folder.join("C/jobs")).into_iter().map(|(_, path)| path).collect()
 }
 
-/// Changes the entry at `path` and makes its checksum right, as anybody can.
+/// Changes the entry at `path` and corrects its checksum, as anybody can.
 fn forge(path: &Path, change: &dyn Fn(&mut Value)) {
     let mut entry: Value = serde_json::from_slice(&fs::read(path).expect("an entry")[64..]).expect("JSON");
     change(&mut entry);
@@ -42,43 +42,43 @@ fn forge(path: &Path, change: &dyn Fn(&mut Value)) {
     fs::write(path, blake3::hash(text.as_bytes()).to_hex().to_string() + &text).expect("a file");
 }
 
-/// All files but those of the cache.
-fn others(folder: &Path) -> std::collections::BTreeMap<String, String> {
+/// Returns all files except those of the cache.
+fn files_outside_of_the_cache(folder: &Path) -> std::collections::BTreeMap<String, String> {
     let mut all = hashes(folder);
     all.retain(|name, _| !name.starts_with("C/"));
     all
 }
 
-/// Expects one warning that has `part`, the right outputs and no other file touched; then the cache is as good as new.
+/// Expects one warning that contains `part`, correct outputs, no change of other files, and a repaired cache.
 fn expect_harmless(folder: &Path, before: &std::collections::BTreeMap<String, String>, part: &str) {
-    let told = again(folder);
-    assert_eq!(told.err.lines().count(), 1, "{part}: {}", told.err);
-    assert!(told.err.starts_with("warning: A/") && told.err.contains(part), "{part}: {}", told.err);
-    assert_eq!(&others(folder), before, "{part}");
+    let ended = again(folder);
+    assert_eq!(ended.err.lines().count(), 1, "{part}: {}", ended.err);
+    assert!(ended.err.starts_with("warning: A/") && ended.err.contains(part), "{part}: {}", ended.err);
+    assert_eq!(&files_outside_of_the_cache(folder), before, "{part}");
     assert_eq!(again(folder).err, "", "{part}: the entry was dropped");
-    assert_eq!(&others(folder), before, "{part}");
+    assert_eq!(&files_outside_of_the_cache(folder), before, "{part}");
 }
 
 #[test]
-fn an_entry_deletes_no_file_of_its_reader() {
+fn a_cache_entry_deletes_no_file() {
     let scene = baked(&["brushed"]);
     let folder = scene.path();
-    let before = others(folder);
+    let before = files_outside_of_the_cache(folder);
     let absolute = |name: &str| folder.join(name).to_str().expect("a path in UTF-8").to_owned();
     let entry = entries(folder).remove(0);
     for victim in [absolute("victim"), absolute("A/brushed/brushed.gltf"), "../../../victim".into(), "..".into()] {
-        for place in ["/files/0/blake3", "/document/blake3"] {
-            forge(&entry, &|entry| *entry.pointer_mut(place).expect("a member") = json!(victim));
+        for pointer in ["/files/0/blake3", "/document/blake3"] {
+            forge(&entry, &|entry| *entry.pointer_mut(pointer).expect("a member") = json!(victim));
             expect_harmless(folder, &before, "expected the bytes that were stored there, found others");
         }
     }
 }
 
 #[test]
-fn entries_that_change_places_are_of_no_use() {
+fn swapped_entries_are_not_used() {
     let scene = baked(&["brushed", "waves"]);
     let folder = scene.path();
-    let before = others(folder);
+    let before = files_outside_of_the_cache(folder);
     let [first, second] = entries(folder).try_into().expect("two entries");
     let swap = || {
         fs::rename(&first, folder.join("t")).expect("a file");
@@ -86,23 +86,23 @@ fn entries_that_change_places_are_of_no_use() {
         fs::rename(folder.join("t"), &second).expect("a file");
     };
     swap();
-    let told = again(folder);
-    assert_eq!(told.err.matches("expected the entry of this job, found the one of job ").count(), 2, "{}", told.err);
-    assert_eq!(others(folder), before);
+    let ended = again(folder);
+    assert_eq!(ended.err.matches("expected the entry of this job, found the one of job ").count(), 2, "{}", ended.err);
+    assert_eq!(files_outside_of_the_cache(folder), before);
     assert_eq!(again(folder).err, "");
-    // An entry that says that it is of the other job.
+    // An entry that claims to be of the other job.
     swap();
     let name = |path: &Path| path.file_name().expect("a name").to_str().expect("UTF-8").to_owned();
     for path in [&first, &second] {
         forge(path, &|entry| entry["job"] = json!(name(path)));
     }
-    let told = again(folder);
-    assert_eq!(told.err.matches("which the job does not write").count(), 2, "{}", told.err);
-    assert_eq!(others(folder), before);
+    let ended = again(folder);
+    assert_eq!(ended.err.matches("which the job does not write").count(), 2, "{}", ended.err);
+    assert_eq!(files_outside_of_the_cache(folder), before);
 }
 
 #[test]
-fn entries_of_equal_names_are_told_apart() {
+fn entries_of_equal_names_are_distinguished() {
     let folder = tempdir().expect("a folder");
     let folder = folder.path();
     for (name, text) in [("x", "one"), ("y", "two")] {
@@ -111,21 +111,21 @@ fn entries_of_equal_names_are_told_apart() {
         fs::write(asset, json!({ "asset": { "version": "2.0", "generator": text } }).to_string()).expect("a file");
     }
     again(folder);
-    let before = others(folder);
+    let before = files_outside_of_the_cache(folder);
     let [first, second] = entries(folder).try_into().expect("two entries");
     fs::rename(&first, folder.join("t")).expect("a file");
     fs::rename(&second, &first).expect("a file");
     fs::rename(folder.join("t"), &second).expect("a file");
     assert_eq!(again(folder).err.matches("found the one of job ").count(), 2);
-    assert_eq!(others(folder), before, "the wrong asset is in place");
+    assert_eq!(files_outside_of_the_cache(folder), before, "the wrong asset is in place");
 }
 
 #[test]
-fn an_entry_has_what_its_job_writes_and_nothing_else() {
+fn an_entry_holds_exactly_the_outputs_of_its_job() {
     let scene = baked(&["brushed"]);
     let folder = scene.path();
     fs::write(folder.join("A/brushed/other.txt"), "no input").expect("a file");
-    let before = others(folder);
+    let before = files_outside_of_the_cache(folder);
     let entry = entries(folder).remove(0);
     let file = |entry: &Value, path: &str| {
         let mut file = entry["document"].clone();
@@ -151,20 +151,21 @@ fn an_entry_has_what_its_job_writes_and_nothing_else() {
         ),
         (&|entry| entry["files"] = json!([file(entry, "brushed.gltf")]), "one with the file \"brushed.gltf\""),
     ];
-    for (change, told) in changes {
+    for (change, warning) in changes {
         forge(&entry, change);
-        expect_harmless(folder, &before, told);
+        expect_harmless(folder, &before, warning);
     }
 }
 
 #[test]
-fn an_entry_of_an_earlier_format_is_baked_again_without_a_word() {
+fn an_entry_of_an_earlier_format_is_baked_again_without_a_warning() {
     let scene = baked(&["brushed"]);
-    let before = others(scene.path());
+    let before = files_outside_of_the_cache(scene.path());
     let entry = entries(scene.path()).remove(0);
-    forge(&entry, &|entry| entry.as_object_mut().expect("members").retain(|name, _| name != "format" && name != "job"));
+    let is_kept = |name: &String| name != "formatVersion" && name != "job";
+    forge(&entry, &|entry| entry.as_object_mut().expect("members").retain(|name, _| is_kept(name)));
     assert_eq!(again(scene.path()).err, "");
-    assert_eq!(others(scene.path()), before);
+    assert_eq!(files_outside_of_the_cache(scene.path()), before);
 }
 
 #[cfg(unix)]
@@ -172,16 +173,16 @@ fn an_entry_of_an_earlier_format_is_baked_again_without_a_word() {
 fn a_pipe_in_a_cache_is_not_waited_for() {
     let scene = baked(&["brushed"]);
     let folder = scene.path();
-    let before = others(folder);
+    let before = files_outside_of_the_cache(folder);
     for (_, path) in files(&folder.join("C")) {
         fs::remove_file(&path).expect("a file");
         assert!(std::process::Command::new("mkfifo").arg(&path).status().expect("mkfifo").success());
     }
-    let told = again(folder);
+    let ended = again(folder);
     assert!(
-        told.err.contains("expected a cache that can be read and written, found: not an ordinary file"),
+        ended.err.contains("expected a cache that can be read and written, found: not an ordinary file"),
         "{}",
-        told.err
+        ended.err
     );
-    assert_eq!(others(folder), before);
+    assert_eq!(files_outside_of_the_cache(folder), before);
 }

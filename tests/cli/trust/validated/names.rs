@@ -1,4 +1,4 @@
-//! Folders whose names are not UTF-8: JSON stays JSON, and other assets are not concerned.
+//! Tests that names that are not UTF-8 do not break JSON and do not affect other assets.
 #![cfg(unix)]
 
 use std::ffi::OsStr;
@@ -11,7 +11,7 @@ use tempfile::{TempDir, tempdir};
 use crate::process::{copy, fixtures, run};
 use crate::watch::session::Session;
 
-/// The folder `assets` with an asset of each kind of name.
+/// Writes the folder `assets` with an asset for each kind of name.
 fn scene() -> TempDir {
     let folder = tempdir().expect("a folder");
     let assets = folder.path().join("assets");
@@ -21,13 +21,17 @@ fn scene() -> TempDir {
 }
 
 #[test]
-fn a_plan_leaves_out_what_it_cannot_name() {
+fn a_plan_leaves_out_names_that_are_not_utf_8() {
     let scene = scene();
     for line in ["plan assets -o out --json", "plan assets -o out"] {
-        let told = run(scene.path(), line);
-        assert_eq!((told.code, told.err.lines().count()), (1, 1), "{}", told.err);
+        let ended = run(scene.path(), line);
+        assert_eq!((ended.code, ended.err.lines().count()), (1, 1), "{}", ended.err);
         let part = "expected a path in UTF-8 for the plan, found ";
-        assert!(told.err.starts_with("error: assets/\u{fffd}/waves.glb: ") && told.err.contains(part), "{}", told.err);
+        assert!(
+            ended.err.starts_with("error: assets/\u{fffd}/waves.glb: ") && ended.err.contains(part),
+            "{}",
+            ended.err
+        );
     }
     let plan: Value = serde_json::from_str(&run(scene.path(), "plan assets -o out --json").out).expect("JSON");
     assert_eq!(plan["jobs"].as_array().expect("jobs").len(), 1);
@@ -35,7 +39,7 @@ fn a_plan_leaves_out_what_it_cannot_name() {
 }
 
 #[test]
-fn watching_goes_on_and_every_event_is_json() {
+fn watching_continues_and_every_event_is_json() {
     let scene = scene();
     let folder = scene.path();
     let mut session = Session::start(folder, "--model none");
@@ -50,7 +54,7 @@ fn watching_goes_on_and_every_event_is_json() {
 }
 
 #[test]
-fn reports_and_checks_are_json_whatever_a_folder_is_called() {
+fn reports_and_checks_are_json_for_any_folder_name() {
     let scene = scene();
     for line in [
         "bake assets -o out --json --model none --cache cache",
@@ -58,8 +62,8 @@ fn reports_and_checks_are_json_whatever_a_folder_is_called() {
         "check out --format sarif",
         "check out --source assets --model none --format json",
     ] {
-        let told = run(scene.path(), line);
-        assert!(matches!(told.code, 0 | 3), "{line}: {} {}", told.code, told.err);
-        assert!(serde_json::from_str::<Value>(&told.out).is_ok(), "{line}: {}", told.out);
+        let ended = run(scene.path(), line);
+        assert!(matches!(ended.code, 0 | 3), "{line}: {} {}", ended.code, ended.err);
+        assert!(serde_json::from_str::<Value>(&ended.out).is_ok(), "{line}: {}", ended.out);
     }
 }

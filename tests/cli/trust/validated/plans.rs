@@ -1,4 +1,4 @@
-//! Plans that were edited: no job of them writes where the user did not say, and none is tried again and again.
+//! Edited plans: no job writes to a folder that the user did not name, and no job is retried without end.
 
 use std::fs;
 use std::path::Path;
@@ -8,10 +8,10 @@ use tempfile::{TempDir, tempdir};
 
 use crate::process::{copy, done, files, fixtures, hashes, run};
 
-/// A change, and what is told of it.
+/// A change, and what the error says about it.
 type Change<'c> = (&'c dyn Fn(&mut Value), &'c str);
 
-/// A working folder `here` with two assets and their plan `p.json`, which writes to `out`.
+/// Writes a working folder `here` with two assets and their plan `p.json`, which writes to `out`.
 fn scene() -> TempDir {
     let scene = tempdir().expect("a folder");
     let here = scene.path().join("here");
@@ -22,7 +22,7 @@ fn scene() -> TempDir {
     scene
 }
 
-/// Changes the plan, with `change` for each job.
+/// Applies `change` to each job of the plan.
 fn edit(here: &Path, change: &dyn Fn(&mut Value)) {
     let mut plan: Value = serde_json::from_slice(&fs::read(here.join("p.json")).expect("a plan")).expect("JSON");
     plan["jobs"].as_array_mut().expect("jobs").iter_mut().for_each(change);
@@ -49,9 +49,9 @@ fn output_folders_of_a_plan_lie_in_the_working_folder_and_apart_from_the_sources
             }
         });
         let before = hashes(scene.path());
-        let told = run(&here, "bake --plan p.json -q");
-        assert_eq!((told.code, told.err.lines().count()), (2, 1), "{output}: {}", told.err);
-        assert!(told.err.starts_with("error: p.json: ") && told.err.contains(part), "{output}: {}", told.err);
+        let ended = run(&here, "bake --plan p.json -q");
+        assert_eq!((ended.code, ended.err.lines().count()), (2, 1), "{output}: {}", ended.err);
+        assert!(ended.err.starts_with("error: p.json: ") && ended.err.contains(part), "{output}: {}", ended.err);
         assert_eq!(hashes(scene.path()), before, "{output}: no job of the plan is run");
         assert!(!here.join("new").exists() && !here.join("out").exists());
     }
@@ -64,16 +64,16 @@ fn a_link_leads_out_of_the_working_folder_only_if_it_is_named() {
     let here = scene.path().join("here");
     fs::create_dir(scene.path().join("disk")).expect("a folder");
     std::os::unix::fs::symlink("../disk", here.join("out")).expect("a link");
-    let told = run(&here, "bake --plan p.json -q");
-    assert!(told.code == 2 && told.err.contains("name the folder with -o"), "{}", told.err);
+    let ended = run(&here, "bake --plan p.json -q");
+    assert!(ended.code == 2 && ended.err.contains("name the folder with -o"), "{}", ended.err);
     assert!(files(&scene.path().join("disk")).is_empty());
     done(&here, "bake --plan p.json -q -o out");
     assert!(scene.path().join("disk/waves/waves.gltf").is_file());
-    // A link to the sources is no way around them.
+    // A link to the sources does not circumvent the check.
     std::os::unix::fs::symlink("A", here.join("link")).expect("a link");
     edit(&here, &|job| job["output"] = json!("link"));
-    let told = run(&here, "bake --plan p.json -q");
-    assert!(told.code == 2 && told.err.contains("found that link is or holds the folder of A/"), "{}", told.err);
+    let ended = run(&here, "bake --plan p.json -q");
+    assert!(ended.code == 2 && ended.err.contains("found that link is or holds the folder of A/"), "{}", ended.err);
 }
 
 #[test]
@@ -111,16 +111,16 @@ fn a_job_whose_plan_was_edited_fails_for_good_and_the_others_do_not() {
             }
         });
         let sources = hashes(&here.join("A"));
-        let told = run(&here, "bake --plan p.json -q");
-        assert_eq!((told.code, told.err.lines().count()), (1, 1), "{part}: {}", told.err);
-        assert!(told.err.starts_with("error: A/brushed/brushed.gltf: ") && told.err.contains(part), "{}", told.err);
+        let ended = run(&here, "bake --plan p.json -q");
+        assert_eq!((ended.code, ended.err.lines().count()), (1, 1), "{part}: {}", ended.err);
+        assert!(ended.err.starts_with("error: A/brushed/brushed.gltf: ") && ended.err.contains(part), "{}", ended.err);
         assert!(here.join("out/waves/waves.gltf").is_file() && !here.join("out/brushed").exists());
         assert_eq!(hashes(&here.join("A")), sources);
     }
 }
 
 #[test]
-fn ids_and_digests_that_are_none_are_no_plan_and_no_report() {
+fn plans_and_reports_with_invalid_ids_and_digests_are_rejected() {
     for (member, value) in [
         ("/id", "../../victim"),
         ("/id", "ABCDEF"),
@@ -133,18 +133,19 @@ fn ids_and_digests_that_are_none_are_no_plan_and_no_report() {
         let here = scene.path().join("here");
         edit(&here, &|job| *job.pointer_mut(member).expect("a member") = json!(value));
         for line in ["bake --plan p.json -q", "plan merge p.json"] {
-            let told = run(&here, line);
-            assert!(told.code == 2 && told.err.contains("expected a plan as"), "{member}: {}", told.err);
+            let ended = run(&here, line);
+            assert!(ended.code == 2 && ended.err.contains("expected a plan as"), "{member}: {}", ended.err);
         }
     }
     let scene = scene();
     let here = scene.path().join("here");
-    let report = json!({ "assets": [{ "job": "0".repeat(63), "input": "A/brushed/brushed.gltf" }] });
+    let report =
+        json!({ "formatVersion": 1, "assets": [{ "job": "0".repeat(63), "input": "A/brushed/brushed.gltf" }] });
     fs::write(here.join("r.json"), report.to_string()).expect("a file");
-    let told = run(&here, "plan merge p.json r.json");
+    let ended = run(&here, "plan merge p.json r.json");
     assert!(
-        told.code == 2 && told.err.contains("expected a digest of 64 lower-case hexadecimal digits"),
+        ended.code == 2 && ended.err.contains("expected a digest of 64 lower-case hexadecimal digits"),
         "{}",
-        told.err
+        ended.err
     );
 }

@@ -1,4 +1,4 @@
-//! Output folders that lead to sources or elsewhere, by dots and by links.
+//! Output folders that lead to sources or elsewhere through `..` or links.
 
 use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
@@ -11,7 +11,7 @@ use super::*;
 const APART: &str = "expected an output folder apart from the inputs";
 
 #[test]
-fn a_way_through_a_folder_that_is_not_there_yet_is_seen_through() {
+fn a_path_through_a_missing_folder_is_resolved() {
     let scene = scene();
     let folder = scene.path();
     for output in ["build/../A", "x/y/../../A", "A/../build/../A/.", "A/new/.."] {
@@ -25,13 +25,13 @@ fn a_way_through_a_folder_that_is_not_there_yet_is_seen_through() {
     refused(folder, "bake A -q", 1, &[APART]);
     fs::remove_file(folder.join("A/roughcast.toml")).expect("a file");
     assert!(!folder.join("build").exists());
-    // What leads elsewhere works.
+    // Paths that lead to other folders work.
     done(folder, "bake A -o build/../O -q");
     assert!(folder.join("O/brushed.gltf").is_file());
 }
 
 #[test]
-fn a_plan_that_leads_to_the_sources_is_not_run() {
+fn a_plan_that_writes_to_the_sources_is_not_run() {
     let scene = scene();
     let folder = scene.path();
     let plan = done(folder, "plan A -o out --json");
@@ -54,9 +54,9 @@ fn watch_does_not_bake_over_the_sources() {
     let mut child =
         command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().expect("the command starts");
     let mut lines = BufReader::new(child.stderr.take().expect("a pipe")).lines();
-    let (sender, told) = channel();
+    let (sender, first_line) = channel();
     thread::spawn(move || sender.send(lines.next()));
-    let line = told.recv_timeout(Duration::from_secs(100));
+    let line = first_line.recv_timeout(Duration::from_secs(100));
     child.kill().expect("a process");
     child.wait().expect("an end");
     assert_eq!(hashes(&folder.join("A")), before, "a source changed");
@@ -92,7 +92,7 @@ fn links_that_lead_out_of_the_output_folder_are_not_followed() {
 
 #[cfg(unix)]
 #[test]
-fn links_inside_of_the_output_folder_and_to_all_of_it_are_fine() {
+fn links_within_and_to_the_output_folder_work() {
     use std::os::unix::fs::symlink;
     let scene = scene();
     let folder = scene.path();
@@ -103,7 +103,7 @@ fn links_inside_of_the_output_folder_and_to_all_of_it_are_fine() {
     assert!(folder.join("disk/brushed.gltf").is_file() && hashes(&folder.join("disk/textures")).len() > 2);
 }
 
-/// A folder of a cache that leads elsewhere is not written to.
+/// A bake does not write to a folder of the cache that is a link to another folder.
 #[cfg(unix)]
 #[test]
 fn a_cache_is_not_written_to_through_links() {

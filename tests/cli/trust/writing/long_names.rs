@@ -1,8 +1,8 @@
-//! Names that are too long for a file system are cut in names of outputs.
+//! Output names that are too long for a file system are shortened.
 
 use super::*;
 
-/// `waves.glb` with its material called `name`.
+/// Returns `waves.glb` with its material called `name`.
 fn glb(name: &str) -> Vec<u8> {
     let bytes = fs::read(fixtures().join("waves/waves.glb")).expect("a file");
     let length = u32::from_le_bytes(bytes[12..16].try_into().expect("a word")) as usize;
@@ -22,7 +22,7 @@ fn assert_fit(folder: &Path) {
 }
 
 #[test]
-fn of_materials() {
+fn long_names_of_materials_are_shortened() {
     for name in ["a".repeat(300), "ä".repeat(125), "\u{1f4a7}".repeat(64)] {
         let scene = tempdir().expect("a folder");
         let folder = scene.path();
@@ -33,10 +33,10 @@ fn of_materials() {
 }
 
 #[test]
-fn of_assets() {
+fn long_names_of_assets_are_shortened() {
     let scene = tempdir().expect("a folder");
     let folder = scene.path();
-    // They differ at the end only.
+    // The names differ only at their ends.
     let stem = "w".repeat(249);
     for last in ["1", "2"] {
         copy(&fixtures().join("waves"), &folder.join("A"));
@@ -54,7 +54,7 @@ fn of_assets() {
 }
 
 #[test]
-fn of_images() {
+fn long_names_of_images_are_shortened() {
     let scene = scene();
     let folder = scene.path();
     for (name, letter) in [("brushed_normal", "n"), ("brushed_surface", "s")] {

@@ -57,7 +57,7 @@ fn the_rest_of_a_plan_replaces_nothing_that_the_plan_is_about() {
     done(folder, "plan merge plan.json r.json --rest rest.json");
 }
 
-/// Files of the asset, not only the asset itself, are called as outputs are.
+/// Outputs must not replace any file of the asset, not only its document.
 #[test]
 fn pictures_and_charts_replace_no_file_of_the_asset() {
     let scene = scene();
@@ -105,7 +105,7 @@ fn a_map_is_written_to_ktx2_files_only_and_not_over_its_sources() {
     assert!(!folder.join("x.png").exists() && !folder.join("x").exists());
 }
 
-/// `init` never replaces a file, and no command leaves a part of one: every byte is one too many for `ulimit -f 0`.
+/// `init` never replaces a file, and no command leaves a part of one. `ulimit -f 0` makes every write fail.
 #[cfg(unix)]
 #[test]
 fn configurations_and_pages_are_written_whole_or_not_at_all() {

@@ -1,9 +1,9 @@
-//! A `roughcast.toml` that came with assets is not one of the user's own.
+//! A `roughcast.toml` that was delivered with assets has fewer rights than one of the user.
 
 use super::*;
 use crate::process::{roughcast_in, roughcast_with};
 
-/// `home/.profile`, and a pack in `away` whose buffer is called so, with `config`.
+/// Writes `home/.profile`, and a pack in `away` with `config`, whose buffer refers to that file.
 fn pack(config: &str) -> TempDir {
     let scene = tempdir().expect("a folder");
     let folder = scene.path();
@@ -23,7 +23,7 @@ fn output(name: &str) -> String {
 }
 
 #[test]
-fn it_sends_outputs_to_no_folder_outside_of_the_working_folder() {
+fn a_pack_writes_to_no_folder_outside_of_the_working_folder() {
     for name in ["../../home", "../../home/new", "..", "../../away", "../.config", "../out/.hidden/x"] {
         let scene = pack(&output(name));
         let folder = scene.path().join("away");
@@ -41,7 +41,7 @@ fn it_sends_outputs_to_no_folder_outside_of_the_working_folder() {
 
 #[cfg(unix)]
 #[test]
-fn it_sends_them_through_no_link_either() {
+fn a_pack_writes_through_no_link() {
     let scene = pack(&output("../out"));
     let folder = scene.path().join("away");
     std::os::unix::fs::symlink("../home", folder.join("out")).expect("a link");
@@ -51,7 +51,7 @@ fn it_sends_them_through_no_link_either() {
 }
 
 #[test]
-fn a_file_of_the_users_own_names_any_folder() {
+fn a_file_of_the_user_may_name_any_folder() {
     let scene = pack(&output("../../home/new"));
     let folder = scene.path().join("away");
     done(&folder, "bake pack -q --config pack/roughcast.toml");
@@ -67,7 +67,7 @@ fn a_file_of_the_users_own_names_any_folder() {
 }
 
 #[test]
-fn its_server_gets_no_headers_and_no_files_from_elsewhere() {
+fn the_server_of_a_pack_gets_no_headers_and_no_other_files() {
     let header = [("ROUGHCAST_REMOTE_HEADER", "authorization=secret")];
     let remote = |rest: &str| format!("[remote]\nurl = 'grpc://localhost:1'\nretries = 0\n{rest}");
     let scene = pack(&remote(""));
@@ -77,9 +77,11 @@ fn its_server_gets_no_headers_and_no_files_from_elsewhere() {
     assert_eq!(run.code, 2, "{}", run.err);
     assert!(run.err.contains("pack/roughcast.toml: expected no server beside ROUGHCAST_REMOTE_HEADER"), "{}", run.err);
     assert!(!run.err.contains("secret"), "{}", run.err);
-    // These are the user's own, and go on to where the server is asked.
-    for (line, place) in [("bake . -o ../O -q", "pack"), ("bake pack -o O -q --config pack/roughcast.toml", ".")] {
-        let run = roughcast_with(&header, &folder.join(place), words(line));
+    // These settings are of the user, and go on until the server is asked.
+    for (line, working_folder) in
+        [("bake . -o ../O -q", "pack"), ("bake pack -o O -q --config pack/roughcast.toml", ".")]
+    {
+        let run = roughcast_with(&header, &folder.join(working_folder), words(line));
         assert!(run.code != 0 && !run.err.contains("expected no server"), "{}", run.err);
     }
     for key in ["tool", "ca", "cert", "key"] {

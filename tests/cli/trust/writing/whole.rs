@@ -1,15 +1,16 @@
-//! Files come whole, with the rights that the umask gives, and temporary ones do not stay.
+//! Tests that files are written completely, with the permissions of the umask, and that temporary files are removed.
 
 use std::process::Command;
 use std::time::{Duration, SystemTime};
 
 use super::*;
-use crate::process::{files, skipped};
+use crate::process::files;
+use crate::skip::skip;
 
 const DAY: Duration = Duration::from_secs(86_400);
 
 #[test]
-fn what_a_killed_run_left_is_swept_wherever_a_run_writes() {
+fn leftovers_of_a_killed_run_are_removed_wherever_a_run_writes() {
     let scene = scene();
     let folder = scene.path();
     fs::create_dir(folder.join("A/textures")).expect("a folder");
@@ -21,15 +22,15 @@ fn what_a_killed_run_left_is_swept_wherever_a_run_writes() {
     let blobs = Path::new(blob).parent().expect("a folder").to_str().expect("UTF-8");
     let now = SystemTime::now();
     for (number, date) in [now - DAY, now + DAY].into_iter().enumerate() {
-        for place in ["O", "O/textures", "O/brushed.roughcast", "cache/jobs", blobs] {
-            let path = folder.join(place).join(format!(".roughcast-{number}"));
+        for name in ["O", "O/textures", "O/brushed.roughcast", "cache/jobs", blobs] {
+            let path = folder.join(name).join(format!(".roughcast-{number}"));
             fs::write(&path, "half").expect("a file");
             fs::File::options().write(true).open(path).and_then(|file| file.set_modified(date)).expect("a file");
         }
     }
     done(folder, "bake A -o O -q --cache cache");
     assert_eq!(hashes(folder), clean);
-    // One of a run under way stays.
+    // A temporary file of a running bake stays.
     fs::write(folder.join("O/textures/.roughcast-new"), "half").expect("a file");
     done(folder, "bake A -o O -q --cache cache");
     assert!(folder.join("O/textures/.roughcast-new").exists());
@@ -37,7 +38,7 @@ fn what_a_killed_run_left_is_swept_wherever_a_run_writes() {
 
 #[cfg(unix)]
 #[test]
-fn files_have_the_rights_that_the_umask_gives() {
+fn files_have_the_permissions_of_the_umask() {
     use std::os::unix::fs::PermissionsExt;
     for (umask, mode) in [("077", 0o600), ("002", 0o664), ("022", 0o644)] {
         let scene = scene();
@@ -59,7 +60,7 @@ fn files_have_the_rights_that_the_umask_gives() {
     }
 }
 
-/// The third file is too large for the limit, or the document's place is taken.
+/// The third file exceeds the limit, or the path of the document is taken.
 #[cfg(unix)]
 #[test]
 fn an_asset_that_cannot_be_written_leaves_nothing_behind() {
@@ -76,10 +77,10 @@ fn an_asset_that_cannot_be_written_leaves_nothing_behind() {
     assert!(!folder.join("O/brushed.roughcast").exists());
 }
 
-/// A name that is not on the disk is gone after a power failure, whatever its file holds.
+/// A name that was not synced is lost after a power failure, even if its file was synced.
 #[cfg(target_os = "linux")]
 #[test]
-fn names_are_on_the_disk_before_the_document_is_seen_and_after() {
+fn names_are_synced_before_and_after_the_document_is_renamed() {
     let scene = scene();
     let folder = scene.path();
     let command = Command::new("strace")
@@ -91,8 +92,7 @@ fn names_are_on_the_disk_before_the_document_is_seen_and_after() {
     match command {
         Ok(output) if output.status.success() => {}
         _ => {
-            skipped("syncing folders needs strace and the right to trace");
-            return;
+            return skip("syncing folders needs strace and the right to trace");
         }
     }
     let trace = fs::read_to_string(folder.join("trace")).expect("a trace");

@@ -1,0 +1,257 @@
+//! Step 9: the textures and layers of all bump maps become a document with its files and a report.
+
+use std::collections::{BTreeSet, HashSet};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::baked_asset::BakedAsset;
+use super::compact::compact;
+use super::container;
+use super::encode::ktx2_files;
+use super::error::BakeError;
+use super::extension::{EXTENSION, Extension, RangedTexture};
+use super::file::NewFile;
+use super::group_output::{AnisotropyChange, GroupOutput, GroupTexture, PyramidUse};
+use super::names::Names;
+use super::provenance::DocumentProvenance;
+use super::reader::Reader;
+use crate::gltf::document::Document;
+use crate::gltf::extensions::declare;
+use crate::gltf::json::Json;
+use crate::gltf::rewrite::{NewImage, NewTexture, add_textures};
+use crate::gltf::texture::ImageLocation;
+use crate::gltf::uri::{encode_path, relative_path};
+use crate::material::Range;
+use crate::report::{AssetReport, LayerReport, TextureReport};
+use crate::settings::{Form, Settings};
+
+/// The textures and layers of all bump maps, on their way into the document.
+pub struct Assembly<'a> {
+    reader: &'a Reader<'a>,
+    settings: &'a Settings,
+    document: Document,
+    names: Names,
+    /// Images whose digests textures record.
+    recorded: BTreeSet<Arc<ImageLocation>>,
+    textures: Vec<NewTexture>,
+    ranges: Vec<Option<Range>>,
+    /// The BIN chunk of a .glb that becomes a file.
+    bin: Option<NewFile>,
+    files: Vec<NewFile>,
+    /// JSON pointers of roughness factors that textures now include.
+    roughness_factors: Vec<String>,
+    anisotropies: Vec<AnisotropyChange>,
+    pyramids: Vec<PyramidUse>,
+    report: AssetReport,
+}
+
+impl<'a> Assembly<'a> {
+    /// Starts with a copy of the source document in the requested container.
+    pub fn new(reader: &'a Reader<'a>, settings: &'a Settings) -> Result<Self, BakeError> {
+        let source = reader.source;
+        let (document, bin) =
+            if settings.glb { (container::to_glb(reader)?, None) } else { container::to_gltf(source)? };
+        Ok(Self {
+            reader,
+            settings,
+            document,
+            names: Names::new(source.stem),
+            recorded: BTreeSet::new(),
+            textures: Vec::new(),
+            ranges: Vec::new(),
+            bin,
+            files: Vec::new(),
+            roughness_factors: Vec::new(),
+            anisotropies: Vec::new(),
+            pyramids: Vec::new(),
+            report: AssetReport::default(),
+        })
+    }
+
+    /// Adds the textures and layers of a bump map.
+    pub fn add(&mut self, output: GroupOutput) -> Result<(), BakeError> {
+        let first = self.textures.len();
+        for (texture, ktx2) in ktx2_files(output.textures, self.settings)? {
+            self.add_texture(texture, ktx2)?;
+        }
+        for layer in output.layers {
+            self.roughness_factors.extend(layer.roughness_factor);
+            self.anisotropies.push(layer.anisotropy);
+            self.pyramids.extend(layer.pyramid.map(|used| PyramidUse {
+                offset: first + used.offset,
+                roughness: used.roughness.map(|roughness| first + roughness),
+                ..used
+            }));
+            self.report.layers.push(layer.report);
+        }
+        Ok(())
+    }
+
+    fn add_texture(
+        &mut self,
+        GroupTexture { texture, stem, sources, slots, sampler }: GroupTexture,
+        ktx2: Vec<u8>,
+    ) -> Result<(), BakeError> {
+        if self.settings.provenance {
+            self.recorded.extend(sources.into_iter().map(|(location, _)| location));
+        }
+        let path = self.names.unique(&stem, texture.content.name());
+        let name = path.rsplit('/').next().unwrap_or(&path).to_owned();
+        let mip_chain = texture.mip_chain;
+        self.report.textures.push(TextureReport {
+            path: format!("{path}.ktx2"),
+            content: texture.content,
+            width: mip_chain.width,
+            height: mip_chain.height,
+            levels: mip_chain.level_count(),
+            trimmed: mip_chain.trimmed,
+            bytes: ktx2.len(),
+            range: texture.range.clone(),
+        });
+        let ktx2 = self.add_image(&path, "ktx2", ktx2)?;
+        let source = match (mip_chain.fallback, self.settings.form) {
+            (Some(png), _) => Some(self.add_image(&path, "png", png)?),
+            (None, Form::Dual) => Some(ktx2.clone()),
+            (None, _) => None,
+        };
+        self.ranges.push(texture.range);
+        self.textures.push(NewTexture { name, ktx2, source, sampler, slots });
+        Ok(())
+    }
+
+    fn add_image(&mut self, path: &str, extension: &str, bytes: Vec<u8>) -> Result<NewImage, BakeError> {
+        if self.settings.glb {
+            let view = container::embed(&mut self.document, &bytes)?;
+            let mime = if extension == "ktx2" { "image/ktx2" } else { "image/png" };
+            return Ok(NewImage::BufferView { view, mime });
+        }
+        let path = format!("{path}.{extension}");
+        let uri = encode_path(&path);
+        self.files.push(NewFile { path: PathBuf::from(path), bytes });
+        Ok(NewImage::File(uri))
+    }
+
+    /// Writes the document. The report gets the layers without bumps, too.
+    pub fn finish(mut self, flat: Vec<LayerReport>) -> Result<BakedAsset, BakeError> {
+        let json = self.document.json_mut();
+        // Base lobes are written first, so that their textures count as needed when textures are added.
+        write_base_lobes(json, &self.pyramids)?;
+        let indices = add_textures(json, &self.textures)?;
+        write_factors(json, &self.roughness_factors, &self.anisotropies)?;
+        write_pyramids(json, &self.pyramids, &indices, &self.ranges)?;
+        self.finish_container()?;
+        self.write_provenance()?;
+        let mut copies = container::files(self.document.json())?;
+        let new: HashSet<&Path> = self.files.iter().map(|file| file.path.as_path()).collect();
+        copies.retain(|copy| !new.contains(copy.as_path()));
+        self.report.layers.extend(flat);
+        self.report.layers.sort_by_key(|layer| (layer.index, layer.layer));
+        Ok(BakedAsset {
+            document: self.document.to_bytes()?,
+            container: self.document.container(),
+            files: self.files,
+            copies,
+            report: self.report,
+        })
+    }
+
+    /// Moves files into a .glb, and removes what only replaced images needed from the binary chunk.
+    fn finish_container(&mut self) -> Result<(), BakeError> {
+        let source = self.reader.source;
+        if self.settings.glb {
+            container::embed_images(&mut self.document, source)?;
+            container::compact_glb(&mut self.document, source.document)?;
+        }
+        if let Some(NewFile { path, bytes }) = self.bin.take() {
+            let bytes = compact(self.document.json_mut(), source.document.json(), bytes)?;
+            self.files.extend(bytes.map(|bytes| NewFile { path, bytes }));
+        }
+        Ok(())
+    }
+
+    fn write_provenance(&mut self) -> Result<(), BakeError> {
+        if self.settings.provenance && !self.textures.is_empty() {
+            let recorded: BTreeSet<PathBuf> = self.recorded.iter().filter_map(|location| file_of(location)).collect();
+            let provenance = DocumentProvenance::new(self.reader, &self.files, |path| recorded.contains(path))?;
+            provenance.write(self.document.json_mut())?;
+        }
+        Ok(())
+    }
+}
+
+fn write_base_lobes(json: &mut Json, pyramids: &[PyramidUse]) -> Result<(), BakeError> {
+    for pyramid in pyramids {
+        if let Some(base_lobe) = &pyramid.base_lobe {
+            json.set(&format!("{}/baseLobe", pyramid.pointer), base_lobe)?;
+        }
+    }
+    Ok(())
+}
+
+/// Sets the factors of textures that include them, and of anisotropies that are replaced.
+fn write_factors(
+    json: &mut Json,
+    roughness_factors: &[String],
+    anisotropies: &[AnisotropyChange],
+) -> Result<(), BakeError> {
+    for pointer in roughness_factors {
+        json.set(pointer, &1)?;
+    }
+    let mut extensions = BTreeSet::new();
+    for change in anisotropies {
+        if let AnisotropyChange::Baked { strength, rotation, extension } = change {
+            json.set(strength, &1)?;
+            json.remove(rotation)?;
+            extensions.insert(*extension);
+        }
+    }
+    for extension in extensions {
+        declare(json, extension, false)?;
+    }
+    for change in anisotropies {
+        if let AnisotropyChange::Dropped { strength } = change {
+            json.set(strength, &0)?;
+        }
+    }
+    Ok(())
+}
+
+/// Writes the extension of the pyramid profile. `indices` and `ranges` are those of all new textures.
+fn write_pyramids(
+    json: &mut Json,
+    pyramids: &[PyramidUse],
+    indices: &[usize],
+    ranges: &[Option<Range>],
+) -> Result<(), BakeError> {
+    for pyramid in pyramids {
+        let ranged = |index: usize, factor: f32| RangedTexture {
+            texture: indices[index],
+            range: ranges[index].clone().unwrap_or_default().scaled(factor),
+        };
+        let extension = Extension::new(
+            ranged(pyramid.offset, pyramid.slope_scale),
+            // A negative scale mirrors the offsets and leaves the roughness unchanged.
+            pyramid.roughness.map(|index| ranged(index, pyramid.slope_scale.abs())),
+            pyramid.correction,
+            pyramid.frame,
+            &pyramid.mapping,
+            pyramid.base_lobe.clone(),
+        );
+        if !extension.is_finite() {
+            return Err(BakeError::NotFinite { pointer: pyramid.pointer.clone() });
+        }
+        json.set(&pyramid.pointer, &extension)?;
+    }
+    if !pyramids.is_empty() {
+        declare(json, EXTENSION, false)?;
+    }
+    Ok(())
+}
+
+/// Returns the path of an image that is a file.
+fn file_of(location: &ImageLocation) -> Option<PathBuf> {
+    match location {
+        ImageLocation::Uri(uri) => relative_path(uri).ok(),
+        ImageLocation::BufferView(_) => None,
+    }
+}

@@ -1,0 +1,154 @@
+//! Steps 3 to 8 of one group of layers: its images, then [`bake_bump_map`], then what becomes of its layers.
+
+use std::borrow::Cow;
+use std::sync::Arc;
+
+use super::bake_bump_map::bake_bump_map;
+use super::decode::{BaseImages, Images};
+use super::error::BakeError;
+use super::frame::offset_frame;
+use super::geometry::Geometry;
+use super::group::{BumpMapGroup, GroupLayer};
+use super::group_output::GroupOutput;
+use super::lobes::{AnisotropyInput, BaseInput, LayerInput, PreparedBase};
+use super::offsets::MapOffsets;
+use super::pyramid::PyramidInput;
+use super::reader::Reader;
+use crate::gltf::density::NoDensity;
+use crate::material::notes;
+use crate::settings::{Finest, Settings};
+
+/// Bakes `group`.
+///
+/// # Errors
+/// [`BakeError`] for the first image that cannot be baked.
+pub fn bake_group(
+    group: &BumpMapGroup,
+    reader: &Reader<'_>,
+    geometry: &Geometry<'_>,
+    settings: &Settings,
+) -> Result<GroupOutput, BakeError> {
+    let bake = GroupBake { group, images: Images::new(reader, settings.max_texels), settings, geometry };
+    // Decoders have one thread each, and the bump map takes the longest.
+    let (bump_map, first_base) = rayon::join(|| bake.images.bump_map(group), || bake.first_base());
+    let ((bump_map, mut map_notes), first_base) = (bump_map?, first_base?);
+    let map = MapOffsets::new(&bump_map, settings, group.source.wrap)?;
+    map_notes.extend(notes::of_bump_map(&bump_map, map.bumps.size()));
+    let lobe_groups = group.lobe_groups();
+    let first = bake.first_level(&group.layers, map.bumps.size());
+    let products = bake_bump_map(&map, first, bake.inputs(&map, &lobe_groups, first_base), || {
+        bake.pyramid_inputs(&map, &lobe_groups)
+    })?;
+    let notes = |layer: &GroupLayer| bake.notes(layer, &map_notes, map.bumps.size());
+    let output = GroupOutput::new(group, &bake.images, settings, products, &lobe_groups, notes);
+    drop(map);
+    // The system takes memory back page by page, for 10 ms after 4096 x 4096: files are made meanwhile.
+    rayon::spawn(|| drop(bump_map));
+    Ok(output)
+}
+
+/// A group on its way through the steps.
+struct GroupBake<'a> {
+    group: &'a BumpMapGroup,
+    images: Images<'a>,
+    settings: &'a Settings,
+    geometry: &'a Geometry<'a>,
+}
+
+impl GroupBake<'_> {
+    /// Decodes the base lobe of the first layer and builds its levels.
+    fn first_base(&self) -> Result<Option<PreparedBase<'static>>, BakeError> {
+        let Some(layer) = self.group.layers.first() else { return Ok(None) };
+        Ok(Some(PreparedBase::with_levels(self.base_input(layer)?, self.settings)?))
+    }
+
+    fn base_input(&self, layer: &GroupLayer) -> Result<BaseInput<'static>, BakeError> {
+        let BaseImages { roughness, anisotropy } = self.images.base(layer)?;
+        Ok(BaseInput {
+            roughness: roughness.map(Cow::Owned),
+            roughness_factor: layer.layer.roughness_factor,
+            anisotropy: layer.layer.anisotropy.as_ref().map(|source| AnisotropyInput {
+                texture: anisotropy,
+                strength: source.strength,
+                rotation: source.rotation,
+            }),
+            wrap: self.group.source.wrap,
+        })
+    }
+
+    /// Returns the inputs of all lobes. Images are decoded when the iterator reaches them.
+    fn inputs<'i>(
+        &'i self,
+        map: &'i MapOffsets<'_>,
+        lobe_groups: &'i [Vec<usize>],
+        mut first_base: Option<PreparedBase<'static>>,
+    ) -> impl ExactSizeIterator<Item = Result<LayerInput<'static>, BakeError>> + 'i {
+        lobe_groups.iter().map(move |users| {
+            let layer = &self.group.layers[users[0]];
+            let base = match first_base.take() {
+                Some(base) => base,
+                None => PreparedBase { input: self.base_input(layer)?, levels: None },
+            };
+            let size = base.input.grid(self.settings, Some(map.bump_map))?;
+            let users = || users.iter().map(|user| &self.group.layers[*user]);
+            Ok(LayerInput {
+                base,
+                size,
+                can_be_roughened: layer.base.is_ok(),
+                slope_scale: layer.slope_scale,
+                needs_correction: layer.row().is_in_pyramid,
+                max_model: layer.max_model(),
+                finest: self.finest_level(users(), size),
+                first: self.first_level(users(), size),
+            })
+        })
+    }
+
+    /// Returns the inputs of the pyramid profile: all layers that its extension describes.
+    fn pyramid_inputs(&self, map: &MapOffsets<'_>, lobe_groups: &[Vec<usize>]) -> Vec<PyramidInput> {
+        let layers = self.group.layers.iter().enumerate().filter(|(_, layer)| layer.row().is_in_pyramid);
+        let input = |(index, layer): (usize, &GroupLayer)| {
+            let lobes = lobe_groups.iter().position(|users| users.contains(&index)).unwrap_or(0);
+            let (frame, transforms, note) = offset_frame(self.settings.frame, self.geometry, map.bump_map, layer);
+            PyramidInput { lobes, frame, transforms: Arc::new(transforms), note }
+        };
+        layers.map(input).collect()
+    }
+
+    /// Returns the finest level that the view can sample of a map of `size` on `layer`; `None` without a view.
+    fn finest(&self, layer: &GroupLayer, size: (u32, u32)) -> Option<Result<Finest, NoDensity>> {
+        self.geometry.finest(layer.material, &layer.layer.bumps.texture().mapping, size)
+    }
+
+    /// Returns the finest level that the view can sample of a map of `size` on any of `layers`; 0 if that is not known.
+    fn finest_level<'l>(&self, layers: impl IntoIterator<Item = &'l GroupLayer>, size: (u32, u32)) -> usize {
+        let level = |layer: &GroupLayer| self.finest(layer, size).and_then(Result::ok).map_or(0, |finest| finest.level);
+        layers.into_iter().map(level).min().unwrap_or(0)
+    }
+
+    /// Returns the finest level that is written of such a map.
+    fn first_level<'l>(&self, layers: impl IntoIterator<Item = &'l GroupLayer>, size: (u32, u32)) -> usize {
+        if self.settings.view.is_some_and(|view| view.trim) { self.finest_level(layers, size) } else { 0 }
+    }
+
+    /// Returns the finest level that the view can sample of `layer`, and the notes that are known before any lobe is
+    /// made. `size` is the grid of the bump map.
+    fn notes(&self, layer: &GroupLayer, map_notes: &[String], size: (u32, u32)) -> (Option<Finest>, Vec<String>) {
+        let mut notes = layer.notes.clone();
+        if !self.group.source.samples_mips {
+            notes.push(
+                "the minFilter of the texture's sampler never reads mips: the bake has no effect in engines that obey it"
+                    .to_owned(),
+            );
+        }
+        notes.extend_from_slice(map_notes);
+        match self.finest(layer, size) {
+            None => (None, notes),
+            Some(Ok(finest)) => (Some(finest), notes),
+            Some(Err(reason)) => {
+                notes.push(format!("every level counts as seen: {reason}"));
+                (None, notes)
+            }
+        }
+    }
+}

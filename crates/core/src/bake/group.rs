@@ -1,0 +1,305 @@
+//! Step 2: the layers of all materials are grouped by bump map, and within a group by lobe.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use serde_json::Value;
+
+use super::geometry::Geometry;
+use crate::bump::Frame;
+use crate::gltf::geometry::Layout;
+use crate::gltf::layers::{LayerKind, LayerRow};
+use crate::gltf::material::{BumpSource, Layer, Material, TextureUse};
+use crate::gltf::rewrite::Slot;
+use crate::gltf::texture::{ImageLocation, TextureError, TextureSource, Textures};
+use crate::mip::Wrap;
+use crate::settings::{Model, Settings};
+
+/// A bump map and all layers that use it.
+#[derive(Debug)]
+pub struct BumpMapGroup {
+    /// Image and sampler of the bump map.
+    pub source: Arc<TextureSource>,
+    /// How the image is read.
+    pub kind: BumpMapKind,
+    /// The layers.
+    pub layers: Vec<GroupLayer>,
+}
+
+/// How a bump map is read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum BumpMapKind {
+    /// As normals.
+    Normals,
+    /// As heights.
+    Heights {
+        /// Slope of a change of the height by 1 over one repeat of the texture, across and up.
+        slope_per_repeat: [f32; 2],
+        /// Whether texels are taken to be square, whatever the shape of the map.
+        square_texels: bool,
+        /// The sampler's mode, across and down.
+        wrap: [Wrap; 2],
+    },
+}
+
+/// A layer that uses a bump map.
+#[derive(Debug)]
+pub struct GroupLayer {
+    /// Index into `materials`.
+    pub material: usize,
+    /// The material's name.
+    pub name: String,
+    /// The layer.
+    pub layer: Layer,
+    /// Multiplies offsets: `normalTexture.scale`.
+    pub slope_scale: f32,
+    /// How the material lies on its meshes, if a frame asks for it.
+    pub layout: Option<Layout>,
+    /// The textures of the base lobe, or why bumps cannot be added to the base lobe texel by texel.
+    pub base: Result<BaseTextures, String>,
+    /// Notes to the user.
+    pub notes: Vec<String>,
+}
+
+/// The textures of a layer's base lobe.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BaseTextures {
+    /// Green is roughness.
+    pub roughness: Option<Arc<TextureSource>>,
+    /// Direction and strength.
+    pub anisotropy: Option<Arc<TextureSource>>,
+}
+
+/// What decides on a layer's roughened lobe, besides its bumps. Layers with equal keys share their textures.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+struct LobeKey {
+    kind: LayerKind,
+    textures: [Option<usize>; 2],
+    factors: [u32; 2],
+    anisotropy: Option<[u32; 2]>,
+}
+
+/// A material whose layers cannot be grouped.
+#[derive(Debug, thiserror::Error)]
+#[error("material {material}, {part}: {error}")]
+pub struct GroupError {
+    /// The material's name.
+    pub material: String,
+    /// The part of the material that refers to a texture.
+    pub part: &'static str,
+    /// What is wrong with the reference.
+    pub error: TextureError,
+}
+
+/// Groups the layers of `materials` by bump map, in the order of the file.
+///
+/// # Errors
+/// [`GroupError`] for the first reference that leads nowhere.
+pub fn group_by_bump_map(
+    root: &Value,
+    materials: Vec<Material>,
+    settings: &Settings,
+    geometry: &Geometry<'_>,
+) -> Result<Vec<BumpMapGroup>, GroupError> {
+    let mut groups: Vec<BumpMapGroup> = Vec::new();
+    let mut indices: HashMap<_, usize> = HashMap::new();
+    let mut textures = Textures::of(root);
+    for Material { index, name, layers } in materials {
+        for layer in layers {
+            let (source, kind, layer) = group_layer((index, &name), layer, &mut textures, settings, geometry)?;
+            let group = *indices.entry((address(&source), kind.key())).or_insert(groups.len());
+            if group == groups.len() {
+                groups.push(BumpMapGroup { source, kind, layers: Vec::new() });
+            }
+            groups[group].layers.push(layer);
+        }
+    }
+    Ok(groups)
+}
+
+/// Reads the textures of a layer of `material` (index and name). Returns the bump map and how it is read.
+fn group_layer(
+    (material, name): (usize, &str),
+    layer: Layer,
+    textures: &mut Textures<'_>,
+    settings: &Settings,
+    geometry: &Geometry<'_>,
+) -> Result<(Arc<TextureSource>, BumpMapKind, GroupLayer), GroupError> {
+    let failed = |part| move |error| GroupError { material: name.to_owned(), part, error };
+    let bumps = layer.bumps.texture();
+    let source = textures.get(bumps.texture).map_err(failed("normal or height texture"))?;
+    let layout = geometry.layout(material, &bumps.mapping);
+    let mut notes = Vec::new();
+    let (kind, slope_scale) = kind_of(&layer.bumps, &source, settings, layout.as_ref(), &mut notes);
+    let base = base_textures(textures, &layer, &source).map_err(failed("roughness or anisotropy texture"))?;
+    Ok((source, kind, GroupLayer { material, name: name.to_owned(), layer, slope_scale, layout, base, notes }))
+}
+
+/// Returns a number by which equal textures can be found, among those that [`Textures`] returned.
+fn address(texture: &Arc<TextureSource>) -> usize {
+    Arc::as_ptr(texture).addr()
+}
+
+/// Returns the bits of a finite number. 0 and -0 have equal bits.
+fn bits(number: f32) -> u32 {
+    (number + 0.0).to_bits()
+}
+
+/// A [`BumpMapKind`] as a key of a map; `None` for normals.
+type KindKey = Option<([u32; 2], bool, [Wrap; 2])>;
+
+impl BumpMapKind {
+    fn key(&self) -> KindKey {
+        match *self {
+            Self::Normals => None,
+            Self::Heights { slope_per_repeat, square_texels, wrap } => {
+                Some((slope_per_repeat.map(bits), square_texels, wrap))
+            }
+        }
+    }
+}
+
+/// Returns how a bump map is read, and the factor of its offsets.
+fn kind_of(
+    bumps: &BumpSource,
+    source: &TextureSource,
+    settings: &Settings,
+    layout: Option<&Layout>,
+    notes: &mut Vec<String>,
+) -> (BumpMapKind, f32) {
+    let scale = match bumps {
+        BumpSource::Normals(_, scale) => return (BumpMapKind::Normals, *scale),
+        BumpSource::Heights(_, scale) => settings.height_scale.unwrap_or(*scale),
+    };
+    let (slope_per_repeat, square_texels) = match (settings.frame, layout) {
+        // Heights are in mesh units, and the mesh has the size of a repeat.
+        (Frame::Natural, Some(layout)) => (layout.units_per_repeat.map(|units| scale / units), false),
+        (Frame::Natural, None) => {
+            notes.push(
+                "no mesh shows how large a repeat of the height map is: heights are taken in widths of a repeat"
+                    .to_owned(),
+            );
+            ([scale; 2], true)
+        }
+        _ => ([scale; 2], true),
+    };
+    (BumpMapKind::Heights { slope_per_repeat, square_texels, wrap: source.wrap }, 1.0)
+}
+
+/// Returns the textures of the layer's base lobe. The inner error says why bumps cannot be added to the base lobe texel
+/// by texel.
+fn base_textures(
+    textures: &mut Textures<'_>,
+    layer: &Layer,
+    bumps: &TextureSource,
+) -> Result<Result<BaseTextures, String>, TextureError> {
+    let mapping = &layer.bumps.texture().mapping;
+    let mut reason = layer.has_other_workflow.then(|| {
+        "the material has KHR_materials_pbrSpecularGlossiness, and engines that know it read glossiness: \
+         the roughness was left unchanged"
+            .to_owned()
+    });
+    let mut read = |what: &str, texture: Option<&TextureUse>| {
+        let Some(texture) = texture else { return Ok(None) };
+        let source = textures.get(texture.texture)?;
+        if !texture.mapping.is_same(mapping) {
+            reason = Some(format!(
+                "the {what} texture has other texture coordinates or another KHR_texture_transform than the bumps: \
+                 their texels do not lie over each other, so it was left unchanged"
+            ));
+        } else if source.wrap != bumps.wrap {
+            reason = Some(format!(
+                "the sampler of the {what} texture has another wrap mode than the sampler of the bumps: \
+                 the texture was left unchanged"
+            ));
+        }
+        Ok(Some(source))
+    };
+    let roughness = read("roughness", layer.roughness.as_ref())?;
+    let anisotropy = read("anisotropy", layer.anisotropy.as_ref().and_then(|a| a.texture.as_ref()))?;
+    Ok(match reason {
+        Some(reason) => Err(reason),
+        None => Ok(BaseTextures { roughness, anisotropy }),
+    })
+}
+
+impl BumpMapGroup {
+    /// Groups the layers that share each roughened lobe, by the index of the first layer of each group. A layer whose
+    /// base lobe cannot be roughened is alone in its group.
+    pub fn lobe_groups(&self) -> Vec<Vec<usize>> {
+        let mut groups: Vec<Vec<usize>> = Vec::new();
+        let mut indices: HashMap<LobeKey, usize> = HashMap::new();
+        for (index, layer) in self.layers.iter().enumerate() {
+            let new = groups.len();
+            let group = layer.lobe_key().map_or(new, |key| *indices.entry(key).or_insert(new));
+            if group == new {
+                groups.push(Vec::new());
+            }
+            groups[group].push(index);
+        }
+        groups
+    }
+}
+
+impl GroupLayer {
+    /// Returns where materials keep layers of this kind.
+    pub fn row(&self) -> &'static LayerRow {
+        self.layer.kind.row()
+    }
+
+    /// Returns the reference to the layer's normal texture.
+    pub fn normal_slot(&self) -> Slot {
+        self.slot(self.row().normal_texture)
+    }
+
+    /// Returns the references to the layer's roughness texture: its own, and the one to occlusion if both share a
+    /// texture.
+    pub fn roughness_slots(&self) -> Vec<Slot> {
+        let mut slots = vec![self.slot(self.row().roughness_texture)];
+        if self.layer.occlusion.is_some() && self.layer.occlusion == self.layer.roughness {
+            slots.extend(self.row().occlusion_texture.map(|pointer| self.slot(pointer)));
+        }
+        slots
+    }
+
+    /// Returns the reference to the layer's anisotropy texture; none if the layer can only be isotropic.
+    pub fn anisotropy_slot(&self) -> Option<Slot> {
+        self.row().anisotropy.as_ref().map(|anisotropy| self.slot(anisotropy.texture))
+    }
+
+    /// Returns a JSON pointer into the material.
+    pub fn pointer(&self, member: &str) -> String {
+        format!("/materials/{}/{member}", self.material)
+    }
+
+    /// Returns the model with the most parameters that the layer can have.
+    pub fn max_model(&self) -> Model {
+        if self.row().anisotropy.is_some() { Model::Anisotropic } else { Model::Isotropic }
+    }
+
+    /// Returns the textures of the base lobe: roughness and anisotropy.
+    pub fn base_textures(&self) -> [Option<&TextureSource>; 2] {
+        self.base.as_ref().map_or([None; 2], |base| [base.roughness.as_deref(), base.anisotropy.as_deref()])
+    }
+
+    /// Returns the locations of the images of the base lobe.
+    pub fn base_locations(&self) -> Vec<&Arc<ImageLocation>> {
+        self.base_textures().into_iter().flatten().map(|t| &t.location).collect()
+    }
+
+    fn slot(&self, member: &str) -> Slot {
+        Slot { pointer: self.pointer(member), mapping: self.layer.bumps.texture().mapping.clone() }
+    }
+
+    /// Returns the key of the layer's roughened lobe; `None` if the base lobe cannot be roughened.
+    fn lobe_key(&self) -> Option<LobeKey> {
+        let base = self.base.as_ref().ok()?;
+        let anisotropy = self.layer.anisotropy.as_ref().map(|a| [bits(a.strength), bits(a.rotation)]);
+        Some(LobeKey {
+            kind: self.layer.kind,
+            textures: [&base.roughness, &base.anisotropy].map(|texture| texture.as_ref().map(address)),
+            factors: [bits(self.layer.roughness_factor), bits(self.slope_scale)],
+            anisotropy,
+        })
+    }
+}

@@ -1,0 +1,127 @@
+//! Step 5: the lobes of every level of a layer.
+
+use std::borrow::Cow;
+
+use crate::bake::offsets::{MapOffsets, size_of};
+use crate::image::{Image, Rgba};
+use crate::material::{
+    Base, BaseAnisotropy, BaseLevels, BaseRows, BumpMap, Bumps, GridError, Roughening, base_lobe, grid,
+};
+use crate::mip::Wrap;
+use crate::settings::{Model, Settings};
+
+/// The textures and factors of a base lobe.
+pub struct BaseInput<'a> {
+    /// Green is roughness; constant 1 without a texture.
+    pub roughness: Option<Cow<'a, Image>>,
+    /// Multiplies the roughness.
+    pub roughness_factor: f32,
+    /// The anisotropy, if there is any.
+    pub anisotropy: Option<AnisotropyInput>,
+    /// The sampler's mode, across and down.
+    pub wrap: [Wrap; 2],
+}
+
+/// The texture and factors of the anisotropy of a base lobe.
+pub struct AnisotropyInput {
+    /// Direction in red and green, strength in blue.
+    pub texture: Option<Image>,
+    /// Multiplies the strength.
+    pub strength: f32,
+    /// Angle that is added to the direction, in radians.
+    pub rotation: f32,
+}
+
+impl BaseInput<'_> {
+    /// Returns the smallest grid that holds the textures of the base lobe and `bump_map`.
+    pub fn grid(&self, settings: &Settings, bump_map: Option<&BumpMap>) -> Result<(u32, u32), GridError> {
+        let anisotropy = self.anisotropy.as_ref().and_then(|anisotropy| anisotropy.texture.as_ref());
+        let images = [self.roughness.as_deref(), anisotropy].into_iter().flatten();
+        grid(settings, images.map(|image| (image.width, image.height)).chain(bump_map.map(size_of)))
+    }
+
+    /// Puts the base lobe on a grid of `width` x `height` texels.
+    pub fn rows(&self, (width, height): (u32, u32)) -> BaseRows<'_> {
+        let anisotropy = self.anisotropy.as_ref().map(|anisotropy| {
+            let rotation = f64::from(anisotropy.rotation);
+            BaseAnisotropy {
+                texture: anisotropy.texture.as_ref().map(Rgba),
+                strength: anisotropy.strength,
+                rotation: [libm::cos(rotation) as f32, libm::sin(rotation) as f32],
+            }
+        });
+        let roughness = self.roughness.as_deref().map(Rgba);
+        BaseRows::new(width, height, roughness, self.roughness_factor, anisotropy, self.wrap)
+    }
+}
+
+/// A base lobe with levels that were built while the bump map was decoded.
+pub struct PreparedBase<'a> {
+    /// The textures and factors.
+    pub input: BaseInput<'a>,
+    /// Levels on the grid of the base lobe's own textures, with the size of that grid.
+    pub levels: Option<((u32, u32), BaseLevels)>,
+}
+
+impl<'a> PreparedBase<'a> {
+    /// Builds the levels on the grid of the base lobe's own textures. Mostly the bumps are on that grid, too.
+    pub fn with_levels(input: BaseInput<'a>, settings: &Settings) -> Result<Self, GridError> {
+        let size = input.grid(settings, None)?;
+        let levels = BaseLevels::new(&input.rows(size));
+        Ok(Self { input, levels: Some((size, levels)) })
+    }
+}
+
+/// A layer of a material, or several layers that share their lobes.
+pub struct LayerInput<'a> {
+    /// The base lobe.
+    pub base: PreparedBase<'a>,
+    /// The grid of the lobes.
+    pub size: (u32, u32),
+    /// Whether bumps can be added to the base lobe texel by texel.
+    pub can_be_roughened: bool,
+    /// Multiplies offsets.
+    pub slope_scale: f32,
+    /// Whether the pyramid profile needs the correction factor of the layer.
+    pub needs_correction: bool,
+    /// The model with the most parameters that the layer can have.
+    pub max_model: Model,
+    /// The finest level that can be sampled.
+    pub finest: usize,
+    /// The finest level that is written.
+    pub first: usize,
+}
+
+/// The lobes of a layer.
+pub struct LayerLobes<'a> {
+    /// The base lobe and the roughened lobes, if bumps can be added to the base lobe.
+    pub roughening: Option<Roughening<'a>>,
+    /// The correction factor c, for the pyramid profile.
+    pub correction: Option<f32>,
+}
+
+impl<'a> LayerLobes<'a> {
+    /// Roughens the base lobe of `layer` by the bumps of `map`. `levels` are those of the base lobe, on a grid of their
+    /// size.
+    pub fn new<'m: 'a>(
+        map: &MapOffsets<'m>,
+        layer: &'a LayerInput<'_>,
+        levels: Option<((u32, u32), BaseLevels)>,
+    ) -> Self {
+        let (settings, slope_scale) = (map.settings, layer.slope_scale);
+        let rows = layer.base.input.rows(layer.size);
+        let base = match levels {
+            Some((size, levels)) if size == layer.size => Base::with_levels(rows, levels),
+            _ => Base::new(rows),
+        };
+        let has_correction = settings.profile.has_pyramid() && layer.needs_correction;
+        let correction =
+            has_correction.then(|| map.bumps.correction(slope_scale, settings, base_lobe(&base.coarsest())));
+        let is_roughened = layer.can_be_roughened && (settings.profile.is_portable() || layer.needs_correction);
+        let roughening = is_roughened.then(|| {
+            let resampled = (layer.size != map.bumps.size()).then(|| Bumps::new(map.bump_map, layer.size));
+            Roughening::new(base, resampled.as_ref().unwrap_or(&map.bumps), slope_scale, settings)
+        });
+        Self { roughening, correction }
+    }
+}

@@ -1,0 +1,83 @@
+//! Steps 7 and 8: the textures of the portable profile are made and encoded.
+
+use crate::bake::choose::LayerModel;
+use crate::bake::lobes::{LayerInput, LayerLobes};
+use crate::bake::offsets::MapOffsets;
+use crate::codec::EncodeError;
+use crate::material::{AnisotropyTexture, Encoding, MipChain, Normals, Product, Range, Roughening, RoughnessTexture};
+use crate::report::Content;
+use crate::settings::Model;
+
+/// A baked texture.
+pub struct BakedTexture {
+    /// What its texels are.
+    pub content: Content,
+    /// The encoded levels.
+    pub mip_chain: MipChain,
+    /// What texels of 0 and 1 stand for, in the pyramid profile.
+    pub range: Option<Range>,
+    /// What it models of the lost bumps.
+    pub model: Model,
+    /// Mean lobe errors of its layer, level by level, if it holds roughness data that were chosen.
+    pub lobe_errors: Vec<f32>,
+}
+
+/// The normal texture that the lobes of a layer decided.
+pub struct LayerNormals<'a> {
+    /// The encoded levels.
+    pub mip_chain: MipChain,
+    /// The normals, for later layers.
+    pub normals: Option<Normals<'a>>,
+}
+
+/// Returns the normals that the lobes of `layer` decide: the directions of the lobes, if they are on the grid of the
+/// bump map.
+pub fn normals_of_lobes<'a, 'm: 'a>(
+    map: &MapOffsets<'m>,
+    layer: &LayerInput<'_>,
+    lobes: &'a LayerLobes<'a>,
+) -> Option<Normals<'a>> {
+    let roughening = lobes.roughening.as_ref().filter(|_| map.settings.profile.is_portable())?;
+    let can_decide = layer.slope_scale != 0.0 && roughening.sizes()[0] == map.bumps.size();
+    can_decide.then(|| Normals::of_lobes(&map.bumps, roughening.lobes()))
+}
+
+/// Returns the encoding of a bump map's normal texture, without levels finer than `first`.
+pub fn normal_encoding(map: &MapOffsets<'_>, first: usize) -> Encoding {
+    Encoding::of_normals(map.settings).starting_at(first)
+}
+
+/// Makes the normal texture: the one that a layer decided, else mean slopes.
+pub fn normal_texture(
+    map: &MapOffsets<'_>,
+    decided: Option<LayerNormals<'_>>,
+    first: usize,
+) -> Result<BakedTexture, EncodeError> {
+    let mip_chain = match decided {
+        Some(decided) => decided.mip_chain,
+        None => Normals::of_means(&map.bumps).encode(normal_encoding(map, first))?,
+    };
+    Ok(BakedTexture { content: Content::Normal, mip_chain, range: None, model: Model::None, lobe_errors: Vec::new() })
+}
+
+/// Makes the roughness texture of a layer and, under the anisotropic model, its anisotropy texture.
+pub fn lobe_textures(
+    map: &MapOffsets<'_>,
+    roughening: &Roughening<'_>,
+    model: &LayerModel,
+) -> Result<Vec<BakedTexture>, EncodeError> {
+    let encoding = Encoding::of(map.settings, 3).starting_at(model.first);
+    let texture = |content, mip_chain| BakedTexture {
+        content,
+        mip_chain,
+        range: None,
+        model: model.model,
+        lobe_errors: model.lobe_errors(),
+    };
+    let roughness = RoughnessTexture::new(roughening, model.model).encode(encoding.with_orm_metric())?;
+    let mut textures = vec![texture(Content::Roughness, roughness)];
+    if model.model == Model::Anisotropic {
+        textures.push(texture(Content::Anisotropy, AnisotropyTexture::new(roughening).encode(encoding)?));
+    }
+    Ok(textures)
+}

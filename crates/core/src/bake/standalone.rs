@@ -1,0 +1,93 @@
+//! The bake of a standalone map: a material of one bump map, without a document.
+
+use std::borrow::Cow;
+use std::sync::Arc;
+
+use crate::bake::bake_bump_map::{BumpMapProducts, bake_bump_map};
+use crate::bake::error::BakeError;
+use crate::bake::lobes::{BaseInput, LayerInput, PreparedBase};
+use crate::bake::offsets::MapOffsets;
+use crate::bake::products::BakedTexture;
+use crate::bake::pyramid::PyramidInput;
+use crate::bump::Frame;
+use crate::image::Image;
+use crate::material::{BumpMap, FrameTransforms, notes};
+use crate::report::Choice;
+use crate::settings::{Form, Model, Settings};
+
+/// The roughness of the surface of a standalone map.
+pub struct BaseRoughness {
+    /// Green is roughness (a grey image is grey in green); constant 1 without an image.
+    pub image: Option<Image>,
+    /// Multiplies it.
+    pub factor: f32,
+}
+
+/// A baked standalone map.
+pub struct BakedMap {
+    /// The textures. The first is the bump map: normals or offsets.
+    pub textures: Vec<BakedTexture>,
+    /// What is modelled of the lost bumps.
+    pub model: Model,
+    /// The candidates and their errors, if the base roughness is known.
+    pub choice: Option<Choice>,
+    /// Notes to the user.
+    pub notes: Vec<String>,
+}
+
+/// Bakes a standalone map. The portable profile writes roughness only if the base roughness is known.
+///
+/// # Errors
+/// [`BakeError`] if the grid is too large or a texture cannot be encoded.
+pub fn bake_map(
+    bump_map: &BumpMap,
+    base_roughness: Option<&BaseRoughness>,
+    settings: &Settings,
+) -> Result<BakedMap, BakeError> {
+    // PNG fallbacks are for documents, which refer to both files.
+    let settings = &Settings { form: Form::Strict, ..*settings };
+    let map = MapOffsets::new(bump_map, settings, bump_map.wrap())?;
+    let mut notes = notes::of_bump_map(bump_map, map.bumps.size());
+    let layer = std::iter::once_with(|| layer_input(&map, base_roughness));
+    let BumpMapProducts { normals, layers, pyramid } = bake_bump_map(&map, 0, layer, || vec![tangent_frame()])?;
+    let (mut textures, mut model, mut choice) = (Vec::from_iter(normals), Model::None, None);
+    for layer in layers {
+        notes.extend(layer.notes);
+        textures.extend(layer.textures);
+        (model, choice) = (layer.reported_model, layer.model.choice);
+    }
+    textures.extend(pyramid.textures);
+    notes.extend(pyramid.layers.into_iter().flat_map(|layer| layer.notes));
+    Ok(BakedMap { textures, model, choice, notes })
+}
+
+/// Returns the only layer of a standalone map, all of whose levels can be sampled.
+fn layer_input<'a>(
+    map: &MapOffsets<'_>,
+    base_roughness: Option<&'a BaseRoughness>,
+) -> Result<LayerInput<'a>, BakeError> {
+    let input = BaseInput {
+        roughness: base_roughness.and_then(|base| base.image.as_ref()).map(Cow::Borrowed),
+        roughness_factor: base_roughness.map_or(1.0, |base| base.factor),
+        anisotropy: None,
+        wrap: map.wrap,
+    };
+    Ok(LayerInput {
+        size: input.grid(map.settings, Some(map.bump_map))?,
+        base: PreparedBase { input, levels: None },
+        can_be_roughened: base_roughness.is_some(),
+        slope_scale: 1.0,
+        needs_correction: base_roughness.is_some(),
+        max_model: Model::Anisotropic,
+        finest: 0,
+        first: 0,
+    })
+}
+
+/// Returns the input of the pyramid profile: offsets stay in the tangent frame.
+fn tangent_frame() -> PyramidInput {
+    PyramidInput { lobes: 0, frame: Frame::Unit, transforms: Arc::new(FrameTransforms::IDENTITY), note: None }
+}
+
+#[cfg(test)]
+mod tests;

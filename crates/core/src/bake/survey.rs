@@ -1,0 +1,41 @@
+//! The files that a bake of a document reads and writes, as far as they are known before any image is decoded.
+
+use std::path::PathBuf;
+
+use serde_json::Value;
+
+use super::container;
+use super::error::BakeError;
+use crate::gltf::document::{Container, Document, check_version};
+use crate::gltf::json::Json;
+use crate::gltf::material::materials;
+
+/// The facts of a document that are known before its bake.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Survey {
+    /// Files that images and buffers name, relative to the document.
+    pub files: Vec<PathBuf>,
+    /// Files that buffers name. The output names them, too, unless it is a .glb.
+    pub buffers: Vec<PathBuf>,
+    /// Whether a material has bumps. A document without bumps is returned unchanged.
+    pub has_bumps: bool,
+    /// The container of the document.
+    pub container: Container,
+}
+
+/// Surveys `document`.
+///
+/// # Errors
+/// [`BakeError`] for materials and references that a bake would refuse, too.
+pub fn survey(document: &Document) -> Result<Survey, BakeError> {
+    let json: &Json = document.json();
+    let root: Value = json.value("")?.unwrap_or_default();
+    check_version(&root)?;
+    let materials = materials(&root).into_iter().collect::<Result<Vec<_>, _>>()?;
+    Ok(Survey {
+        files: container::files(json)?,
+        buffers: container::buffer_files(json)?,
+        has_bumps: materials.iter().any(|material| !material.layers.is_empty()),
+        container: document.container(),
+    })
+}

@@ -1,0 +1,39 @@
+//! Targets that users ask for, and the texel formats that each consists of. [`super::table`] has the facts.
+
+/// The family of payloads to write.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum Target {
+    /// UASTC LDR 4x4 with zstd: the one payload that every glTF engine reads.
+    #[default]
+    #[cfg_attr(feature = "cli", value(help = "UASTC LDR 4x4 with zstd: every engine"))]
+    Basis,
+    /// BC4, BC5 and BC7: desktop GPUs, no transcoding.
+    #[cfg_attr(feature = "cli", value(help = "BC4, BC5, BC7: desktop GPUs"))]
+    Bc,
+    /// Half floats: values are not quantised to 8 bits.
+    #[cfg_attr(feature = "cli", value(help = "Half floats"))]
+    Float,
+}
+
+/// How texels are stored. All formats hold linear data, never sRGB.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Format {
+    /// UASTC LDR 4x4, opaque RGB.
+    UastcRgb,
+    /// One channel, 8 bytes per 4x4 block.
+    Bc4,
+    /// Two channels, 16 bytes per 4x4 block.
+    Bc5,
+    /// Opaque RGB, 16 bytes per 4x4 block.
+    Bc7,
+    /// One half float.
+    R16Float,
+    /// Two half floats.
+    Rg16Float,
+    /// Four half floats; the last is 1.
+    Rgba16Float,
+}

@@ -1,0 +1,107 @@
+//! The table of material layers: where a material keeps the bumps, roughness and anisotropy of each of its lobes.
+//!
+//! [`crate::gltf::material`] reads materials by this table, and the bake writes them by it. A new layer is
+//! a new [`LayerKind`] with a new row.
+
+use serde::{Deserialize, Serialize};
+
+/// A lobe of a material that has bumps of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum LayerKind {
+    /// The metallic-roughness lobe.
+    Base,
+    /// `KHR_materials_clearcoat`.
+    Clearcoat,
+}
+
+/// A JSON pointer into a material, without the leading slash: `pbrMetallicRoughness/roughnessFactor`.
+pub type Pointer = &'static str;
+
+/// Where a material keeps one of its layers.
+#[derive(Debug)]
+pub struct LayerRow {
+    /// The layer.
+    pub kind: LayerKind,
+    /// The normal texture. The scale of its bumps is its member `scale`.
+    pub normal_texture: Pointer,
+    /// The height texture, which is read where there is no normal texture. Its scale is its member `scale`.
+    pub height_texture: Option<Pointer>,
+    /// The texture whose green channel is the roughness.
+    pub roughness_texture: Pointer,
+    /// The number that multiplies the roughness texture.
+    pub roughness_factor: Pointer,
+    /// The roughness factor of a material that names none.
+    pub default_roughness_factor: f32,
+    /// The anisotropy of the layer; none if its lobe can only be isotropic.
+    pub anisotropy: Option<AnisotropyRow>,
+    /// The texture with occlusion in red, which may share its image with the roughness.
+    pub occlusion_texture: Option<Pointer>,
+    /// An extension that takes the place of the roughness in engines that know it.
+    pub other_workflow: Option<Pointer>,
+    /// Whether `ROUGHCAST_materials_roughness_pyramid` describes the layer.
+    pub is_in_pyramid: bool,
+}
+
+/// Where a material keeps the anisotropy of a layer.
+#[derive(Debug)]
+pub struct AnisotropyRow {
+    /// The object with all of it.
+    pub object: Pointer,
+    /// The name of the extension that defines it.
+    pub extension: &'static str,
+    /// The texture with the direction in red and green and the strength in blue.
+    pub texture: Pointer,
+    /// The number that multiplies the strength.
+    pub strength: Pointer,
+    /// The angle that is added to the direction, in radians.
+    pub rotation: Pointer,
+}
+
+/// All layers, in the order in which materials list them.
+pub static LAYERS: [LayerRow; 2] = [BASE, CLEARCOAT];
+
+const BASE: LayerRow = LayerRow {
+    kind: LayerKind::Base,
+    normal_texture: "normalTexture",
+    height_texture: Some("extras/roughcast/heightTexture"),
+    roughness_texture: "pbrMetallicRoughness/metallicRoughnessTexture",
+    roughness_factor: "pbrMetallicRoughness/roughnessFactor",
+    default_roughness_factor: 1.0,
+    anisotropy: Some(AnisotropyRow {
+        object: "extensions/KHR_materials_anisotropy",
+        extension: "KHR_materials_anisotropy",
+        texture: "extensions/KHR_materials_anisotropy/anisotropyTexture",
+        strength: "extensions/KHR_materials_anisotropy/anisotropyStrength",
+        rotation: "extensions/KHR_materials_anisotropy/anisotropyRotation",
+    }),
+    occlusion_texture: Some("occlusionTexture"),
+    other_workflow: Some("extensions/KHR_materials_pbrSpecularGlossiness"),
+    is_in_pyramid: true,
+};
+
+const CLEARCOAT: LayerRow = LayerRow {
+    kind: LayerKind::Clearcoat,
+    normal_texture: "extensions/KHR_materials_clearcoat/clearcoatNormalTexture",
+    height_texture: None,
+    roughness_texture: "extensions/KHR_materials_clearcoat/clearcoatRoughnessTexture",
+    roughness_factor: "extensions/KHR_materials_clearcoat/clearcoatRoughnessFactor",
+    default_roughness_factor: 0.0,
+    anisotropy: None,
+    occlusion_texture: None,
+    other_workflow: None,
+    is_in_pyramid: false,
+};
+
+impl LayerKind {
+    /// Returns the row of the layer.
+    pub fn row(self) -> &'static LayerRow {
+        match self {
+            Self::Base => &LAYERS[0],
+            Self::Clearcoat => &LAYERS[1],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,20 @@
+use super::*;
+
+#[test]
+fn every_layer_has_the_row_of_its_kind() {
+    for row in &LAYERS {
+        assert_eq!(row.kind.row().kind, row.kind);
+    }
+}
+
+#[test]
+fn roughness_texture_and_factor_are_members_of_one_object() {
+    let object = |pointer: Pointer| pointer.rsplit_once('/').map(|(object, _)| object);
+    for row in &LAYERS {
+        assert_eq!(object(row.roughness_texture), object(row.roughness_factor), "{:?}", row.kind);
+        assert!(object(row.roughness_texture).is_some());
+        for part in row.anisotropy.iter().flat_map(|a| [a.texture, a.strength, a.rotation]) {
+            assert_eq!(object(part), row.anisotropy.as_ref().map(|a| a.object), "{part}");
+        }
+    }
+}

@@ -1,0 +1,158 @@
+//! Images as rows of RGBA values, as a shader reads them.
+
+use rayon::prelude::*;
+
+use crate::image::MapError;
+use crate::image::decoded::{Image, Samples};
+use crate::mip::TexelRows;
+
+impl Image {
+    /// Expands grey with alpha to four channels, as engines read such files. Other images do not change. Do not call
+    /// this method for a KTX2 or EXR file, whose two channels are red and green.
+    pub fn with_grey_as_colour(self) -> Self {
+        fn expand<T: Copy>(samples: &[T]) -> Vec<T> {
+            samples.chunks_exact(2).flat_map(|t| [t[0], t[0], t[0], t[1]]).collect()
+        }
+        if self.channels != 2 {
+            return self;
+        }
+        let samples = match &self.samples {
+            Samples::U8(v) => Samples::U8(expand(v)),
+            Samples::U16(v) => Samples::U16(expand(v)),
+            Samples::F32(v) => Samples::F32(expand(v)),
+        };
+        Self { channels: 4, samples, ..self }
+    }
+}
+
+/// The largest magnitude of a colour: the largest half float. glTF's roughness, metalness and occlusion are between 0
+/// and 1, so that larger values have no meaning. Their averages must still be finite in every texture format.
+const LARGEST_COLOUR: f32 = 65504.0;
+
+impl Image {
+    /// Clamps all colours to +-65504.
+    ///
+    /// # Errors
+    /// Returns [`MapError::NotFinite`] if a sample is NaN or infinite.
+    pub fn into_finite_colours(mut self) -> Result<Self, MapError> {
+        self.check_finite()?;
+        if let Samples::F32(samples) = &mut self.samples {
+            samples.par_iter_mut().for_each(|sample| *sample = sample.clamp(-LARGEST_COLOUR, LARGEST_COLOUR));
+        }
+        Ok(self)
+    }
+}
+
+/// An image read as RGBA: one channel is grey, two are red and green, alpha is 1 where there is none.
+#[derive(Clone, Copy)]
+pub struct Rgba<'a>(pub &'a Image);
+
+impl TexelRows for Rgba<'_> {
+    type Texel = [f32; 4];
+
+    fn width(&self) -> u32 {
+        self.0.width
+    }
+
+    fn height(&self) -> u32 {
+        self.0.height
+    }
+
+    fn row(&self, y: u32, out: &mut [[f32; 4]]) {
+        let channels = self.0.channels as usize;
+        let start = y as usize * out.len() * channels;
+        let samples = start..start + out.len() * channels;
+        match &self.0.samples {
+            Samples::U8(all) => expand(&all[samples], channels, out, |v| UNORM8[usize::from(v)]),
+            Samples::U16(all) => expand(&all[samples], channels, out, |v| f32::from(v) / 65535.0),
+            Samples::F32(all) => expand(&all[samples], channels, out, |v| v),
+        }
+    }
+}
+
+impl Rgba<'_> {
+    /// Writes the green of row `y` to `out`.
+    pub fn green(&self, y: u32, out: &mut [f32]) {
+        let channels = self.0.channels as usize;
+        let start = y as usize * out.len() * channels;
+        match &self.0.samples {
+            Samples::U8(all) => green(&all[start..], channels, out, |v| UNORM8[usize::from(v)]),
+            Samples::U16(all) => green(&all[start..], channels, out, |v| f32::from(v) / 65535.0),
+            Samples::F32(all) => green(&all[start..], channels, out, |v| v),
+        }
+    }
+
+    /// Returns red and blue if both are constant over the image.
+    pub fn common_red_blue(&self) -> Option<[f32; 2]> {
+        let channels = self.0.channels as usize;
+        let are_same = match &self.0.samples {
+            Samples::U8(all) => have_same_red_blue(all, channels),
+            Samples::U16(all) => have_same_red_blue(all, channels),
+            Samples::F32(all) => have_same_red_blue(all, channels),
+        };
+        let mut first = [[0.0; 4]];
+        self.row(0, &mut first);
+        let [[red, _, blue, _]] = first;
+        are_same.then_some([red, blue])
+    }
+}
+
+/// Writes green of all texels to `out`, or grey for images of one channel.
+fn green<T: Copy>(samples: &[T], channels: usize, out: &mut [f32], value: impl Fn(T) -> f32) {
+    match channels {
+        1 => each(samples, out, |&[grey]| value(grey)),
+        2 => each(samples, out, |&[_, green]| value(green)),
+        3 => each(samples, out, |&[_, green, _]| value(green)),
+        _ => each(samples, out, |&[_, green, _, _]| value(green)),
+    }
+}
+
+/// Returns whether the first channel is constant, and also the third channel if there is one.
+fn have_same_red_blue<T: Copy + PartialEq + Sync>(samples: &[T], channels: usize) -> bool {
+    let [red, blue] = [samples[0], samples[if channels > 2 { 2 } else { 0 }]];
+    let in_chunk = |texels: &[T]| match channels {
+        1 => all(texels, |&[grey]| grey == red),
+        2 => all(texels, |&[r, _]| r == red),
+        3 => all(texels, |&[r, _, b]| (r == red) & (b == blue)),
+        _ => all(texels, |&[r, _, b, _]| (r == red) & (b == blue)),
+    };
+    samples.par_chunks(channels << 12).all(in_chunk)
+}
+
+/// Returns whether `predicate` holds for every texel of N samples.
+fn all<T, const N: usize>(samples: &[T], predicate: impl Fn(&[T; N]) -> bool) -> bool {
+    // The loop always runs to the end, so that the compiler can vectorise it.
+    samples.as_chunks::<N>().0.iter().fold(true, |all, texel| all & predicate(texel))
+}
+
+fn expand<T: Copy>(samples: &[T], channels: usize, out: &mut [[f32; 4]], value: impl Fn(T) -> f32) {
+    match channels {
+        1 => each(samples, out, |&[grey]| [value(grey), value(grey), value(grey), 1.0]),
+        2 => each(samples, out, |&[red, green]| [value(red), value(green), 0.0, 1.0]),
+        3 => each(samples, out, |&[red, green, blue]| [value(red), value(green), value(blue), 1.0]),
+        _ => each(samples, out, |texel: &[T; 4]| texel.map(&value)),
+    }
+}
+
+/// Applies `of` to each texel of N samples and writes the results to `out`.
+pub(crate) fn each<T, O, const N: usize>(samples: &[T], out: &mut [O], of: impl Fn(&[T; N]) -> O) {
+    for (out, texel) in out.iter_mut().zip(samples.as_chunks::<N>().0) {
+        *out = of(texel);
+    }
+}
+
+/// n / 255 for each n. Divisions would take longer than all other work of reading a row.
+static UNORM8: [f32; 256] = unorm8();
+
+const fn unorm8() -> [f32; 256] {
+    let mut values = [0.0; 256];
+    let mut n = 0;
+    while n < 256 {
+        values[n] = n as f32 / 255.0;
+        n += 1;
+    }
+    values
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,15 @@
+//! Families of lobes.
+
+/// A family of lobes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum Family {
+    /// Trowbridge-Reitz, which glTF prescribes.
+    #[default]
+    #[cfg_attr(feature = "cli", value(help = "GGX, as glTF prescribes"))]
+    Ggx,
+    /// Normally distributed slopes.
+    Beckmann,
+}

@@ -1,0 +1,31 @@
+//! The lobe error: the share of reflected half-vectors that a lobe puts in the wrong place.
+//!
+//! The reference of a texel is the mixture of the lobes of all level-0 texels that it covers ([`Footprint`]). A
+//! [`Reference`] samples this mixture once, and [`Reference::error`] compares every candidate with it: what an engine
+//! decodes ([`Decoded`]), what other tools make of the same normals ([`Peer`]), and the best single lobe ([`oracle`]).
+//! This module takes maps and decoded images, never files.
+
+mod cluster;
+mod footprint;
+mod lobe;
+mod oracle;
+mod peaks;
+mod peers;
+mod reference;
+mod refine;
+mod score;
+mod survey;
+#[cfg(test)]
+mod tests;
+
+pub use cluster::clustered;
+pub(crate) use footprint::overlaps;
+pub use footprint::{Footprint, FootprintMoments, Part, Surface};
+pub use lobe::Lobe;
+pub use oracle::oracle;
+pub use peaks::is_two_peaked;
+pub use peers::Peer;
+pub use reference::{Reference, SAMPLES};
+pub use refine::refine;
+pub use score::{Decoded, mean_errors, sample_texels, shown_lobe, shown_normal, with_z};
+pub use survey::{Level0Row, Precision, Site, survey};

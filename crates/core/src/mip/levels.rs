@@ -1,0 +1,102 @@
+//! Mip tails: small levels are kept, and large levels are computed whenever they are read.
+
+use fearless_simd::Level as InstructionSet;
+
+use crate::mip::TexelRows;
+use crate::mip::merge::Merge;
+use crate::mip::reduce::{Level, Taps, build, level_size, level_sizes, reduce_row};
+
+/// Levels 1 and coarser of a source. Methods take the source, because the tail does not own it.
+pub struct MipTail<T> {
+    /// Number of levels that are too large to be kept: levels 1 to `unkept`.
+    unkept: usize,
+    kept: Vec<Level<T>>,
+}
+
+/// Texels of the largest level that is kept by default: those of level 1 of 4096 x 4096. Keeping a level costs memory,
+/// and computing a level whenever it is read costs time.
+const MAX_KEPT_TEXELS: u64 = 1 << 22;
+
+impl<T: Merge> MipTail<T> {
+    /// Builds the full mip tail of `source`.
+    pub fn new(source: &impl TexelRows<Texel = T>) -> Self {
+        Self::with_max_kept(source, MAX_KEPT_TEXELS)
+    }
+
+    /// Builds the full mip tail of `source`. Levels with more than `max_texels` texels are not kept.
+    pub fn with_max_kept(source: &impl TexelRows<Texel = T>, max_texels: u64) -> Self {
+        let sizes = level_sizes(source.width(), source.height());
+        let is_large = |&&(width, height): &&(u32, u32)| u64::from(width) * u64::from(height) > max_texels;
+        let unkept = sizes.iter().skip(1).take_while(is_large).count();
+        Self { unkept, kept: build(&UnkeptLevel { source, level: unkept }) }
+    }
+
+    /// Writes row `y` of `level`, which may be 0, to `out`.
+    pub fn row(&self, source: &impl TexelRows<Texel = T>, level: usize, y: u32, out: &mut [T]) {
+        match level.checked_sub(self.unkept + 1) {
+            None => UnkeptLevel { source, level }.row(y, out),
+            Some(kept) => self.kept[kept].row(y, out),
+        }
+    }
+
+    /// Calls `read` with row `y` of `level`, which may be 0. A row of a kept level is passed without a copy.
+    pub fn with_row<O>(
+        &self,
+        source: &impl TexelRows<Texel = T>,
+        level: usize,
+        y: u32,
+        read: impl FnOnce(&[T]) -> O,
+    ) -> O {
+        match level.checked_sub(self.unkept + 1) {
+            None => {
+                let rows = UnkeptLevel { source, level };
+                let mut row = vec![T::default(); rows.width() as usize];
+                rows.row(y, &mut row);
+                read(&row)
+            }
+            Some(kept) => read(self.kept[kept].row_texels(y)),
+        }
+    }
+
+    /// Returns the single texel of the coarsest level.
+    pub fn coarsest(&self, source: &impl TexelRows<Texel = T>) -> T {
+        let mut texel = [T::default()];
+        self.row(source, self.unkept + self.kept.len(), 0, &mut texel);
+        texel[0]
+    }
+}
+
+impl<T> From<Vec<Level<T>>> for MipTail<T> {
+    fn from(kept: Vec<Level<T>>) -> Self {
+        Self { unkept: 0, kept }
+    }
+}
+
+/// A level whose rows are computed from level 0 whenever they are read.
+struct UnkeptLevel<'a, R> {
+    source: &'a R,
+    level: usize,
+}
+
+impl<R: TexelRows> TexelRows for UnkeptLevel<'_, R> {
+    type Texel = R::Texel;
+
+    fn width(&self) -> u32 {
+        (0..self.level).fold(self.source.width(), |width, _| level_size(width))
+    }
+
+    fn height(&self) -> u32 {
+        (0..self.level).fold(self.source.height(), |height, _| level_size(height))
+    }
+
+    fn row(&self, y: u32, out: &mut [R::Texel]) {
+        let Some(level) = self.level.checked_sub(1) else { return self.source.row(y, out) };
+        let finer = Self { source: self.source, level };
+        let (width, down) = (finer.width() as usize, Taps::new(finer.height(), y));
+        let mut rows = vec![R::Texel::default(); width * down.count];
+        for (tap, row) in rows.chunks_exact_mut(width).enumerate() {
+            finer.row(down.first + tap as u32, row);
+        }
+        reduce_row(InstructionSet::new(), &rows, width, &down, out);
+    }
+}

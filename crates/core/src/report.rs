@@ -1,0 +1,231 @@
+//! The report of a bake, as data. `schemas/report.schema.json` describes it as JSON.
+
+mod format;
+mod reason;
+mod run;
+
+pub use format::{FormatError, check_format};
+pub use reason::{Evidence, Reason};
+pub use run::{AssetOutcome, Counts, Origin, PartAsset, PartReport, REPORT_FORMAT, ReportError, RunReport, Status};
+
+use serde::{Deserialize, Serialize};
+
+use crate::gltf::material::{LayerKind, Material};
+use crate::material::Range;
+use crate::settings::{Finest, Model, Settings};
+
+/// The report of one asset.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "camelCase")]
+#[non_exhaustive]
+pub struct AssetReport {
+    /// Layers of materials, in the order of the file.
+    pub layers: Vec<LayerReport>,
+    /// The textures that were made.
+    pub textures: Vec<TextureReport>,
+}
+
+/// The report of one layer of a material.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "camelCase")]
+#[non_exhaustive]
+pub struct LayerReport {
+    /// Index of the material in `materials`.
+    pub index: usize,
+    /// Name of the material, or `material <index>` if it has none.
+    pub material: String,
+    /// Which layer of the material.
+    pub layer: LayerKind,
+    /// What is modelled of the lost bumps; absent if nothing was baked.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub model: Option<Model>,
+    /// How the model was chosen; absent if the base lobe is not known texel by texel.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub choice: Option<Choice>,
+    /// The finest level of the bump map that the view can sample; absent if no view is given or the meshes do not say.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub finest: Option<Finest>,
+    /// What was left unchanged or is not as exact as it could be, and why.
+    pub notes: Vec<String>,
+}
+
+impl LayerReport {
+    /// Returns the report of a material without bumps.
+    pub fn flat(material: &Material) -> Self {
+        Self {
+            index: material.index,
+            material: material.name.clone(),
+            layer: LayerKind::Base,
+            model: None,
+            choice: None,
+            finest: None,
+            notes: vec!["no normal or height map: left as it was".to_owned()],
+        }
+    }
+}
+
+/// How the roughness data of a layer was chosen.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "camelCase")]
+#[non_exhaustive]
+pub struct Choice {
+    /// The finest level that can be sampled. The first error of each candidate belongs to this level.
+    pub finest: usize,
+    /// The candidates in order of rising cost: shader work first, then bytes.
+    pub candidates: Vec<Candidate>,
+    /// Index of the chosen candidate.
+    pub chosen: usize,
+    /// Levels at which the chosen candidate exceeds the error bound.
+    pub misses: Vec<Miss>,
+}
+
+/// A candidate for the roughness data of a layer.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "camelCase")]
+#[non_exhaustive]
+pub struct Candidate {
+    /// The model.
+    pub model: Model,
+    /// The level that becomes level 0 of the textures: 1 for half the size, 2 for a quarter.
+    pub first: usize,
+    /// Bytes of the textures on the GPU; 0 for model none, which keeps the material's own textures.
+    pub bytes: u64,
+    /// Mean lobe error of the decoded levels, from `finest` on.
+    pub errors: Vec<f32>,
+}
+
+/// A level at which the chosen candidate exceeds the error bound.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "camelCase")]
+#[non_exhaustive]
+pub struct Miss {
+    /// The level.
+    pub level: usize,
+    /// Mean lobe error of the level.
+    pub error: f32,
+    /// Mean lobe error of the best single lobe.
+    pub oracle: f32,
+    /// Why the bound is exceeded.
+    pub reason: Reason,
+}
+
+impl Choice {
+    /// Returns the chosen candidate.
+    pub fn taken(&self) -> Option<&Candidate> {
+        self.candidates.get(self.chosen)
+    }
+
+    /// Returns the largest errors of the chosen candidate and of the other models, as text:
+    /// ` (error 0.12; isotropic 0.41, none 0.43)`.
+    pub fn summary(&self) -> String {
+        let worst = |c: &Candidate| c.errors.iter().copied().fold(0.0, f32::max);
+        let Some(taken) = self.taken() else { return String::new() };
+        let finest = self.candidates.iter().map(|c| c.first).min().unwrap_or(0);
+        let size = ["", ", half size", ", quarter size"].get(taken.first - finest).copied().unwrap_or_default();
+        // Other models are shown at full size only.
+        let others = self.candidates.iter().rev().filter(|c| c.model != taken.model && c.first == finest);
+        let others: Vec<String> = others.map(|c| format!("{} {:.2}", c.model.name(), worst(c))).collect();
+        let others = if others.is_empty() { String::new() } else { format!("; {}", others.join(", ")) };
+        format!("{size} (error {:.2}{others})", worst(taken))
+    }
+
+    /// Returns the error bound and the levels that exceed it, in a sentence; `None` if no level does.
+    pub fn warning(&self, settings: &Settings) -> Option<String> {
+        let worst = self.misses.iter().max_by(|a, b| a.error.total_cmp(&b.error))?;
+        let mut reasons: Vec<Reason> = self.misses.iter().map(|m| m.reason).collect();
+        reasons.sort();
+        reasons.dedup();
+        let levels = |of: &dyn Fn(&Miss) -> bool| ranges(self.misses.iter().filter(|m| of(m)).map(|m| m.level));
+        let all = levels(&|_| true);
+        let why = |reason: &Reason| match reasons.len() {
+            1 => reason.text().to_owned(),
+            _ => format!("{} ({})", reason.text(), levels(&|m| m.reason == *reason)),
+        };
+        let why: Vec<String> = reasons.iter().map(why).collect();
+        let (levels, verb) = if self.misses.len() == 1 { ("level", "misses") } else { ("levels", "miss") };
+        Some(format!(
+            "{levels} {all} {verb} --max-error {} (worst {:.2}, at level {}; the best lobe has {:.2} there): {}",
+            settings.max_error,
+            worst.error,
+            worst.level,
+            worst.oracle,
+            why.join("; ")
+        ))
+    }
+}
+
+/// Returns numbers as text, such as `2-5, 7`.
+fn ranges(numbers: impl Iterator<Item = usize>) -> String {
+    let mut ranges: Vec<(usize, usize)> = Vec::new();
+    for n in numbers {
+        match ranges.last_mut() {
+            Some((_, last)) if *last + 1 == n => *last = n,
+            _ => ranges.push((n, n)),
+        }
+    }
+    let text =
+        |(first, last): &(usize, usize)| if first == last { first.to_string() } else { format!("{first}-{last}") };
+    ranges.iter().map(text).collect::<Vec<_>>().join(", ")
+}
+
+/// The report of one texture.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "camelCase")]
+#[non_exhaustive]
+pub struct TextureReport {
+    /// Path relative to the document.
+    pub path: String,
+    /// What the texels are.
+    pub content: Content,
+    /// Columns of level 0.
+    pub width: u32,
+    /// Rows of level 0.
+    pub height: u32,
+    /// Number of mip levels.
+    pub levels: usize,
+    /// Number of finer levels that were left out.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub trimmed: usize,
+    /// Bytes of the KTX2 file.
+    pub bytes: usize,
+    /// What texels of 0 and 1 stand for; only in the pyramid profile.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub range: Option<Range>,
+}
+
+fn is_zero(n: &usize) -> bool {
+    *n == 0
+}
+
+/// What the texels of a baked texture are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum Content {
+    /// Unit normals.
+    Normal,
+    /// Roughness in green; occlusion and metalness stay in red and blue.
+    Roughness,
+    /// Direction in red and green, and strength in blue, of the anisotropy.
+    Anisotropy,
+    /// Offsets (f_u, f_v).
+    Offset,
+    /// The factor D.
+    Factor,
+    /// The standard deviation lambda_1.
+    Lambda1,
+}
+
+impl Content {
+    /// Returns the name, as file names have it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Normal => "normal",
+            Self::Roughness => "roughness",
+            Self::Anisotropy => "anisotropy",
+            Self::Offset => "offset",
+            Self::Factor => "factor",
+            Self::Lambda1 => "lambda1",
+        }
+    }
+}

@@ -1,0 +1,75 @@
+//! The candidates for the roughness data of a layer, with their costs.
+
+use crate::codec::Format;
+use crate::material::{BumpMap, Encoding, Normals, Roughening};
+use crate::mip::{AreaResampled, Pyramid, Wrap};
+use crate::settings::{Model, Settings};
+
+/// A layer whose model is to be chosen, and what limits the choice.
+pub struct CandidateSet<'a, 'f, 'r> {
+    /// The base lobe and the bumps that roughen it.
+    pub roughening: &'a Roughening<'f>,
+    /// The error bound, the requested model and the target.
+    pub settings: &'a Settings,
+    /// The normal texture of the portable profile, if that profile is written.
+    pub normals: Option<&'a Normals<'a>>,
+    /// Moments and correction factor c of the pyramid profile, if that profile is written.
+    pub pyramid: Option<(&'a Pyramid<AreaResampled<&'r BumpMap>>, f32)>,
+    /// The sampler's mode, across and down.
+    pub wrap: [Wrap; 2],
+    /// The model with the most parameters that the layer can have.
+    pub max_model: Model,
+    /// The finest level that can be sampled.
+    pub finest: usize,
+    /// The finest level that is written.
+    pub first: usize,
+}
+
+impl CandidateSet<'_, '_, '_> {
+    /// Returns the models of all candidates, in the order of rising shader cost.
+    pub(super) fn models(&self) -> impl Iterator<Item = Model> {
+        [Model::None, Model::Isotropic, Model::Anisotropic].into_iter().filter(|model| self.offers(*model))
+    }
+
+    fn offers(&self, model: Model) -> bool {
+        match model {
+            // An anisotropic base lobe stays anisotropic unless the isotropic model is requested.
+            Model::Isotropic => {
+                !self.roughening.is_anisotropic()
+                    || self.max_model == Model::Isotropic
+                    || self.settings.model == Model::Isotropic
+            }
+            model => model <= self.max_model,
+        }
+    }
+
+    /// Returns the levels that may become level 0 of the roughness data, coarsest first: quarter, half and full size.
+    pub(super) fn first_levels(&self, model: Model, sizes: &[(u32, u32)]) -> Vec<usize> {
+        let encoding = Encoding::of(self.settings, 3);
+        let fits = |first: usize| {
+            first == self.first || first < sizes.len() && encoding.starting_at(first).first(sizes) == first
+        };
+        let may_shrink = model != Model::None
+            && self.settings.model == Model::Auto
+            && self.roughening.base().has_constant_red_blue();
+        let last = self.first + if may_shrink { 2 } else { 0 };
+        (self.first..=last).rev().filter(|first| fits(*first)).collect()
+    }
+
+    /// Returns the bytes of the roughness data on the GPU.
+    pub(super) fn bytes(&self, model: Model, first: usize, sizes: &[(u32, u32)]) -> u64 {
+        let target = self.settings.target;
+        let of = |format: Format| sizes[first..].iter().map(|s| format.level_bytes(s.0, s.1) as u64).sum::<u64>();
+        let portable = match model {
+            Model::Isotropic => of(target.format(3)),
+            Model::Anisotropic => 2 * of(target.format(3)),
+            _ => 0,
+        };
+        let pyramid = match model {
+            Model::Isotropic => of(target.format(1)),
+            Model::Anisotropic => of(target.format(3)),
+            _ => 0,
+        };
+        u64::from(self.normals.is_some()) * portable + u64::from(self.pyramid.is_some()) * pyramid
+    }
+}

@@ -1,0 +1,119 @@
+//! The evaluation of candidates at sample points, and the choice among them.
+
+use crate::codec::EncodeError;
+use crate::lobe::OrientedLobe;
+use crate::metric::{Precision, Site, survey};
+use crate::report::{Candidate, Choice};
+use crate::select::candidate_set::CandidateSet;
+use crate::select::choose::choose;
+use crate::select::misses::{misses, rounded};
+use crate::select::shown::{Errors, Shown};
+use crate::settings::Model;
+
+/// A candidate and its error at each sample point.
+struct Evaluated {
+    candidate: Candidate,
+    errors: Errors,
+}
+
+/// The sample points of all levels from `finest` on.
+struct Samples {
+    sizes: Vec<(u32, u32)>,
+    finest: usize,
+    sites: Vec<Site>,
+}
+
+impl CandidateSet<'_, '_, '_> {
+    /// Evaluates all candidates and chooses one. Under a fixed model, all models are evaluated in full size, so that
+    /// the report shows their errors.
+    ///
+    /// # Errors
+    /// [`EncodeError`] if the blocks at the sample points cannot be encoded.
+    pub fn choose(&self) -> Result<Choice, EncodeError> {
+        let samples = self.samples();
+        let shown = Shown::new(self, samples.sites.iter(), true)?;
+        let mut evaluated = Vec::new();
+        for model in self.models() {
+            evaluated.extend(self.evaluate(model, &samples, &shown)?);
+        }
+        let chosen = self.index_of_choice(&evaluated);
+        let Evaluated { candidate, errors } = &evaluated[chosen];
+        let misses = misses(self, &samples.sites, candidate, errors, samples.finest)?;
+        let candidates = evaluated.into_iter().map(|evaluated| evaluated.candidate).collect();
+        Ok(Choice { finest: samples.finest, candidates, chosen, misses })
+    }
+
+    fn samples(&self) -> Samples {
+        let sizes = self.roughening.sizes();
+        let finest = self.finest.min(sizes.len() - 1);
+        let lobes = self.roughening.lobes();
+        let row = |y, out: &mut [OrientedLobe]| lobes.row(0, y, out);
+        let sites = survey(&sizes, finest..sizes.len(), self.settings.family, Precision::QUICK, &row);
+        Samples { sizes, finest, sites }
+    }
+
+    /// Evaluates `model` in each of its sizes, smallest first.
+    fn evaluate(
+        &self,
+        model: Model,
+        samples: &Samples,
+        shown: &Shown<'_, '_, '_>,
+    ) -> Result<Vec<Evaluated>, EncodeError> {
+        let Samples { sizes, finest, sites } = samples;
+        let full = shown.errors(&sites.iter().collect::<Vec<_>>(), model, self.first)?;
+        let evaluated = |first: usize| {
+            let errors = self.errors_of_size(&full, model, first, sites, shown)?;
+            let candidate = Candidate {
+                model,
+                first,
+                bytes: self.bytes(model, first, sizes),
+                errors: by_level(sites, &errors, *finest, sizes.len()),
+            };
+            Ok(Evaluated { candidate, errors })
+        };
+        self.first_levels(model, sizes).into_iter().map(evaluated).collect()
+    }
+
+    /// Returns the errors of textures that begin with level `first`, given the errors of the `full` size. At levels
+    /// that a smaller texture has, it holds the blocks of the full size; levels that it lacks are magnified.
+    fn errors_of_size(
+        &self,
+        full: &Errors,
+        model: Model,
+        first: usize,
+        sites: &[Site],
+        shown: &Shown<'_, '_, '_>,
+    ) -> Result<Errors, EncodeError> {
+        let mut errors = full.clone();
+        let lacking: Vec<usize> = (0..sites.len()).filter(|i| sites[*i].level < first).collect();
+        if first > self.first && !lacking.is_empty() {
+            let part: Vec<&Site> = lacking.iter().map(|i| &sites[*i]).collect();
+            let magnified = shown.subset(&lacking).errors(&part, model, first)?;
+            lacking.iter().zip(magnified).for_each(|(i, error)| errors[*i] = error);
+        }
+        Ok(errors)
+    }
+
+    fn index_of_choice(&self, evaluated: &[Evaluated]) -> usize {
+        let chosen = match self.settings.model {
+            Model::Auto => {
+                let errors: Vec<Vec<f32>> = evaluated.iter().map(|e| e.candidate.errors.clone()).collect();
+                choose(&errors, self.settings.max_error)
+            }
+            requested => evaluated.iter().position(|e| e.candidate.model == requested.min(self.max_model)),
+        };
+        chosen.unwrap_or(0)
+    }
+}
+
+/// Returns the mean errors of the levels from `finest` on.
+fn by_level(sites: &[Site], errors: &Errors, finest: usize, levels: usize) -> Vec<f32> {
+    let mean = |level: usize| {
+        let of: Vec<f64> = sites.iter().zip(errors).filter(|(s, _)| s.level == level).map(|(_, e)| *e).collect();
+        rounded(of.iter().sum::<f64>() / of.len().max(1) as f64)
+    };
+    (finest..levels).map(mean).collect()
+}
+
+#[cfg(test)]
+mod tests;

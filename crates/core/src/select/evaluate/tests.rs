@@ -1,0 +1,253 @@
+use crate::bake::{BakedMap, BaseRoughness, bake_map};
+use crate::bump::{NormalLayout, NormalMap};
+use crate::codec::Target;
+use crate::image::{Image, Samples};
+use crate::ktx2::Ktx2;
+use crate::lobe::{Alpha, Family, Roughness, SquaredAlpha};
+use crate::material::{Base, BaseRows, BumpMap, Bumps, Normals, Roughening};
+use crate::metric::{Decoded, Surface, mean_errors, sample_texels};
+use crate::mip::Wrap;
+use crate::report::{Content, Reason};
+use crate::select::evaluate::*;
+use crate::settings::{Profile, Settings};
+
+/// Returns a normal map of `side` x `side` texels with these slopes.
+fn normals(side: u32, slope: impl Fn(u32, u32) -> [f32; 2]) -> Image {
+    let texel = |i: u32| {
+        let [u, v] = slope(i % side, i / side);
+        let length = (1.0 + u * u + v * v).sqrt();
+        [-u / length, -v / length, 1.0 / length].map(|c| 0.5 * c + 0.5)
+    };
+    let samples = (0..side * side).flat_map(texel).collect();
+    Image { width: side, height: side, channels: 3, samples: Samples::F32(samples) }
+}
+
+/// Returns pseudo-random numbers in [-1, 1], nearly normally distributed with deviation 1/2.
+fn noise(x: u32, y: u32, seed: u32) -> f32 {
+    let mut state = x.wrapping_mul(0x9e37_79b9) ^ y.wrapping_mul(0x85eb_ca6b) ^ seed.wrapping_mul(0xc2b2_ae35);
+    let mut sum = 0.0;
+    for _ in 0..4 {
+        state = (state ^ (state >> 15)).wrapping_mul(0x2c1b_3c6d);
+        state = (state ^ (state >> 12)).wrapping_mul(0x297a_2d39);
+        state ^= state >> 15;
+        sum += (state >> 8) as f32 / (1 << 23) as f32 - 1.0;
+    }
+    0.25 * sum
+}
+
+fn rough_noise(x: u32, y: u32) -> [f32; 2] {
+    [0.5 * noise(x, y, 1), 0.5 * noise(x, y, 2)]
+}
+
+fn brushed(x: u32, y: u32) -> [f32; 2] {
+    [0.02 * noise(x, y, 1), 0.6 * noise(0, y, 2)]
+}
+
+fn bake(image: &Image, roughness: f32, settings: &Settings) -> BakedMap {
+    bake_with(image, BaseRoughness { image: None, factor: roughness }, settings)
+}
+
+fn bake_with(image: &Image, base: BaseRoughness, settings: &Settings) -> BakedMap {
+    let map = NormalMap::new(image.clone(), NormalLayout::Xyz, false).unwrap();
+    bake_map(&BumpMap::Normals(map), Some(&base), settings).unwrap()
+}
+
+fn choice_of(image: &Image, roughness: f32, settings: &Settings) -> Choice {
+    bake(image, roughness, settings).choice.unwrap()
+}
+
+fn settings(max_error: f32) -> Settings {
+    Settings { max_error, ..Settings::default() }
+}
+
+fn taken(choice: &Choice) -> (Model, usize) {
+    let taken = choice.taken().unwrap();
+    (taken.model, taken.first)
+}
+
+#[test]
+fn flat_maps_and_matt_materials_need_no_model() {
+    let flat = choice_of(&normals(64, |_, _| [0.0; 2]), 0.7, &settings(0.01));
+    assert_eq!((taken(&flat), flat.misses.len()), ((Model::None, 0), 0));
+    assert!(flat.candidates[0].errors.iter().all(|e| *e < 0.008), "{:?}", flat.candidates[0]);
+    assert_eq!(flat.candidates[0].bytes, 0);
+    assert_eq!(taken(&choice_of(&normals(64, rough_noise), 1.0, &settings(0.1))).0, Model::None);
+}
+
+#[test]
+fn brushed_metal_needs_the_anisotropic_model_and_noise_the_isotropic_model() {
+    let metal = choice_of(&normals(64, brushed), 0.4, &settings(0.12));
+    assert_eq!(taken(&metal).0, Model::Anisotropic, "{metal:#?}");
+    let noise = choice_of(&normals(64, rough_noise), 0.4, &settings(0.2));
+    assert_eq!(taken(&noise).0, Model::Isotropic, "{noise:#?}");
+    assert!(noise.misses.is_empty());
+}
+
+/// Cost is shader work, then bytes: none, then isotropic from small to large, then anisotropic.
+#[test]
+fn candidates_rise_in_cost() {
+    let choice = choice_of(&normals(64, brushed), 0.2, &settings(0.1));
+    let order: Vec<_> = choice.candidates.iter().map(|c| (c.model, c.first)).collect();
+    let of = |model| [(model, 2), (model, 1), (model, 0)];
+    let expected = [&[(Model::None, 0)][..], &of(Model::Isotropic), &of(Model::Anisotropic)].concat();
+    assert_eq!(order, expected);
+    for pair in choice.candidates.windows(2) {
+        assert!((pair[0].model, pair[0].bytes) < (pair[1].model, pair[1].bytes), "{pair:?}");
+    }
+    // 64 x 64 down to 1 x 1: 256 + 64 + 16 + 4 + 1 + 1 + 1 blocks of 16 bytes.
+    assert_eq!(choice.candidates[3].bytes, 343 * 16);
+}
+
+#[test]
+fn smaller_textures_have_the_blocks_of_the_full_size() {
+    // Bumps two texels wide: the levels from 1 on have lost all there is to lose, and level 0 has as much everywhere
+    // within a texel as anywhere. Rough enough that level 0 does not care.
+    let checks = normals(64, |x, y| if (x / 8 + y / 8) % 2 == 0 { [0.06, 0.0] } else { [-0.06, 0.0] });
+    let choice = choice_of(&checks, 0.6, &settings(0.05));
+    let at = |model, first| choice.candidates.iter().find(|c| (c.model, c.first) == (model, first)).unwrap();
+    // At levels that the smaller texture has, it holds equal blocks.
+    for model in [Model::Isotropic, Model::Anisotropic] {
+        for first in [1, 2] {
+            assert_eq!(at(model, first).errors[first..], at(model, 0).errors[first..]);
+            assert!(at(model, first).bytes < at(model, first - 1).bytes / 3);
+        }
+    }
+    let all = settings(1.0);
+    assert_eq!(taken(&choice_of(&checks, 0.6, &all)), (Model::None, 0));
+}
+
+#[test]
+fn bakes_the_chosen_size() {
+    // Noise of the finest grain: roughness is the same everywhere from level 1 on, and a little at level 0 is allowed.
+    let image = normals(64, |x, y| [0.3 * noise(x, y, 1), 0.3 * noise(x, y, 2)]);
+    let baked = bake(&image, 0.4, &settings(0.13));
+    let choice = baked.choice.as_ref().unwrap();
+    let (model, first) = taken(choice);
+    assert!(model == Model::Isotropic && first > 0, "{choice:#?}");
+    let roughness = baked.textures.iter().find(|t| t.content == Content::Roughness).unwrap();
+    assert_eq!((roughness.mip_chain.width, roughness.mip_chain.trimmed), (64 >> first, first));
+    // With a fixed model nothing is saved.
+    let fixed = bake(&image, 0.4, &Settings { model: Model::Isotropic, ..settings(0.13) });
+    assert_eq!(fixed.textures[1].mip_chain.width, 64);
+}
+
+/// A smaller texture would also lose a level of metalness and occlusion.
+#[test]
+fn textures_with_other_data_keep_their_size() {
+    let base = |blue: &dyn Fn(u32) -> u8| {
+        let samples = (0..64 * 64).flat_map(|i| [255, 80, blue(i)]).collect();
+        BaseRoughness {
+            image: Some(Image { width: 64, height: 64, channels: 3, samples: Samples::U8(samples) }),
+            factor: 1.0,
+        }
+    };
+    let image = normals(64, |x, y| [0.3 * noise(x, y, 1), 0.3 * noise(x, y, 2)]);
+    let plain = bake_with(&image, base(&|_| 255), &settings(0.13)).choice.unwrap();
+    let mixed = bake_with(&image, base(&|i| if i % 7 == 0 { 0 } else { 255 }), &settings(0.13)).choice.unwrap();
+    assert!(plain.candidates.iter().any(|c| c.first > 0));
+    assert!(mixed.candidates.iter().all(|c| c.first == 0));
+}
+
+/// Compares the errors at the sample points with the errors of all texels of the baked files.
+#[test]
+fn errors_are_those_of_the_baked_files() {
+    for (slope, target, family) in [
+        (brushed as fn(u32, u32) -> [f32; 2], Target::Basis, Family::Ggx),
+        (rough_noise, Target::Float, Family::Beckmann),
+        #[cfg(feature = "bc")]
+        (brushed, Target::Bc, Family::Ggx),
+    ] {
+        let image = normals(64, slope);
+        let settings = Settings { model: Model::Anisotropic, target, family, ..settings(0.1) };
+        let baked = bake(&image, 0.4, &settings);
+        let choice = baked.choice.as_ref().unwrap();
+        let map = NormalMap::new(image, NormalLayout::Xyz, false).unwrap();
+        let surface = Surface::of_map(&map, SquaredAlpha::isotropic(Alpha::from(Roughness(0.4))));
+        for (level, found) in choice.taken().unwrap().errors.iter().enumerate() {
+            let size = (64 >> level, 64 >> level);
+            let of = |content| {
+                let mip_chain = &baked.textures.iter().find(|t| t.content == content).unwrap().mip_chain;
+                Ktx2::parse(&mip_chain.to_ktx2(&[]).unwrap()).unwrap().decode_level(level as u32).unwrap()
+            };
+            let decoded = Decoded {
+                normal: of(Content::Normal),
+                roughness: Some(of(Content::Roughness)),
+                roughness_factor: 1.0,
+                anisotropy: Some(of(Content::Anisotropy)),
+            };
+            let texels = sample_texels(size, 128);
+            let [full] = mean_errors(&surface, family, size, &texels, |(x, y), _, reference| {
+                [reference.error(&decoded.lobe(family, x, y).unwrap())]
+            });
+            assert!((f64::from(*found) - full).abs() < 0.015, "{target:?}, level {level}: {found} {full}");
+        }
+    }
+}
+
+#[test]
+fn the_error_of_both_profiles_is_the_larger_one() {
+    let image = normals(64, brushed);
+    let of = |profile| choice_of(&image, 0.4, &Settings { profile, model: Model::Anisotropic, ..settings(0.1) });
+    let [portable, pyramid, both] = [Profile::Portable, Profile::Pyramid, Profile::Both].map(of);
+    for (i, candidate) in both.candidates.iter().enumerate() {
+        for (level, error) in candidate.errors.iter().enumerate() {
+            let (a, b) = (portable.candidates[i].errors[level], pyramid.candidates[i].errors[level]);
+            // The mean of the larger is not less than the larger of the means.
+            assert!(*error >= a.max(b) - 1e-4 && *error <= a + b + 1e-4, "{i} {level}: {error} {a} {b}");
+        }
+        assert_eq!(candidate.bytes, portable.candidates[i].bytes + pyramid.candidates[i].bytes);
+    }
+}
+
+#[test]
+fn distinguishes_two_peaks_from_too_simple_a_model() {
+    // V-grooves: half of the texels lean one way, half the other; no lobe covers both.
+    let grooves = choice_of(
+        &normals(64, |x, _| if x % 2 == 0 { [0.5, 0.0] } else { [-0.5, 0.0] }),
+        0.3,
+        &Settings { target: Target::Float, ..settings(0.1) },
+    );
+    assert!(!grooves.misses.is_empty());
+    assert!(grooves.misses.iter().all(|m| m.reason == Reason::TwoPeaked), "{:#?}", grooves.misses);
+    let warning = grooves.warning(&settings(0.1)).unwrap();
+    assert!(
+        warning.starts_with("levels 1-6 miss --max-error 0.1") && warning.ends_with("two peaks, one lobe"),
+        "{warning}"
+    );
+    // The model none was requested, and a single lobe would meet the bound.
+    let none = choice_of(&normals(64, rough_noise), 0.4, &Settings { model: Model::None, ..settings(0.14) });
+    assert!(!none.misses.is_empty());
+    assert!(none.misses.iter().all(|m| m.level == 0 || m.reason == Reason::Fit), "{:#?}", none.misses);
+    assert_eq!((none.misses[0].level, none.misses[0].reason), (0, Reason::Encoding));
+}
+
+#[test]
+fn levels_that_cannot_be_sampled_do_not_count() {
+    let image = normals(64, brushed);
+    let map = NormalMap::new(image, NormalLayout::Xyz, false).unwrap();
+    let bump_map = BumpMap::Normals(map);
+    let bumps = Bumps::new(&bump_map, (64, 64));
+    let base = Base::new(BaseRows::new(64, 64, None, 0.4, None, [Wrap::Repeat; 2]));
+    let settings = settings(0.1);
+    let roughening = Roughening::new(base, &bumps, 1.0, &settings);
+    let normals = Normals::of_lobes(&bumps, roughening.lobes());
+    let candidates = |finest| CandidateSet {
+        roughening: &roughening,
+        settings: &settings,
+        normals: Some(&normals),
+        pyramid: None,
+        wrap: [Wrap::Repeat; 2],
+        max_model: Model::Anisotropic,
+        finest,
+        first: 0,
+    };
+    let [all, coarse] = [0, 3].map(|finest| candidates(finest).choose().unwrap());
+    assert_eq!((all.finest, coarse.finest), (0, 3));
+    for candidate in &coarse.candidates {
+        let same = all.candidates.iter().find(|c| (c.model, c.first) == (candidate.model, candidate.first)).unwrap();
+        assert_eq!(candidate.errors, same.errors[3..]);
+    }
+    // A quarter of the size lacks nothing that is sampled.
+    assert_eq!(taken(&coarse).1, 2);
+    assert_eq!(candidates(99).choose().unwrap().finest, 6, "there is always one level");
+}

@@ -1,0 +1,12 @@
+//! The choice of a model: candidates, their errors and costs, the cheapest candidate within the error bound, and the
+//! reasons why a bound is missed. Candidates are measured at sample points, before any of them is baked.
+
+mod candidate_set;
+mod choose;
+mod evaluate;
+mod misses;
+mod shown;
+mod texture_samples;
+
+pub use candidate_set::CandidateSet;
+pub use choose::choose;

@@ -1,0 +1,251 @@
+//! What a bake can be asked for. Every setting changes output bytes, so every setting goes into the provenance.
+
+mod error;
+mod view;
+
+pub use error::{Limit, SettingsError, limit};
+pub use view::{Finest, View};
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+
+use crate::bump::Frame;
+use crate::codec::Target;
+use crate::codec::uastc::Effort;
+use crate::lobe::{Distribution, Family};
+
+/// Which data to write.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum Profile {
+    /// Normal and roughness mips that any engine shades right.
+    #[default]
+    Portable,
+    /// Offset and roughness maps for engines with a plugin. The core material stays as it was.
+    #[cfg_attr(feature = "cli", value(help = "Offset and roughness maps for engines with a plugin"))]
+    Pyramid,
+    /// Both.
+    Both,
+}
+
+impl Profile {
+    /// Returns whether the core material is baked.
+    pub fn is_portable(self) -> bool {
+        matches!(self, Self::Portable | Self::Both)
+    }
+
+    /// Returns whether the extension is written.
+    pub fn has_pyramid(self) -> bool {
+        matches!(self, Self::Pyramid | Self::Both)
+    }
+}
+
+/// What is modelled of the lost bumps. A later variant models more.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum Model {
+    /// The cheapest model, in the smallest size, that stays within [`Settings::max_error`].
+    #[default]
+    #[cfg_attr(feature = "cli", value(help = "The cheapest that stays within --max-error, in the smallest size"))]
+    Auto,
+    /// Normals get their mips, roughness stays.
+    None,
+    /// One number per texel.
+    Isotropic,
+    /// An ellipse per texel.
+    Anisotropic,
+}
+
+impl Model {
+    /// Returns the name, as the command line has it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::None => "none",
+            Self::Isotropic => "isotropic",
+            Self::Anisotropic => "anisotropic",
+        }
+    }
+}
+
+/// How the document refers to textures.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum Form {
+    /// A PNG of level 0 is the `source` of the texture, and `KHR_texture_basisu` names the KTX2. Engines without KTX2
+    /// show the PNG. Conforms to the specification.
+    #[default]
+    #[cfg_attr(feature = "cli", value(help = "PNG of level 0 as source, KTX2 on KHR_texture_basisu"))]
+    Fallback,
+    /// Only the KTX2 is there, and `KHR_texture_basisu` is required. Conforms to the specification.
+    #[cfg_attr(feature = "cli", value(help = "KTX2 only, KHR_texture_basisu required"))]
+    Strict,
+    /// `source` and `KHR_texture_basisu` both name the KTX2: against the specification, but every engine loads it.
+    #[cfg_attr(
+        feature = "cli",
+        value(help = "KTX2 as source and on KHR_texture_basisu: off the specification, loads everywhere")
+    )]
+    Dual,
+}
+
+/// Settings of a bake. Build them from [`Settings::default`] with the `with_` functions or by assigning to fields.
+///
+/// A bake refuses values that [`Settings::validate`] refuses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Settings {
+    /// Which data to write.
+    pub profile: Profile,
+    /// What is modelled of the lost bumps.
+    pub model: Model,
+    /// Largest mean lobe error at any level, in [0, 1], that [`Model::Auto`] accepts.
+    pub max_error: f32,
+    /// The shape of the distribution of slopes that footprints are assumed to have.
+    pub distribution: Distribution,
+    /// The lobe that the engine shades with.
+    pub family: Family,
+    /// The payload of textures.
+    pub target: Target,
+    /// Search effort of block encoders.
+    pub effort: Effort,
+    /// How much signal-to-noise ratio, in dB, each level of [`Target::Basis`] may lose for fewer bytes: above 0, up to
+    /// 6. `None` leaves the blocks as they are.
+    pub rdo: Option<f64>,
+    /// How the document refers to textures.
+    pub form: Form,
+    /// Whether a .glb is written instead of a .gltf with external files.
+    pub glb: bool,
+    /// Frame of the pyramid profile's offsets.
+    pub frame: Frame,
+    /// Scale of height maps in widths of a repeat (in mesh units under [`Frame::Natural`]). It overrides the asset's
+    /// own.
+    pub height_scale: Option<f32>,
+    /// The camera, if it is known.
+    pub view: Option<View>,
+    /// Largest number of texels of an input image.
+    pub max_texels: u64,
+    /// Whether version, settings and source digests are written into each KTX2.
+    pub provenance: bool,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            profile: Profile::default(),
+            model: Model::default(),
+            max_error: 0.1,
+            distribution: Distribution::default(),
+            family: Family::default(),
+            target: Target::default(),
+            effort: Effort::Fast,
+            rdo: None,
+            form: Form::default(),
+            glb: false,
+            frame: Frame::default(),
+            height_scale: None,
+            view: None,
+            max_texels: 1 << 28,
+            provenance: true,
+        }
+    }
+}
+
+/// Declares a function that sets one field and returns the settings.
+macro_rules! setters {
+    ($($name:ident: $field:ident, $type:ty;)*) => {
+        $(
+            #[doc = concat!("Sets [`Settings::", stringify!($field), "`].")]
+            #[must_use]
+            pub fn $name(self, $field: $type) -> Self {
+                Self { $field: $field.into(), ..self }
+            }
+        )*
+    };
+}
+
+impl Settings {
+    setters! {
+        with_profile: profile, Profile;
+        with_model: model, Model;
+        with_max_error: max_error, f32;
+        with_distribution: distribution, Distribution;
+        with_family: family, Family;
+        with_target: target, Target;
+        with_effort: effort, Effort;
+        with_rdo: rdo, f64;
+        with_form: form, Form;
+        with_glb: glb, bool;
+        with_frame: frame, Frame;
+        with_height_scale: height_scale, f32;
+        with_view: view, View;
+        with_max_texels: max_texels, u64;
+        with_provenance: provenance, bool;
+    }
+
+    /// Checks every value and what the values mean together.
+    ///
+    /// # Errors
+    /// [`SettingsError`] for the first value that is out of range, or for two that exclude each other.
+    pub fn validate(&self) -> Result<(), SettingsError> {
+        if self.glb && self.form == Form::Dual {
+            return Err(SettingsError::DualInGlb);
+        }
+        limit::MAX_ERROR.check(f64::from(self.max_error))?;
+        self.rdo.map(|loss| limit::RDO.check(loss)).transpose()?;
+        self.height_scale.map(|scale| limit::HEIGHT_SCALE.check(f64::from(scale))).transpose()?;
+        if let Frame::MainDirection(m) = self.frame {
+            let length = m.iter().map(|x| x * x).sum::<f32>().sqrt();
+            // Normalising in single precision leaves a length within 3e-7 of 1. NaN is no unit length.
+            let is_unit = (length - 1.0).abs() < 1e-5;
+            if !is_unit {
+                return Err(SettingsError::Range {
+                    name: "main-direction",
+                    expected: "a direction of length 1",
+                    found: format!("{m:?}"),
+                });
+            }
+        }
+        self.view.map_or(Ok(()), |view| view.validate())
+    }
+
+    /// Returns what decides on the bytes of a texture that models `model`, for its provenance. If the bake chose the
+    /// model, `asked` holds the model that was asked for.
+    pub fn to_json(&self, model: Model) -> Value {
+        let frame = match self.frame {
+            Frame::Natural => json!("natural"),
+            Frame::Unit => json!("unit"),
+            Frame::MainDirection(m) => json!({ "mainDirection": m.map(f64::from) }),
+        };
+        let mut settings = json!({
+            "profile": self.profile,
+            "model": model,
+            "maxError": f64::from(self.max_error),
+            "distribution": self.distribution,
+            "lobe": self.family,
+            "target": self.target,
+            "quality": match self.effort {
+                Effort::Fast => "fast",
+                Effort::Best => "best",
+            },
+            "gltf": self.form,
+            "frame": frame,
+            "heightScale": self.height_scale.map(f64::from),
+        });
+        if model != self.model {
+            settings["asked"] = json!(self.model);
+        }
+        if let Some(loss) = self.rdo {
+            settings["rdo"] = json!(loss);
+        }
+        if let Some(view) = self.view {
+            settings["view"] = json!(view);
+        }
+        settings
+    }
+}

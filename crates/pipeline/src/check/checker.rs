@@ -1,0 +1,207 @@
+//! Checks files and folders, and collects the findings in a report.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use rayon::prelude::*;
+use semver::Version;
+
+use super::document::check_document;
+use super::files::Files;
+use super::findings::{Code, Finding, Findings, Severity};
+use super::folder::Folder;
+use super::formats::Report;
+use super::origin::Origin;
+use super::partial_file::PartialFile;
+use super::scope::Scope;
+use super::targets::{Sources, Target, find_targets, source_document};
+use super::texture::{Usage, check_texture};
+use crate::input_file::read_file;
+
+/// How files are checked.
+pub struct Checker {
+    /// Whether every texel is decoded.
+    pub is_deep: bool,
+    /// The oldest version of the tool whose outputs are accepted.
+    pub min_version: Option<Version>,
+    /// Findings that count as errors.
+    pub deny: Vec<Code>,
+    /// Findings that count as notes.
+    pub allow: Vec<Code>,
+    /// Whether assets without explicit settings must have the default settings, since they will be baked with those.
+    pub expects_defaults: bool,
+}
+
+/// The results of a check.
+#[derive(Default)]
+pub struct Checked {
+    /// The findings.
+    pub report: Report,
+    /// Messages on files that cannot be read.
+    pub errors: Vec<String>,
+    /// Keys of the assets of [`Sources`] with findings that a bake cures.
+    pub curable: BTreeSet<PathBuf>,
+}
+
+/// The findings of a document and of the files that it refers to.
+struct DocumentFindings {
+    findings: Vec<Finding>,
+    /// Real paths of the files.
+    files: Vec<PathBuf>,
+}
+
+impl Checker {
+    /// Checks the files and folders `baked` against `sources`.
+    pub fn check(&self, baked: &[PathBuf], sources: &Sources) -> Checked {
+        let mut checked = Checked::default();
+        let mut targets = Vec::new();
+        for argument in baked {
+            match find_targets(argument) {
+                Ok(found) => targets.extend(found),
+                Err(error) => {
+                    let path = argument.display();
+                    checked.errors.push(format!("{path}: expected a baked file or folder, found: {error}"));
+                }
+            }
+        }
+        let (textures, documents): (Vec<_>, Vec<_>) = targets.into_iter().partition(Target::is_texture);
+        let referred = self.check_documents(&documents, sources, &mut checked);
+        self.check_textures(&textures, &referred, sources, &mut checked);
+        self.find_missing_outputs(&documents, sources, &mut checked);
+        checked
+    }
+
+    /// Checks `documents` and returns the real paths of the files that they refer to.
+    fn check_documents(&self, documents: &[Target], sources: &Sources, checked: &mut Checked) -> BTreeSet<PathBuf> {
+        let mut referred = BTreeSet::new();
+        let results: Vec<_> = documents.par_iter().map(|target| self.check_document(target, sources)).collect();
+        for (target, result) in documents.iter().zip(results) {
+            let result = result.map(|DocumentFindings { findings, files }| {
+                referred.extend(files);
+                findings
+            });
+            let findings = self.add(target, result, checked);
+            let is_curable = |f: &Finding| f.severity != Severity::Note && f.code.is_fixed_by_bake();
+            if findings.iter().any(is_curable) {
+                checked.curable.insert(target.key());
+            }
+        }
+        referred
+    }
+
+    /// Checks the textures to which no document refers.
+    fn check_textures(
+        &self,
+        textures: &[Target],
+        referred: &BTreeSet<PathBuf>,
+        sources: &Sources,
+        checked: &mut Checked,
+    ) {
+        let is_referred = |path: &Path| fs::canonicalize(path).is_ok_and(|path| referred.contains(&path));
+        let standalone: Vec<&Target> = textures.iter().filter(|target| !is_referred(&target.path)).collect();
+        let results: Vec<_> = standalone.par_iter().map(|target| self.check_texture(target, sources)).collect();
+        for (target, result) in standalone.iter().zip(results) {
+            self.add(target, result, checked);
+        }
+    }
+
+    /// Adds a finding for every expected output that does not exist.
+    fn find_missing_outputs(&self, documents: &[Target], sources: &Sources, checked: &mut Checked) {
+        let present: BTreeSet<PathBuf> = documents.iter().map(Target::key).collect();
+        for missing in sources.expected.iter().filter(|key| !present.contains(*key)) {
+            let Some(asset) = sources.assets.get(missing) else { continue };
+            let mut findings = Findings::new(asset.input.path.display().to_string());
+            let message = format!("expected its output at {}, found none; bake it", missing.display());
+            findings.add(Code::NoOutput, "", message);
+            let mut findings = findings.into_list();
+            self.set_severities(&mut findings);
+            checked.report.findings.extend(findings);
+            checked.curable.insert(missing.clone());
+        }
+    }
+
+    /// Adds the findings of a file to the report, or an error if the file cannot be read. Returns the findings.
+    fn add<'c>(&self, target: &Target, result: io::Result<Vec<Finding>>, checked: &'c mut Checked) -> &'c [Finding] {
+        let list = &mut checked.report.findings;
+        let start = list.len();
+        match result {
+            Ok(mut findings) => {
+                self.set_severities(&mut findings);
+                checked.report.files.push(target.path.display().to_string());
+                list.extend(findings);
+            }
+            Err(error) => {
+                let path = target.path.display();
+                checked.errors.push(format!("{path}: expected a readable file, found: {error}"));
+            }
+        }
+        &checked.report.findings[start..]
+    }
+
+    /// Sets the severities that the user chose.
+    fn set_severities(&self, findings: &mut [Finding]) {
+        for finding in findings {
+            if self.deny.contains(&finding.code) {
+                finding.severity = Severity::Error;
+            } else if self.allow.contains(&finding.code) {
+                finding.severity = Severity::Note;
+            }
+        }
+    }
+
+    fn check_document(&self, target: &Target, sources: &Sources) -> io::Result<DocumentFindings> {
+        let bytes = read_file(&target.path)?;
+        let name = target.path.display().to_string();
+        let folder = target.path.parent().unwrap_or(Path::new(""));
+        let mut findings = Findings::new(&name);
+        // The output may have a shorter name than its source.
+        let known = sources.assets.get(&target.key());
+        let source_path = sources
+            .folder
+            .as_ref()
+            .map(|folder| known.map_or_else(|| folder.join(&target.below), |asset| asset.input.path.clone()));
+        let source_folder = source_path.as_deref().and_then(Path::parent).unwrap_or(Path::new("")).to_owned();
+        let read_source = |path: &Path| read_file(&source_folder.join(path));
+        let origin = source_path.and_then(|path| match source_document(&path) {
+            Ok(document) => Some(Origin::new(Some(document), &read_source)),
+            Err(reason) => {
+                let message =
+                    format!("expected the document that this was baked from at {}, found: {reason}", path.display());
+                findings.add(Code::MissingSource, "", message);
+                None
+            }
+        });
+        // Without explicit settings, any settings are accepted.
+        let asset = known.filter(|_| sources.is_configured || self.expects_defaults);
+        let scope = Scope { settings: asset.map(|asset| &asset.resolved.settings), ..self.scope(origin.as_ref()) };
+        let checked = check_document(&name, &bytes, &Folder(folder.to_owned()), &scope);
+        let mut findings = findings.into_list();
+        findings.extend(checked.findings);
+        let files = checked.files.iter().filter_map(|file| fs::canonicalize(folder.join(file)).ok()).collect();
+        Ok(DocumentFindings { findings, files })
+    }
+
+    /// Checks a texture to which no document refers.
+    fn check_texture(&self, target: &Target, sources: &Sources) -> io::Result<Vec<Finding>> {
+        let files = Folder(PathBuf::new());
+        let held = PartialFile::read(files.length(&target.path)?, self.is_deep, |part| files.read(&target.path, part))?;
+        let mut findings = Findings::new(target.path.display().to_string());
+        if target.is_of_document() {
+            let message = "expected a document that names it, found none: an earlier bake left it behind; delete it";
+            findings.add(Code::LeftOver, "", message);
+        } else {
+            let below = target.below.parent().unwrap_or(Path::new(""));
+            let folder = sources.folder.as_ref().map(|folder| folder.join(below));
+            let read_source = |path: &Path| read_file(&folder.as_deref().unwrap_or(Path::new("")).join(path));
+            let origin = folder.as_ref().map(|_| Origin::new(None, &read_source));
+            check_texture(held.as_ktx2(), Usage::default(), &self.scope(origin.as_ref()), &mut findings);
+        }
+        Ok(findings.into_list())
+    }
+
+    fn scope<'a>(&'a self, origin: Option<&'a Origin<'a>>) -> Scope<'a> {
+        Scope { is_deep: self.is_deep, origin, settings: None, min_version: self.min_version.as_ref() }
+    }
+}

@@ -1,0 +1,95 @@
+//! Checks of the data format descriptor: it matches the format and describes data, not colours.
+
+use ktx2::dfd::Basic;
+use ktx2::{ColorModel, TransferFunction};
+
+use super::findings::{Code, Findings};
+use crate::ktx2::Ktx2;
+
+const PLACE: &str = "data format descriptor";
+
+/// Checks model, blocks, samples, typeSize, transfer function and primaries.
+pub fn check_descriptor(file: &Ktx2<'_>, findings: &mut Findings) {
+    let Some(found) = file.descriptor() else {
+        findings.add(Code::Descriptor, PLACE, "expected a basic descriptor block, found none; bake again");
+        return;
+    };
+    let header = file.header();
+    let expected = header.format.and_then(|format| Basic::from_format(format).ok());
+    let type_size = match (&expected, header.format) {
+        (Some((_, size)), _) => Some(*size),
+        // "typeSize": 1 for VK_FORMAT_UNDEFINED.
+        (None, None) => Some(1),
+        (None, Some(_)) => None,
+    };
+    if let Some(expected) = type_size.filter(|size| *size != header.type_size) {
+        findings.add(Code::TypeSize, "header", format!("expected {expected}, found {}; bake again", header.type_size));
+    }
+    let supercompressed = header.supercompression_scheme.is_some();
+    let mismatch = match (expected, header.format) {
+        (Some((expected, _)), _) => mismatch(&expected, found, supercompressed),
+        (None, None) => basis_mismatch(found, supercompressed),
+        (None, Some(_)) => None,
+    };
+    if let Some(what) = mismatch {
+        findings.add(Code::Descriptor, PLACE, format!("{what} for {}; bake again", file.format_name()));
+    }
+    if found.transfer_function != Some(TransferFunction::Linear) {
+        let found = name(found.transfer_function.as_ref());
+        let message = format!("expected Linear, found {found}: engines would decode the data as colours; bake again");
+        findings.add(Code::Transfer, PLACE, message);
+    }
+    if let Some(primaries) = found.color_primaries {
+        findings.add(Code::Primaries, PLACE, format!("expected unspecified, found {primaries:?}; bake again"));
+    }
+}
+
+/// Compares bytes of a plane. By "BITS_PER_PLANE", supercompressed files from before KTX 2.0.4 have 0.
+fn is_plane(found: u8, expected: u8, supercompressed: bool) -> bool {
+    found == expected || supercompressed && found == 0
+}
+
+fn mismatch(expected: &Basic, found: &Basic, supercompressed: bool) -> Option<String> {
+    if found.color_model != expected.color_model {
+        let (expected, found) = (name(expected.color_model.as_ref()), name(found.color_model.as_ref()));
+        return Some(format!("expected colour model {expected}, found {found}"));
+    }
+    if found.texel_block_dimensions != expected.texel_block_dimensions {
+        let sizes = (expected.texel_block_dimensions, found.texel_block_dimensions);
+        return Some(format!("expected texel blocks of {:?}, found {:?}", sizes.0, sizes.1));
+    }
+    let planes = (expected.bytes_planes[0], found.bytes_planes[0]);
+    if !is_plane(planes.1, planes.0, supercompressed) {
+        return Some(format!("expected {} bytes a block, found {}", planes.0, planes.1));
+    }
+    (found.sample_information != expected.sample_information).then(|| {
+        format!(
+            "expected {} samples with the format's bits and channels, found others",
+            expected.sample_information.len()
+        )
+    })
+}
+
+/// Returns how a Basis Universal descriptor differs from Khronos Data Format 1.3, section 5.6: blocks are 4 x 4, UASTC
+/// has one sample of 128 bits, ETC1S one or two samples of 64 bits.
+fn basis_mismatch(found: &Basic, supercompressed: bool) -> Option<String> {
+    let (bits, plane) = match found.color_model {
+        Some(ColorModel::UASTC) => (128, 16),
+        Some(ColorModel::ETC1S) => (64, 0),
+        model => return Some(format!("expected a Basis Universal colour model, found {}", name(model.as_ref()))),
+    };
+    if found.texel_block_dimensions.map(|size| size.get()) != [4, 4, 1, 1] {
+        return Some(format!("expected texel blocks of [4, 4, 1, 1], found {:?}", found.texel_block_dimensions));
+    }
+    if !is_plane(found.bytes_planes[0], plane, supercompressed) {
+        return Some(format!("expected {plane} bytes a block, found {}", found.bytes_planes[0]));
+    }
+    let samples = &found.sample_information;
+    let count = if bits == 128 { 1..=1 } else { 1..=2 };
+    let fits = count.contains(&samples.len()) && samples.iter().all(|s| s.bit_length.get() == bits);
+    (!fits).then(|| format!("expected samples of {bits} bits, found {} samples of other sizes", samples.len()))
+}
+
+fn name<T: std::fmt::Debug>(value: Option<&T>) -> String {
+    value.map_or_else(|| "unspecified".to_owned(), |v| format!("{v:?}"))
+}

@@ -1,0 +1,134 @@
+//! The files to check, and the assets that they should have been baked from.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use walkdir::WalkDir;
+
+use crate::gltf::document::Document;
+use crate::input_file::read_file;
+use crate::project::{Input, InputError, Resolved, Selection, SelectionError};
+
+/// A file to check.
+pub struct Target {
+    /// The path.
+    pub path: PathBuf,
+    /// The path below the argument that led to the file. The source has this path below the source folder.
+    pub below: PathBuf,
+}
+
+impl Target {
+    /// Returns whether the file lies in a folder `<stem>.roughcast`, where `bake` puts the textures of a document.
+    pub fn is_of_document(&self) -> bool {
+        self.below.parent().is_some_and(|folder| has_extension(folder, "roughcast"))
+    }
+
+    /// Returns whether the file is a texture.
+    pub fn is_texture(&self) -> bool {
+        has_extension(&self.path, "ktx2")
+    }
+
+    /// Returns the key of the asset of [`Sources`] whose output the file is.
+    pub fn key(&self) -> PathBuf {
+        self.path.with_extension("")
+    }
+}
+
+/// Finds documents and textures at `argument`, in a fixed order.
+///
+/// # Errors
+/// When there are none, or when a folder cannot be read.
+pub fn find_targets(argument: &Path) -> io::Result<Vec<Target>> {
+    if !fs::metadata(argument)?.is_dir() {
+        let known = ["gltf", "glb", "ktx2"].iter().any(|e| has_extension(argument, e));
+        let name = argument.file_name().map(PathBuf::from).filter(|_| known);
+        let below = name.ok_or_else(|| io::Error::other("a file that is neither .gltf, .glb nor .ktx2"))?;
+        return Ok(vec![Target { path: argument.to_owned(), below }]);
+    }
+    let mut targets = Vec::new();
+    for entry in WalkDir::new(argument).follow_links(true).sort_by_file_name() {
+        let entry = entry?;
+        if entry.file_type().is_file() && ["gltf", "glb", "ktx2"].iter().any(|e| has_extension(entry.path(), e)) {
+            let below = entry.path().strip_prefix(argument).unwrap_or(entry.path()).to_owned();
+            targets.push(Target { path: entry.into_path(), below });
+        }
+    }
+    if targets.is_empty() { Err(io::Error::other("no .gltf, .glb or .ktx2 files in it")) } else { Ok(targets) }
+}
+
+/// An asset of the source folder.
+pub struct SourceAsset {
+    /// The asset, and where its output belongs.
+    pub input: Input,
+    /// The current settings of the asset.
+    pub resolved: Resolved,
+}
+
+/// The assets of the source folder, by the paths of their outputs without extension.
+#[derive(Default)]
+pub struct Sources {
+    /// The source folder; `None` where the user names none.
+    pub folder: Option<PathBuf>,
+    /// All assets.
+    pub assets: BTreeMap<PathBuf, SourceAsset>,
+    /// Keys of the assets whose outputs must be among the checked files, since their whole output folder is checked.
+    pub expected: Vec<PathBuf>,
+    /// Whether a flag or a file sets any value.
+    pub is_configured: bool,
+    /// Why outputs must not be written.
+    pub unsafe_output: Option<InputError>,
+}
+
+impl Sources {
+    /// Finds the assets of the folder `source` that belong to `baked`.
+    ///
+    /// # Errors
+    /// [`SelectionError`] where settings contradict each other or a configuration cannot be read.
+    pub fn find(source: &Path, baked: &[PathBuf], selection: &Selection) -> Result<Self, SelectionError> {
+        let folder = Some(source.to_owned());
+        let mut sources = Self { folder, is_configured: selection.is_explicit(), ..Self::default() };
+        for argument in baked {
+            let is_folder = argument.is_dir();
+            let (inputs, output) = if is_folder {
+                (vec![source.to_owned()], argument.as_path())
+            } else {
+                let name = argument.file_name().unwrap_or_default();
+                (source_file(&source.join(name)).into_iter().collect(), argument.parent().unwrap_or(Path::new("")))
+            };
+            // A missing source is a finding of the output that needs the source.
+            let selected = selection.find_into(&inputs, output)?;
+            sources.is_configured |= !selected.configs.is_empty();
+            let is_unsafe = |error: &InputError| matches!(error, InputError::OutputIsInput { .. });
+            sources.unsafe_output = sources.unsafe_output.or(selected.errors.into_iter().find(is_unsafe));
+            for (input, resolved) in selected.assets {
+                let key = input.folder.join(&input.stem);
+                if is_folder {
+                    sources.expected.push(key.clone());
+                }
+                sources.assets.insert(key, SourceAsset { input, resolved });
+            }
+        }
+        Ok(sources)
+    }
+}
+
+/// Reads the document that `path` was baked from: it has the same name, in either container.
+///
+/// # Errors
+/// Why there is no such document, for a message.
+pub fn source_document(path: &Path) -> Result<Document, String> {
+    let existing = source_file(path).ok_or("no .gltf or .glb of that name")?;
+    let bytes = read_file(&existing).map_err(|e| e.to_string())?;
+    Document::parse(&bytes).map_err(|e| e.to_string())
+}
+
+fn source_file(path: &Path) -> Option<PathBuf> {
+    let candidates = [path.to_owned(), path.with_extension("gltf"), path.with_extension("glb")];
+    candidates.into_iter().find(|c| c.is_file() && !has_extension(c, "ktx2"))
+}
+
+fn has_extension(path: &Path, extension: &str) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case(extension))
+}

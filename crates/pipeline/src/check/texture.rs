@@ -1,0 +1,48 @@
+//! Checks of one KTX2 file, with or without a document that names it.
+
+use super::basisu::check_basisu;
+use super::container::{check_keys, check_levels};
+use super::descriptor::check_descriptor;
+use super::findings::{Code, Findings};
+use super::provenance::check_provenance;
+use super::scope::Scope;
+use super::texels::check_texels;
+use crate::ktx2::{Ktx2, PROVENANCE_KEY};
+
+/// How a document uses a texture.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Usage {
+    /// `KHR_texture_basisu` names it.
+    pub by_basisu: bool,
+    /// A material reads normals from it.
+    pub normals: bool,
+}
+
+/// Checks a KTX2 file and returns its content as recorded by its provenance. A file of another writer is only parsed,
+/// since our rules of baking do not apply to that file.
+pub fn check_texture(bytes: &[u8], usage: Usage, scope: &Scope<'_>, findings: &mut Findings) -> Option<String> {
+    let file = match Ktx2::parse(bytes) {
+        Ok(file) => file,
+        Err(error) => {
+            findings.add(Code::UnreadableTexture, "", format!("expected a KTX2 file, found: {error}"));
+            return None;
+        }
+    };
+    if is_foreign(&file) {
+        return None;
+    }
+    check_levels(&file, findings);
+    check_keys(&file, bytes, findings);
+    check_descriptor(&file, findings);
+    check_basisu(&file, usage.by_basisu, findings);
+    let content = check_provenance(&file, scope, findings).map(|provenance| provenance.content);
+    if scope.is_deep {
+        check_texels(&file, usage.normals || content.as_deref() == Some("normal"), findings);
+    }
+    content
+}
+
+fn is_foreign(file: &Ktx2<'_>) -> bool {
+    let value = |name: &str| file.key_values().find(|(key, _)| *key == name).map(|(_, value)| value);
+    value(PROVENANCE_KEY).is_none() && value("KTXwriter").is_some_and(|writer| !writer.starts_with(b"roughcast"))
+}

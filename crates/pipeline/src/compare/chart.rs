@@ -1,0 +1,248 @@
+//! Charts as self-contained SVG that follows the reader's light or dark setting.
+//!
+//! Crate `plotters` is not used: its SVG backend writes fixed colours at each element and has no classes, titles or tab
+//! stops, so its charts have no dark setting, no text on hover and no keyboard focus.
+
+use std::fmt::Write;
+
+use super::labels::{Labels, width};
+use super::{Axis, Comparison, Entry, Kind};
+use crate::text::xml_escaped;
+
+/// Width of a chart in pixels.
+pub const WIDTH: f64 = 760.0;
+/// Height of a chart in pixels.
+pub const HEIGHT: f64 = 430.0;
+const LEFT: f64 = 56.0;
+const RIGHT: f64 = 150.0;
+const TOP: f64 = 34.0;
+const BOTTOM: f64 = 48.0;
+
+/// Style of a chart. Colours are from a palette that colour-blind readers can distinguish (M. Okabe, K. Ito, "Color
+/// universal design", 2008).
+pub const STYLE: &str = "svg{--ink:#1c2430;--soft:#6b7480;--grid:#e3e6ea;--paper:#ffffff;--ours:#0060a8;--peer:#b34700}\
+    @media(prefers-color-scheme:dark){svg{--ink:#e8ebef;--soft:#9aa3ae;--grid:#333a44;--paper:#14181d;--ours:#6cbcf2;\
+    --peer:#f0a35e}}\
+    svg text{font:11px system-ui,sans-serif;fill:var(--ink)}svg .title{font-weight:600;font-size:13px}\
+    svg .soft{fill:var(--soft)}svg .paper{fill:var(--paper)}svg .grid{stroke:var(--grid);fill:none}\
+    svg .lead{stroke:var(--soft);stroke-width:.6}svg .ours{fill:var(--ours);stroke:var(--ours)}\
+    svg .peer{fill:var(--peer);stroke:var(--peer)}svg .oracle{stroke:var(--ink);fill:none;stroke-dasharray:5 4}\
+    svg .ring{fill:none;stroke:var(--ours);stroke-width:2}svg path.line{fill:none;stroke-width:1.6}\
+    svg path.peer.line{stroke-width:1;opacity:.55}svg text.ours{fill:var(--ours);stroke:none}\
+    svg text.peer{fill:var(--peer);stroke:none}svg .chosen{font-weight:700}";
+
+/// Draws both charts, one above the other, as an SVG file.
+pub fn file(comparison: &Comparison) -> String {
+    let height = 2.0 * HEIGHT;
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {height}\" width=\"{WIDTH}\" \
+         height=\"{height}\"><style>{STYLE}</style>{}{}</svg>\n",
+        cost(comparison, Axis::GpuBytes, 0.0),
+        levels(comparison, HEIGHT)
+    )
+}
+
+/// Draws error against cost. Entries without a cost stand at the left border.
+pub fn cost(comparison: &Comparison, axis: Axis, y: f64) -> String {
+    let value = |entry: &Entry| axis.value(&entry.cost).filter(|v| *v > 0.0);
+    let points: Vec<&Entry> = comparison.entries.iter().filter(|e| e.kind != Kind::Oracle).collect();
+    let costs = points.iter().filter_map(|e| value(e));
+    let (least, most) = costs.fold((f64::INFINITY, 0.0_f64), |(a, b), v| (a.min(v), b.max(v)));
+    let has_blanks = points.iter().any(|e| value(e).is_none());
+    let start = LEFT + if has_blanks { 130.0 } else { 30.0 };
+    let span = if most > least { (most / least).ln() } else { 1.0 };
+    let at = |v: f64| start + (v / least).ln() / span * (WIDTH - RIGHT - start);
+    let scale = Scale::new(&comparison.entries, |e| e.error);
+    let mut svg =
+        open(comparison, &format!("mean lobe error against {}", axis.title().to_lowercase().replace("gpu", "GPU")), y);
+    scale.draw(&mut svg, &comparison.entries, has_blanks.then_some("not measured"));
+    for tick in ticks(least, most) {
+        let x = at(tick);
+        let _ = write!(
+            svg,
+            "<path class=\"grid\" d=\"M{x:.1} {TOP}V{:.1}\"/><text class=\"soft\" x=\"{x:.1}\" y=\"{:.1}\" \
+             text-anchor=\"middle\">{}</text>",
+            HEIGHT - BOTTOM,
+            HEIGHT - BOTTOM + 15.0,
+            number(tick)
+        );
+    }
+    let middle = 0.5 * (LEFT + WIDTH - RIGHT);
+    let title = axis.title();
+    let _ = write!(svg, "<text x=\"{middle}\" y=\"{}\" text-anchor=\"middle\">{title}</text>", HEIGHT - 12.0);
+    let mut placed: Vec<(f64, f64, &Entry)> =
+        points.iter().map(|e| (value(e).map_or(LEFT + 10.0, at), scale.y(e.error), *e)).collect();
+    placed.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let mut labels = Labels::new([LEFT, TOP, WIDTH, HEIGHT - BOTTOM], placed.iter().map(|p| [p.0, p.1]));
+    for oracle in comparison.entries.iter().filter(|e| e.kind == Kind::Oracle) {
+        let y = scale.y(oracle.error);
+        labels.avoid([LEFT, y - 1.0, WIDTH - RIGHT, y + 1.0]);
+        labels.avoid([LEFT, y, LEFT + 45.0, y + 18.0]);
+    }
+    for (x, y, entry) in placed {
+        let class = class(entry);
+        if entry.chosen {
+            let _ = write!(svg, "<circle class=\"ring\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"8\"/>");
+        }
+        let shape = match entry.kind {
+            Kind::Ours => format!("<circle class=\"{class}\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4\"/>"),
+            _ => format!("<path class=\"{class}\" d=\"M{:.1} {:.1}h7v7h-7z\"/>", x - 3.5, y - 3.5),
+        };
+        svg += &shape;
+        let name = if entry.chosen { format!("{} (chosen)", entry.name) } else { entry.name.clone() };
+        let [lx, ly] = labels.place([x, y], &name);
+        if (ly - y).abs() > 7.0 || lx < x {
+            let near = if lx < x { lx + width(&name) } else { lx };
+            let _ = write!(svg, "<path class=\"lead\" d=\"M{x:.1} {y:.1}L{near:.1} {ly:.1}\"/>");
+        }
+        label(&mut svg, entry, &name, [lx, ly]);
+    }
+    svg + "</svg>"
+}
+
+/// Draws error by level.
+pub fn levels(comparison: &Comparison, y: f64) -> String {
+    let entries = &comparison.entries;
+    let count = entries.iter().map(|e| e.level_errors.len()).max().unwrap_or(0);
+    let end = WIDTH - RIGHT - 20.0;
+    let at = |level: usize| LEFT + 10.0 + level as f64 * (end - LEFT - 10.0) / count.saturating_sub(1).max(1) as f64;
+    let scale = Scale::new(entries, |e| e.level_errors.iter().copied().fold(0.0, f64::max));
+    let mut svg = open(comparison, "lobe error by mip level", y);
+    scale.draw(&mut svg, &[], None);
+    for level in 0..count {
+        let _ = write!(
+            svg,
+            "<text class=\"soft\" x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{level}</text>",
+            at(level),
+            HEIGHT - BOTTOM + 15.0
+        );
+    }
+    let middle = 0.5 * (LEFT + end);
+    let _ = write!(svg, "<text x=\"{middle:.1}\" y=\"{}\" text-anchor=\"middle\">Level</text>", HEIGHT - 12.0);
+    let mut ends: Vec<(f64, &Entry)> = Vec::new();
+    // Our lines are drawn last, so that they lie on top.
+    for kind in [Kind::Peer, Kind::Oracle, Kind::Ours] {
+        for entry in entries.iter().filter(|e| e.kind == kind) {
+            let points = entry.level_errors.iter().enumerate();
+            let path: Vec<String> = points.map(|(l, e)| format!("{:.1} {:.1}", at(l), scale.y(*e))).collect();
+            let _ = write!(svg, "<path class=\"{} line\" d=\"M{}\"/>", class(entry), path.join("L"));
+            ends.extend(entry.level_errors.last().map(|e| (scale.y(*e), entry)));
+        }
+    }
+    ends.sort_by(|a, b| a.0.total_cmp(&b.0));
+    // From the top, each label is at the height of its line or below the previous label. Labels that would lie below
+    // the chart move up.
+    const STEP: f64 = 12.5;
+    let mut places = Vec::with_capacity(ends.len());
+    for (y, _) in &ends {
+        places.push(places.last().map_or(*y, |last: &f64| y.max(last + STEP)));
+    }
+    let mut floor = HEIGHT - BOTTOM;
+    for place in places.iter_mut().rev() {
+        *place = place.min(floor);
+        floor = *place - STEP;
+    }
+    for ((y, entry), place) in ends.into_iter().zip(places) {
+        let x = at(count.saturating_sub(1));
+        let _ = write!(svg, "<path class=\"lead\" d=\"M{x:.1} {y:.1}L{:.1} {place:.1}\"/>", x + 22.0);
+        label(&mut svg, entry, &entry.name, [x + 25.0, place]);
+    }
+    svg + "</svg>"
+}
+
+fn open(comparison: &Comparison, title: &str, y: f64) -> String {
+    let name = xml_escaped(&comparison.material.chars().take(60).collect::<String>());
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" y=\"{y}\" width=\"{WIDTH}\" height=\"{HEIGHT}\" \
+         viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\"><title>{name}: {title}</title>\
+         <rect class=\"paper\" width=\"{WIDTH}\" height=\"{HEIGHT}\"/>\
+         <text class=\"title\" x=\"{LEFT}\" y=\"20\">{name}: {title}</text>"
+    )
+}
+
+fn class(entry: &Entry) -> &'static str {
+    match entry.kind {
+        Kind::Ours => "ours",
+        Kind::Peer => "peer",
+        Kind::Oracle => "oracle",
+    }
+}
+
+fn label(svg: &mut String, entry: &Entry, name: &str, [x, y]: [f64; 2]) {
+    let class = match (entry.kind, entry.chosen) {
+        (Kind::Oracle, _) => "soft",
+        (Kind::Ours, true) => "ours chosen",
+        (Kind::Ours, false) => "ours",
+        (Kind::Peer, _) => "peer",
+    };
+    let _ = write!(svg, "<text class=\"{class}\" x=\"{x:.1}\" y=\"{:.1}\">{}</text>", y + 4.0, xml_escaped(name));
+}
+
+/// The vertical axis, which begins at 0.
+struct Scale {
+    top: f64,
+}
+
+impl Scale {
+    fn new(entries: &[Entry], value: impl Fn(&Entry) -> f64) -> Self {
+        let largest = entries.iter().map(value).filter(|v| v.is_finite()).fold(0.05, f64::max);
+        Self { top: (largest * 20.0).ceil() / 20.0 }
+    }
+
+    fn y(&self, error: f64) -> f64 {
+        HEIGHT - BOTTOM - error / self.top * (HEIGHT - BOTTOM - TOP)
+    }
+
+    fn draw(&self, svg: &mut String, entries: &[Entry], blanks: Option<&str>) {
+        let step = if self.top > 0.4 { 0.1 } else { 0.05 };
+        for i in 0..=(self.top / step + 1e-9) as u32 {
+            let error = f64::from(i) * step;
+            let y = self.y(error);
+            let _ = write!(
+                svg,
+                "<path class=\"grid\" d=\"M{LEFT} {y:.1}H{:.1}\"/><text class=\"soft\" x=\"{:.1}\" y=\"{:.1}\" \
+                 text-anchor=\"end\">{error:.2}</text>",
+                WIDTH - RIGHT,
+                LEFT - 6.0,
+                y + 4.0
+            );
+        }
+        if let Some(text) = blanks {
+            let y = HEIGHT - BOTTOM + 15.0;
+            let _ = write!(svg, "<text class=\"soft\" x=\"{LEFT}\" y=\"{y:.1}\">{text}</text>");
+        }
+        for entry in entries.iter().filter(|e| e.kind == Kind::Oracle) {
+            let y = self.y(entry.error);
+            let _ = write!(
+                svg,
+                "<path class=\"oracle\" d=\"M{LEFT} {y:.1}H{:.1}\"/><text class=\"soft\" x=\"{LEFT}\" y=\"{:.1}\" \
+                 dx=\"4\">oracle</text>",
+                WIDTH - RIGHT,
+                y + 13.0
+            );
+        }
+    }
+}
+
+/// Returns 1, 2 and 5 times powers of ten between `least` and `most`, or both ends if fewer than two of these lie
+/// between.
+fn ticks(least: f64, most: f64) -> Vec<f64> {
+    let powers = (-6..15).flat_map(|power| [1.0, 2.0, 5.0].map(|m| m * 10f64.powi(power)));
+    let inside: Vec<f64> = powers.filter(|t| (least * 0.999..=most * 1.001).contains(t)).collect();
+    match (inside.len(), least < most) {
+        (0 | 1, true) => vec![least, most],
+        (0 | 1, false) if least.is_finite() => vec![least],
+        _ => inside,
+    }
+}
+
+fn number(n: f64) -> String {
+    let short = |n: f64| if n < 10.0 && n.fract() != 0.0 { format!("{n:.1}") } else { format!("{n:.0}") };
+    match n {
+        _ if n >= 1e9 => format!("{} G", short(n / 1e9)),
+        _ if n >= 1e6 => format!("{} M", short(n / 1e6)),
+        _ if n >= 1e3 => format!("{} k", short(n / 1e3)),
+        _ if n < 0.1 => format!("{n:.3}"),
+        _ => short(n),
+    }
+}

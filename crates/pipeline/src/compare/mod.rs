@@ -1,0 +1,167 @@
+//! Comparison of error and cost: every model of ours and every peer on one material, scored by [`crate::metric`].
+//!
+//! The reference is level 0 of the material with unencoded normals. Our models are decoded baked textures. Peers read
+//! the encoded normals of plain mips and use exact moments for everything else. This module takes materials as the
+//! renderer reads them, never files.
+
+mod chart;
+mod cost;
+mod labels;
+mod page;
+mod table;
+#[cfg(test)]
+mod tests;
+
+use serde::Serialize;
+
+use crate::lobe::{Family, SquaredAlpha};
+use crate::math::symmetric::Symmetric2;
+use crate::metric::{Lobe, Peer, Surface, mean_errors, oracle, sample_texels};
+use crate::render::{Bumps, Material, Texture};
+
+pub use chart::file as chart;
+pub use cost::{Axis, Cost};
+pub use page::page;
+pub use table::csv;
+
+/// Number of our entries: three models, each baked in two qualities, and the choice of `--model auto`.
+pub const OURS: usize = 7;
+const PEERS: usize = Peer::ALL.len();
+const ENTRIES: usize = OURS + PEERS + 1;
+/// Last level that is scored. Coarser levels have footprints of more than 128 x 128 texels, which take long to score
+/// and show little.
+const LAST_LEVEL: usize = 7;
+/// First level of the mean error, if the map has that many levels, as in docs/accuracy.md.
+const MEAN_FROM: usize = 2;
+
+/// A bake of ours.
+pub struct Ours {
+    /// Name in the chart.
+    pub name: String,
+    /// The material as an engine reads it.
+    pub material: Material,
+    /// Bytes of the files that the bake wrote.
+    pub file_bytes: u64,
+    /// Seconds that the bake took.
+    pub seconds: f64,
+    /// Whether `--model auto` chooses this model.
+    pub chosen: bool,
+}
+
+/// The origin of an entry.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Kind {
+    /// This tool.
+    Ours,
+    /// Another tool, by its formula.
+    Peer,
+    /// The best possible single lobe.
+    Oracle,
+}
+
+/// A model, its error and its cost.
+#[derive(Clone, Debug, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct Entry {
+    /// Name.
+    pub name: String,
+    /// Its origin.
+    pub kind: Kind,
+    /// Whether `--model auto` chooses this model.
+    pub chosen: bool,
+    /// Mean lobe error of levels 2 to 7, or of all levels if the map has no level 2; 0 to 1.
+    pub error: f64,
+    /// Mean lobe error of each level from 0 on.
+    pub level_errors: Vec<f64>,
+    /// Its cost.
+    #[serde(flatten)]
+    pub cost: Cost,
+}
+
+/// All entries of a material.
+#[derive(Clone, Debug, Serialize)]
+pub struct Comparison {
+    /// Its name.
+    pub material: String,
+    /// Our models, then peers, then the oracle.
+    pub entries: Vec<Entry>,
+}
+
+/// Scores our models and the peers at `texels` sampled texels of each level up to 7.
+///
+/// The first of `ours` has plain mips. `truth` is the material with unencoded normals. `advance` receives the finished
+/// share of the work. Returns `None` for a material without a normal map.
+pub fn compare(
+    name: &str,
+    truth: &Material,
+    ours: [Ours; OURS],
+    texels: usize,
+    advance: &dyn Fn(f32),
+) -> Option<Comparison> {
+    let surface = surface(truth)?;
+    let grid = normals(&ours[0].material)?;
+    let levels = grid.level_count().min(LAST_LEVEL + 1);
+    let mut by_level = Vec::with_capacity(levels);
+    for level in 0..levels {
+        let size = grid.size(level);
+        let chosen = sample_texels(size, texels);
+        by_level.push(mean_errors(&surface, Family::Ggx, size, &chosen, |texel, footprint, reference| {
+            let moments = footprint.moments();
+            let normal = lobe(&ours[0].material, size, texel).normal();
+            let peers = Peer::ALL.map(|peer| peer.lobe(Family::Ggx, &moments));
+            let peers = peers.map(|peer| Lobe::new(Family::Ggx, normal, peer.squared_alpha()));
+            let lobes: Vec<Lobe> = ours.iter().map(|o| lobe(&o.material, size, texel)).chain(peers).collect();
+            let mut errors = [0.0; ENTRIES];
+            for (error, lobe) in errors.iter_mut().zip(&lobes) {
+                *error = reference.error(lobe);
+            }
+            errors[ENTRIES - 1] = oracle(reference, &lobes).1;
+            errors
+        }));
+        advance((level + 1) as f32 / levels as f32);
+    }
+    let plain = Cost::of_bake(&ours[0]);
+    let ours = ours.iter().map(|o| (o.name.clone(), Kind::Ours, o.chosen, Cost::of_bake(o)));
+    let peers = Peer::ALL.iter().map(|peer| {
+        let cost = Cost::of_peer(*peer, grid, truth.roughness.is_some(), &plain);
+        (peer.name().to_owned(), Kind::Peer, false, cost)
+    });
+    let best = ("oracle".to_owned(), Kind::Oracle, false, Cost::default());
+    let entries = ours.chain(peers).chain([best]).enumerate().map(|(i, (name, kind, chosen, cost))| {
+        let level_errors: Vec<f64> = by_level.iter().map(|errors| errors[i]).collect();
+        let averaged = level_errors.get(MEAN_FROM..).filter(|rest| !rest.is_empty()).unwrap_or(&level_errors);
+        let error = averaged.iter().sum::<f64>() / averaged.len().max(1) as f64;
+        Entry { name, kind, chosen, error, level_errors, cost }
+    });
+    Some(Comparison { material: name.to_owned(), entries: entries.collect() })
+}
+
+fn normals(material: &Material) -> Option<&Texture> {
+    match &material.bumps {
+        Bumps::Normals { texture, .. } => Some(texture),
+        Bumps::Flat | Bumps::Offsets(_) => None,
+    }
+}
+
+fn lobe(material: &Material, size: (u32, u32), texel: (u32, u32)) -> Lobe {
+    let point = material.point(&|texture| texture.nearest_of_size(size, centre(size, texel)));
+    Lobe::new(Family::Ggx, point.normal, point.squared_alpha)
+}
+
+fn centre(size: (u32, u32), (x, y): (u32, u32)) -> [f64; 2] {
+    [(f64::from(x) + 0.5) / f64::from(size.0), (f64::from(y) + 0.5) / f64::from(size.1)]
+}
+
+fn surface(truth: &Material) -> Option<Surface> {
+    let size = normals(truth)?.size(0);
+    let texels = (0..size.1).flat_map(|y| (0..size.0).map(move |x| (x, y)));
+    let (normals, base): (Vec<_>, Vec<_>) = texels
+        .map(|texel| {
+            let point = truth.point(&|texture| texture.nearest(centre(size, texel)));
+            let [uu, uv, vv] = point.squared_alpha.map(|a| a as f32);
+            (point.normal, SquaredAlpha(Symmetric2 { uu, uv, vv }))
+        })
+        .unzip();
+    Surface::new(size.0, size.1, &normals, &base)
+}

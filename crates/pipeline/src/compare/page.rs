@@ -1,0 +1,79 @@
+//! All charts and numbers as one HTML file. Radio buttons and CSS alone switch the cost axis.
+
+use std::fmt::Write;
+
+use super::chart;
+use super::table::row;
+use super::{Axis, Comparison};
+use crate::text::xml_escaped;
+
+const STYLE: &str = ":root{color-scheme:light dark}body{margin:0 auto;max-width:820px;padding:12px;\
+    font:15px/1.45 system-ui,sans-serif;background:#fff;color:#1c2430}\
+    @media(prefers-color-scheme:dark){body{background:#14181d;color:#e8ebef}}\
+    .scroll{overflow-x:auto}.scroll>svg{display:block;width:100%;min-width:620px;height:auto}\
+    table{border-collapse:collapse;font-size:13px;font-variant-numeric:tabular-nums}\
+    th,td{padding:2px 8px;text-align:right;border-bottom:1px solid #8884;white-space:nowrap}\
+    th:first-child,td:first-child{text-align:left}tr.chosen{font-weight:700}\
+    label{display:inline-block;margin:0 12px 6px 0}h2{overflow-wrap:anywhere}";
+
+/// Formats `comparisons` as a page that names `version` of this tool.
+pub fn page(comparisons: &[Comparison], version: &str) -> String {
+    let mut html = format!(
+        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/>\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\
+         <title>Lobe error against cost</title><style>{STYLE}{}",
+        chart::STYLE
+    );
+    for i in 0..Axis::ALL.len() {
+        let _ = write!(html, "body:has(#axis{i}:checked) .axis:not(.axis{i}){{display:none}}");
+    }
+    html += "</style></head><body><h1>Lobe error against cost</h1>\
+        <p>Lobe error: the share of reflected half-vectors in the wrong place, 0 to 1. Circles are bakes of Roughcast, \
+        decoded as engines decode them. Squares are other tools' formulas on exact moments, with our encoded normals. \
+        The dashed line is the best single lobe. The ring marks the choice of <code>--model auto</code>. Bake times \
+        vary from run to run.</p>\
+        <fieldset><legend>Cost</legend>";
+    for (i, axis) in Axis::ALL.iter().enumerate() {
+        let checked = if i == 0 { " checked=\"\"" } else { "" };
+        let _ = write!(
+            html,
+            "<label><input type=\"radio\" name=\"axis\" id=\"axis{i}\"{checked}/> {}</label>",
+            axis.title()
+        );
+    }
+    html += "</fieldset>";
+    for comparison in comparisons {
+        let _ = write!(html, "<h2>{}</h2>", xml_escaped(&comparison.material));
+        for (i, axis) in Axis::ALL.into_iter().enumerate() {
+            let svg = chart::cost(comparison, axis, 0.0);
+            let _ = write!(html, "<div class=\"scroll axis axis{i}\" tabindex=\"0\">{svg}</div>");
+        }
+        let _ = write!(html, "<div class=\"scroll\" tabindex=\"0\">{}</div>", chart::levels(comparison, 0.0));
+        html += &table(comparison);
+    }
+    let _ = writeln!(html, "<p>roughcast {}</p></body></html>", xml_escaped(version));
+    html
+}
+
+fn table(comparison: &Comparison) -> String {
+    let mut html = "<div class=\"scroll\" tabindex=\"0\"><table><thead><tr><th>model</th><th>kind</th><th>chosen</th>\
+        <th>error</th>"
+        .to_owned();
+    Axis::ALL.iter().for_each(|axis| {
+        let _ = write!(html, "<th>{}</th>", axis.title());
+    });
+    let levels = comparison.entries.iter().map(|e| e.level_errors.len()).max().unwrap_or(0);
+    (0..levels).for_each(|level| {
+        let _ = write!(html, "<th>level {level}</th>");
+    });
+    html += "</tr></thead><tbody>";
+    for entry in &comparison.entries {
+        html += if entry.chosen { "<tr class=\"chosen\">" } else { "<tr>" };
+        let errors = entry.level_errors.iter().map(|e| format!("{e:.3}"));
+        for cell in row(entry).into_iter().chain(errors) {
+            let _ = write!(html, "<td>{}</td>", xml_escaped(&cell));
+        }
+        html += "</tr>";
+    }
+    html + "</tbody></table></div>"
+}

@@ -1,0 +1,11 @@
+//! The content of a KTX2 or glTF file: as facts, as text for people, and as pictures. This module does no I/O.
+
+mod document;
+mod extract;
+mod render;
+mod texture;
+
+pub use document::{DocumentFacts, ImageFacts, MaterialFacts, PictureFacts, SlotFacts, inspect_document};
+pub use extract::{ExtractError, Picture, encode_exr, extract};
+pub use render::{document_text, texture_text};
+pub use texture::{DescriptorFacts, KeyFacts, LevelFacts, SampleFacts, TextureFacts, inspect_texture};

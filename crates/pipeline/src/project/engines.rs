@@ -1,0 +1,75 @@
+//! Presets for engines: one table.
+
+use serde::{Deserialize, Serialize};
+
+use crate::codec::Target;
+use crate::settings::{Form, Model, Profile};
+
+/// An engine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum Engine {
+    /// three.js: it reflects the surroundings wrongly in ellipses.
+    Three,
+    /// Babylon.js.
+    Babylon,
+    /// PlayCanvas.
+    Playcanvas,
+    /// Filament: its glTF loader has no anisotropy.
+    Filament,
+    /// Bevy: refuses files that need KHR_texture_basisu, and its ellipses are too narrow.
+    Bevy,
+    /// Godot: its glTF import has no anisotropy.
+    Godot,
+}
+
+/// What an engine's own loader and shader need. docs/engines.md has the measurements.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Preset {
+    engine: Engine,
+    /// The name in `roughcast.toml` and on the command line.
+    pub name: &'static str,
+    /// The payload that its loader reads.
+    pub target: Target,
+    /// The references to textures that its loader reads.
+    pub form: Form,
+    /// The only model that its shader shows right; `None` if the shader shows all models right.
+    model: Option<Model>,
+}
+
+/// Returns a row of [`PRESETS`].
+const fn row(engine: Engine, name: &'static str, target: Target, form: Form, model: Option<Model>) -> Preset {
+    Preset { engine, name, target, form, model }
+}
+
+const PRESETS: [Preset; 6] = [
+    // Its shader reflects the surroundings wrongly where lobes are ellipses.
+    row(Engine::Three, "three", Target::Basis, Form::Fallback, Some(Model::Isotropic)),
+    row(Engine::Babylon, "babylon", Target::Basis, Form::Fallback, None),
+    row(Engine::Playcanvas, "playcanvas", Target::Basis, Form::Fallback, None),
+    // Its glTF loader has no anisotropy.
+    row(Engine::Filament, "filament", Target::Basis, Form::Fallback, Some(Model::Isotropic)),
+    // Its loader refuses files that need KHR_texture_basisu, and its shader squares the alphas of ellipses once more.
+    row(Engine::Bevy, "bevy", Target::Basis, Form::Dual, Some(Model::Isotropic)),
+    // Its glTF import has no anisotropy.
+    row(Engine::Godot, "godot", Target::Basis, Form::Fallback, Some(Model::Isotropic)),
+];
+
+impl Engine {
+    /// Returns the preset of the engine.
+    pub fn preset(self) -> &'static Preset {
+        // A test holds that every engine has a row.
+        PRESETS.iter().find(|preset| preset.engine == self).unwrap_or(&PRESETS[0])
+    }
+}
+
+impl Preset {
+    /// Returns the model that a bake of `profile` needs. The engine's own shader decides on the model if the core
+    /// material is baked; offsets and D alone are for a plugin, which shows every model.
+    pub fn model(&self, profile: Profile) -> Option<Model> {
+        self.model.filter(|_| profile.is_portable())
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,66 @@
+//! Layers of settings, of which a later one overrides the earlier ones, and where each value came from.
+
+use std::fmt::{self, Display};
+
+use crate::project::values::{Origins, Values};
+use crate::settings::{Settings, SettingsError};
+use crate::text::printable;
+
+/// Settings that come from one origin: a file, an override of it, or the command line.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Layer {
+    /// The origin, for a person.
+    pub origin: String,
+    /// What it sets.
+    pub values: Values,
+}
+
+/// The settings that hold for an asset.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Resolved {
+    /// Every value that is set. `engine` is not: the values of its preset are.
+    pub values: Values,
+    /// The settings.
+    pub settings: Settings,
+    origins: Origins,
+}
+
+/// Merges `layers` over the defaults: of two layers that set a value, the later one holds.
+///
+/// # Errors
+/// [`SettingsError`] for values that are out of range or do not go together.
+pub fn resolve(layers: &[Layer]) -> Result<Resolved, SettingsError> {
+    let (mut values, mut origins) = (Values::defaults(), Origins::default());
+    let profile = layers.iter().rev().find_map(|layer| layer.values.profile).unwrap_or_default();
+    for Layer { origin, values: layer } in layers {
+        if let Some(engine) = layer.engine {
+            let preset = engine.preset();
+            let needs = Values {
+                target: Some(preset.target),
+                gltf: Some(preset.form),
+                model: preset.model(profile),
+                ..Values::default()
+            };
+            origins.record(&needs, &format!("{origin}, engine = {}", preset.name));
+            values = values.overridden_by(&needs);
+        }
+        origins.record(layer, origin);
+        values = values.overridden_by(layer);
+    }
+    values.engine = None;
+    Ok(Resolved { settings: values.settings()?, values, origins })
+}
+
+/// Writes lines of TOML, each with the origin of its value, as a terminal may show them.
+impl Display for Resolved {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let lines: Vec<(String, &str)> = self
+            .values
+            .lines(&self.origins)
+            .into_iter()
+            .map(|(name, value, origin)| (format!("{name} = {value}"), origin.unwrap_or("default")))
+            .collect();
+        let width = lines.iter().map(|(line, _)| line.len()).max().unwrap_or(0);
+        lines.iter().try_for_each(|(line, origin)| writeln!(f, "{line:width$}  # {}", printable(origin)))
+    }
+}

@@ -1,0 +1,155 @@
+//! The selection of assets, and the settings that hold for each of them.
+
+mod configs;
+mod error;
+
+pub use error::SelectionError;
+
+use std::path::{Path, PathBuf};
+
+use self::configs::{Configs, FoundConfig};
+use super::inputs::{self, Input, InputError};
+use super::layers::{Layer, Resolved, resolve};
+use super::record::is_baked;
+use super::trust::NamedServer;
+use super::values::Values;
+use crate::settings::Settings;
+
+/// Which `roughcast.toml` holds for an asset.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum ConfigChoice {
+    /// The one in the folder of the asset, or in the nearest folder above.
+    #[default]
+    Nearest,
+    /// This file, for every asset.
+    Named(PathBuf),
+    /// None.
+    Ignored,
+}
+
+/// How assets are selected and configured.
+#[derive(Clone, Debug, Default)]
+pub struct Selection {
+    /// Which configuration holds.
+    pub config: ConfigChoice,
+    /// Explicit values, which win over those of configurations.
+    pub values: Values,
+    /// The output folder; `None` takes the folder that the configuration of the first input names.
+    pub output: Option<PathBuf>,
+}
+
+/// The assets of a command.
+pub struct Selected {
+    /// The assets, each with its settings.
+    pub assets: Vec<(Input, Resolved)>,
+    /// The output folder.
+    pub output: PathBuf,
+    /// Inputs that cannot be used.
+    pub errors: Vec<InputError>,
+    /// Documents that were left out because an earlier bake wrote them.
+    pub baked: Vec<PathBuf>,
+    /// The settings of assets without a configuration.
+    pub settings: Settings,
+    /// The configurations that were read.
+    pub configs: Vec<PathBuf>,
+    /// The server that the configuration of the first input names.
+    pub remote: Option<NamedServer>,
+}
+
+impl Selected {
+    /// Returns whether outputs may be written. Among sources no output is safe, not even the outputs of other inputs.
+    pub fn is_safe(&self) -> bool {
+        !self.errors.iter().any(|error| matches!(error, InputError::OutputIsInput { .. }))
+    }
+
+    /// Returns a note on documents that were left out; `None` where there are none.
+    pub fn note_of_baked(&self) -> Option<String> {
+        let (example, count) = (self.baked.first()?.display(), self.baked.len());
+        Some(format!(
+            "left out {count} file(s) that Roughcast has baked, such as {example}; name a file itself to bake it anyway"
+        ))
+    }
+}
+
+impl Selection {
+    /// Finds the assets of `arguments` and their settings.
+    ///
+    /// # Errors
+    /// [`SelectionError`] where no asset can be selected.
+    pub fn find(&self, arguments: &[PathBuf]) -> Result<Selected, SelectionError> {
+        self.find_by(arguments, &mut is_baked)
+    }
+
+    /// Finds the assets of `arguments` and their settings. Documents in folders for which `is_baked` returns true are
+    /// outputs of earlier bakes and are left out.
+    ///
+    /// # Errors
+    /// [`SelectionError`] where no asset can be selected.
+    pub fn find_by(
+        &self,
+        arguments: &[PathBuf],
+        is_baked: &mut dyn FnMut(&Path) -> bool,
+    ) -> Result<Selected, SelectionError> {
+        let mut configs = Configs::default();
+        let first = arguments.first().ok_or(SelectionError::NoOutput)?;
+        let folder = if first.is_dir() { first.as_path() } else { first.parent().unwrap_or(Path::new("")) };
+        let found = self.config(&mut configs, folder)?;
+        let output = match &self.output {
+            Some(output) => Some(output.clone()),
+            None => found.and_then(|found| found.output_folder().transpose()).transpose()?,
+        };
+        let remote = found.and_then(FoundConfig::remote);
+        let output = output.ok_or(SelectionError::NoOutput)?;
+        let selected = Selected { remote, ..self.select(configs, arguments, &output, is_baked)? };
+        for (_, resolved) in &selected.assets {
+            resolved.settings.target.check_available()?;
+        }
+        Ok(selected)
+    }
+
+    /// Finds the assets of `arguments` that are baked to `output`, and their settings.
+    ///
+    /// # Errors
+    /// [`SelectionError`] where no asset can be selected.
+    pub fn find_into(&self, arguments: &[PathBuf], output: &Path) -> Result<Selected, SelectionError> {
+        self.select(Configs::default(), arguments, output, &mut is_baked)
+    }
+
+    /// Returns whether a configuration or a value is explicit.
+    pub fn is_explicit(&self) -> bool {
+        self.config != ConfigChoice::Nearest || self.values != Values::default()
+    }
+
+    fn select(
+        &self,
+        mut configs: Configs,
+        arguments: &[PathBuf],
+        output: &Path,
+        is_baked: &mut dyn FnMut(&Path) -> bool,
+    ) -> Result<Selected, SelectionError> {
+        let flags = Layer { origin: "command line".to_owned(), values: self.values.clone() };
+        let inputs::Found { inputs, errors, baked } = inputs::find(arguments, output, is_baked);
+        let mut assets = Vec::with_capacity(inputs.len());
+        for input in inputs {
+            let folder = input.path.parent().unwrap_or(Path::new(""));
+            let mut layers = match self.config(&mut configs, folder)? {
+                Some(found) => found.config.layers(&found.relative(&input.path)),
+                None => Vec::new(),
+            };
+            layers.push(flags.clone());
+            let resolved = resolve(&layers)?;
+            assets.push((input, resolved));
+        }
+        let settings = resolve(&[flags]).map_or_else(|_| Settings::default(), |resolved| resolved.settings);
+        let configs = configs.into_paths();
+        Ok(Selected { assets, output: output.to_owned(), errors, baked, settings, configs, remote: None })
+    }
+
+    fn config<'c>(&self, configs: &'c mut Configs, folder: &Path) -> Result<Option<&'c FoundConfig>, SelectionError> {
+        match &self.config {
+            ConfigChoice::Ignored => Ok(None),
+            ConfigChoice::Named(path) => configs.named(path),
+            ConfigChoice::Nearest => configs.above(folder),
+        }
+    }
+}

@@ -1,0 +1,222 @@
+//! What a layer of settings may set: every setting, by the name that its flag has too.
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+
+use crate::bump::Frame;
+use crate::codec::Target;
+use crate::codec::uastc::Effort;
+use crate::lobe::{Distribution, Family};
+use crate::project::engines::Engine;
+use crate::settings::{Form, Model, Profile, Settings, SettingsError, View, limit};
+
+/// Declares the settings, each once: the struct that holds them, and what is done with every one of them.
+macro_rules! values {
+    ($($field:ident: $type:ty,)*) => {
+        /// Settings, as far as a layer sets them. Names are those of the flags of `bake`; see `roughcast bake --help`.
+        #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+        #[serde(rename_all = "kebab-case", deny_unknown_fields)]
+        #[allow(missing_docs)]
+        pub struct Values {
+            $(
+                #[serde(skip_serializing_if = "Option::is_none")]
+                pub $field: Option<$type>,
+            )*
+        }
+
+        /// Where each value came from, for a person; `None` for defaults.
+        #[derive(Clone, Debug, Default, PartialEq)]
+        pub(super) struct Origins {
+            $($field: Option<String>,)*
+        }
+
+        impl Values {
+            /// Returns every name, in the order of the help.
+            pub fn names() -> Vec<String> {
+                vec![$(stringify!($field).replace('_', "-")),*]
+            }
+
+            /// Returns whether no value is set.
+            pub fn is_empty(&self) -> bool {
+                $(self.$field.is_none())&&*
+            }
+
+            /// Returns the values of `later`, and those of `self` that `later` does not set.
+            #[must_use]
+            pub(super) fn overridden_by(self, later: &Self) -> Self {
+                Self { $($field: later.$field.or(self.$field)),* }
+            }
+
+            /// Returns the name of each value that is set, its text as JSON, which is TOML too, and its origin.
+            pub(super) fn lines<'o>(&self, origins: &'o Origins) -> Vec<(String, String, Option<&'o str>)> {
+                let lines = [$(
+                    self.$field.map(|value| {
+                        let name = stringify!($field).replace('_', "-");
+                        let text = serde_json::to_string(&value).unwrap_or_default();
+                        (name, text, origins.$field.as_deref())
+                    }),
+                )*];
+                lines.into_iter().flatten().collect()
+            }
+        }
+
+        impl Origins {
+            /// Records `origin` for every value that `values` sets.
+            pub(super) fn record(&mut self, values: &Values, origin: &str) {
+                $(
+                    if values.$field.is_some() {
+                        self.$field = Some(origin.to_owned());
+                    }
+                )*
+            }
+        }
+    };
+}
+
+values! {
+    profile: Profile,
+    model: Model,
+    max_error: f64,
+    quality: Effort,
+    rdo: f64,
+    distribution: Distribution,
+    lobe: Family,
+    target: Target,
+    max_texels: u64,
+    provenance: bool,
+    engine: Engine,
+    gltf: Form,
+    glb: bool,
+    frame: FrameName,
+    main_direction: [f64; 3],
+    height_scale: f64,
+    nearest: f64,
+    screen_height: u32,
+    fov: f64,
+    aspect: f64,
+    trim: bool,
+}
+
+/// A frame by its name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[serde(rename_all = "kebab-case")]
+pub enum FrameName {
+    /// Offsets in mesh units per repeat: bumps keep their height when the map is scaled.
+    Natural,
+    /// Slopes in glTF's tangent frame.
+    Unit,
+    /// Slopes along e1 = m x n and e2 = n x e1: no tangents at run time.
+    MainDirection,
+}
+
+impl Values {
+    /// Returns the defaults; settings without a default are unset.
+    pub fn defaults() -> Self {
+        let defaults = Settings::default();
+        Self {
+            profile: Some(defaults.profile),
+            model: Some(defaults.model),
+            // 0.1 in single precision is another number in double precision.
+            max_error: Some(0.1),
+            quality: Some(defaults.effort),
+            distribution: Some(defaults.distribution),
+            lobe: Some(defaults.family),
+            target: Some(defaults.target),
+            max_texels: Some(defaults.max_texels),
+            provenance: Some(defaults.provenance),
+            gltf: Some(defaults.form),
+            glb: Some(defaults.glb),
+            frame: Some(FrameName::Unit),
+            main_direction: Some([0.0, 1.0, 0.0]),
+            fov: Some(View::DEFAULT_FOV),
+            aspect: Some(View::DEFAULT_ASPECT),
+            trim: Some(false),
+            ..Self::default()
+        }
+    }
+
+    /// Returns the values that are set as the members of a JSON object, for plans and for the identity of jobs: first
+    /// those that have a default, then the others.
+    pub fn to_members(&self) -> Map<String, Value> {
+        let members = |values: &Self| match serde_json::to_value(values) {
+            Ok(Value::Object(members)) => members,
+            // A struct of plain values is an object.
+            _ => Map::new(),
+        };
+        let mut own = members(self);
+        let order = members(&Self::defaults()).into_iter().map(|(name, _)| name);
+        let mut ordered: Map<String, Value> = order.filter_map(|name| own.shift_remove_entry(&name)).collect();
+        ordered.extend(own);
+        ordered
+    }
+
+    /// Returns the settings, with defaults for values that are not set.
+    ///
+    /// # Errors
+    /// [`SettingsError`] for values that are out of range or do not go together.
+    pub fn settings(&self) -> Result<Settings, SettingsError> {
+        let defaults = Settings::default();
+        let glb = self.glb.unwrap_or(defaults.glb);
+        let form = self.gltf.unwrap_or(defaults.form);
+        if glb && form == Form::Dual {
+            return Err(SettingsError::DualInGlb);
+        }
+        let max_error = self.max_error.map(|error| limit::MAX_ERROR.check(error)).transpose()?;
+        let height_scale = self.height_scale.map(|scale| limit::HEIGHT_SCALE.check(scale)).transpose()?;
+        let rdo = self.rdo.map(|loss| limit::RDO.check(loss)).transpose()?;
+        let mut settings = defaults;
+        settings.profile = self.profile.unwrap_or_default();
+        settings.model = self.model.unwrap_or_default();
+        settings.max_error = max_error.map_or(settings.max_error, |e| e as f32);
+        settings.distribution = self.distribution.unwrap_or_default();
+        settings.family = self.lobe.unwrap_or_default();
+        settings.target = self.target.unwrap_or_default();
+        settings.effort = self.quality.unwrap_or(settings.effort);
+        settings.rdo = rdo;
+        settings.form = form;
+        settings.glb = glb;
+        settings.frame = self.frame()?;
+        settings.height_scale = height_scale.map(|s| s as f32);
+        settings.view = self.view()?;
+        settings.max_texels = self.max_texels.unwrap_or(settings.max_texels);
+        settings.provenance = self.provenance.unwrap_or(settings.provenance);
+        settings.validate()?;
+        Ok(settings)
+    }
+
+    /// Returns the frame, whose direction is normalised.
+    fn frame(&self) -> Result<Frame, SettingsError> {
+        match self.frame {
+            None | Some(FrameName::Unit) => Ok(Frame::Unit),
+            Some(FrameName::Natural) => Ok(Frame::Natural),
+            Some(FrameName::MainDirection) => {
+                let m = self.main_direction.unwrap_or([0.0, 1.0, 0.0]).map(|x| x as f32);
+                let length = m.iter().map(|x| x * x).sum::<f32>().sqrt();
+                if length.is_finite() && length > 0.0 {
+                    Ok(Frame::MainDirection(m.map(|x| x / length)))
+                } else {
+                    let (name, expected) = ("main-direction", "a direction");
+                    Err(SettingsError::Range { name, expected, found: format!("{m:?}") })
+                }
+            }
+        }
+    }
+
+    /// Returns the camera, which needs both `nearest` and `screen-height`.
+    fn view(&self) -> Result<Option<View>, SettingsError> {
+        let trim = self.trim.unwrap_or(false);
+        let (nearest, screen_height) = match (self.nearest, self.screen_height) {
+            (Some(nearest), Some(rows)) => (nearest, rows),
+            (Some(_), None) => return Err(SettingsError::Needs { name: "nearest", needs: "screen-height" }),
+            (None, Some(_)) => return Err(SettingsError::Needs { name: "screen-height", needs: "nearest" }),
+            (None, None) if trim => return Err(SettingsError::Needs { name: "trim", needs: "nearest" }),
+            (None, None) => return Ok(None),
+        };
+        let mut view = View::new(nearest, screen_height);
+        view.fov = self.fov.unwrap_or(view.fov);
+        view.aspect = self.aspect.unwrap_or(view.aspect);
+        view.trim = trim;
+        view.validate()?;
+        Ok(Some(view))
+    }
+}

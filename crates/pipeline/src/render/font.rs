@@ -1,0 +1,34 @@
+//! Labels on pictures, in the font Hack.
+
+use ab_glyph::{Font, FontRef, ScaleFont, point};
+use epaint_default_fonts::HACK_REGULAR;
+
+/// Height of a line in pixels, from the highest to the lowest letter. Letters are 7.8 pixels wide.
+pub const LINE: u32 = 15;
+
+/// Calls `ink` with each pixel of `text` that has ink, and the share of the pixel that the ink covers. The text begins
+/// at the origin and ends before the letter that would need more than `width` pixels.
+pub fn draw(text: &str, width: u32, mut ink: impl FnMut(u32, u32, f32)) {
+    // The font is a constant that can be read, as the tests of sheets show.
+    let Ok(font) = FontRef::try_from_slice(HACK_REGULAR) else { return };
+    let font = font.as_scaled(LINE as f32);
+    let mut left = 0.0;
+    for letter in text.chars() {
+        let mut glyph = font.scaled_glyph(letter);
+        let advance = font.h_advance(glyph.id);
+        if left + advance > width as f32 {
+            return;
+        }
+        glyph.position = point(left, font.ascent());
+        left += advance;
+        let Some(outline) = font.outline_glyph(glyph) else { continue };
+        // Outlines may begin left of the origin or above it.
+        let [first_x, first_y] = [outline.px_bounds().min.x, outline.px_bounds().min.y].map(|c| c as i64);
+        outline.draw(|x, y, coverage| {
+            let at = [first_x + i64::from(x), first_y + i64::from(y)].map(u32::try_from);
+            if let [Ok(x), Ok(y)] = at {
+                ink(x, y, coverage.clamp(0.0, 1.0));
+            }
+        });
+    }
+}

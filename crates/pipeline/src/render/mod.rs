@@ -1,0 +1,37 @@
+//! A small reference renderer that compares materials as engines shade them with supersampled ground truth.
+//!
+//! A [`Scene`] is drawn with a [`Material`] in two ways. [`filtered`] shades one sample per pixel through mips as
+//! hardware filters them. [`supersampled`] shades many samples of the unfiltered level 0. [`Difference`] measures the
+//! difference of the two pictures. The paper's example images are [`Subject::Lake`] (its figures 8 and 9),
+//! [`Subject::Pattern`] (10 and 11) and [`highlight`] (14). This module takes texels, never files.
+
+mod camera;
+mod difference;
+mod draw;
+mod environment;
+mod font;
+mod highlight;
+mod material;
+mod sampler;
+mod scene;
+mod shade;
+mod shape;
+mod sheet;
+#[cfg(test)]
+mod tests;
+mod tone;
+mod waves;
+
+pub use camera::Camera;
+pub use difference::{Difference, relative_l1};
+pub use draw::{Advance, Picture, Supersampled, filtered, supersampled};
+pub use environment::{Environment, Radiance, Surroundings};
+pub use highlight::highlight;
+pub use material::{BaseAnisotropy, Bumps, LostBumps, Material, Point, RangedTexture};
+pub use sampler::{Filter, Footprint, Texel, Texture};
+pub use scene::{Light, Scene, Subject};
+pub use shade::{EnvironmentFilter, Reflection, Shader, View};
+pub use shape::{Hit, Shape};
+pub use sheet::{Panel, Sheet};
+pub use tone::Tone;
+pub use waves::waves;

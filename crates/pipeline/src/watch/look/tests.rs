@@ -1,0 +1,31 @@
+use super::*;
+
+fn at(seconds: u64) -> SystemTime {
+    SystemTime::UNIX_EPOCH + Duration::from_secs(seconds)
+}
+
+#[test]
+fn an_old_file_that_looks_equal_is_unchanged() {
+    let look = Some(Look::new(10, at(100)));
+    assert!(Seen::new(look, true, at(103)).is_unchanged(look));
+    assert!(!Seen::new(look, true, at(103)).is_unchanged(Some(Look::new(11, at(100)))));
+    assert!(!Seen::new(look, true, at(103)).is_unchanged(Some(Look::new(10, at(99)))));
+    assert!(!Seen::new(look, true, at(103)).is_unchanged(None));
+    assert!(Seen::new(None, false, at(103)).is_unchanged(None));
+}
+
+#[test]
+fn a_file_may_change_within_the_resolution_of_its_time() {
+    let look = Some(Look::new(10, at(100)));
+    for since in [98, 100, 102] {
+        let seen = Seen::new(look, true, at(since));
+        assert!(!seen.is_unchanged(look) && seen.looks_like(look), "{since}");
+    }
+}
+
+#[test]
+fn a_file_that_came_or_went_while_it_was_read_is_read_again() {
+    let look = Some(Look::new(10, at(100)));
+    assert!(!Seen::new(look, false, at(200)).is_unchanged(look));
+    assert!(!Seen::new(None, true, at(200)).is_unchanged(None));
+}

@@ -1,0 +1,178 @@
+// Bevy's physically based fragment shader, with normals from offsets and roughened lobes.
+
+#import bevy_pbr::{
+    forward_io::{FragmentOutput, VertexOutput},
+    lighting,
+    mesh_bindings::mesh,
+    mesh_functions::{get_local_from_world, get_world_from_local, sign_determinant_model_3x3m},
+    mesh_view_bindings::view,
+    pbr_fragment::pbr_input_from_standard_material,
+    pbr_functions::{alpha_discard, apply_pbr_lighting, calculate_tbn_mikktspace, main_pass_post_lighting_processing},
+    pbr_types::{PbrInput, STANDARD_MATERIAL_FLAGS_DOUBLE_SIDED_BIT, STANDARD_MATERIAL_FLAGS_UNLIT_BIT},
+}
+
+struct Pyramid {
+    offset_uv: mat3x3<f32>,
+    roughness_uv: mat3x3<f32>,
+    offset_min: vec2<f32>,
+    offset_max: vec2<f32>,
+    roughness_min: vec3<f32>,
+    correction_factor: f32,
+    roughness_max: vec3<f32>,
+    main_direction: vec3<f32>,
+}
+
+@group(#{MATERIAL_BIND_GROUP}) @binding(100) var<uniform> pyramid: Pyramid;
+@group(#{MATERIAL_BIND_GROUP}) @binding(101) var offset_texture: texture_2d<f32>;
+@group(#{MATERIAL_BIND_GROUP}) @binding(102) var offset_sampler: sampler;
+@group(#{MATERIAL_BIND_GROUP}) @binding(103) var roughness_texture: texture_2d<f32>;
+@group(#{MATERIAL_BIND_GROUP}) @binding(104) var roughness_sampler: sampler;
+
+#ifdef STANDARD_MATERIAL_ANISOTROPY
+// Bevy squares alpha once more, to roughness^4, where KHR_materials_anisotropy has alpha_b = roughness^2.
+override fn bevy_pbr::lighting::specular_anisotropy(
+    input: ptr<function, lighting::LightingInput>,
+    derived_input: ptr<function, lighting::DerivedLightingInput>,
+    L: vec3<f32>,
+    roughness: f32,
+    specular_intensity: f32,
+) -> vec3<f32> {
+    return lighting::specular_anisotropy(input, derived_input, L, sqrt(roughness), specular_intensity);
+}
+#endif
+
+#ifdef VERTEX_TANGENTS
+#ifdef VERTEX_UVS_A
+
+// The frame of offsets and roughness, and the scale of the slopes in the map.
+struct Frame {
+    e1: vec3<f32>,
+    e2: vec3<f32>,
+    scale: vec2<f32>,
+}
+
+fn frame_at(in: VertexOutput, uv: vec2<f32>) -> Frame {
+    let tbn = calculate_tbn_mikktspace(in.world_normal, in.world_tangent);
+    var frame = Frame(normalize(tbn[0]), normalize(tbn[1]), vec2(1.0));
+#ifdef ROUGHCAST_FRAME_MAIN
+    // e1 = m x n, e2 = n x e1: the part of m along the surface. Where n is parallel to m, that part is 0.
+    let n = normalize(in.world_normal);
+    let m = (get_world_from_local(in.instance_index) * vec4(pyramid.main_direction, 0.0)).xyz;
+    let along_surface = m - dot(m, n) * n;
+    if length(along_surface) > 1e-4 * length(m) {
+        frame.e2 = normalize(along_surface);
+        frame.e1 = sign_determinant_model_3x3m(mesh[in.instance_index].flags) * cross(frame.e2, n);
+    }
+#endif
+#ifdef ROUGHCAST_FRAME_NATURAL
+    // |p_u| and |p_v|, in units of the mesh per repeat.
+    let local_from_world = get_local_from_world(in.instance_index);
+    let px = (local_from_world * vec4(dpdx(in.world_position.xyz), 0.0)).xyz;
+    let py = (local_from_world * vec4(dpdy(in.world_position.xyz), 0.0)).xyz;
+    let tx = dpdx(uv);
+    let ty = dpdy(uv);
+    let stretch = vec2(length(px * ty.y - py * tx.y), length(py * tx.x - px * ty.x));
+    frame.scale = vec2(abs(tx.x * ty.y - ty.x * tx.y)) / max(stretch, vec2(1e-20));
+#endif
+    return frame;
+}
+
+// Tilts the normal: n' = n - f_u e1 - f_v e2.
+fn tilt(input: ptr<function, PbrInput>, frame: Frame, uv: vec2<f32>, is_front: bool) {
+    let texel = textureSampleBias(offset_texture, offset_sampler, uv, view.mip_bias).rg;
+    let f = frame.scale * mix(pyramid.offset_min, pyramid.offset_max, texel);
+    let n = normalize(normalize((*input).world_normal) - f.x * frame.e1 - f.y * frame.e2);
+    let is_double_sided = ((*input).material.flags & STANDARD_MATERIAL_FLAGS_DOUBLE_SIDED_BIT) != 0u;
+    (*input).N = select(n, -n, is_double_sided && !is_front);
+}
+
+// Roughens the base lobe: A' = A + 2 c K, with K from the filtered D or lambda_1.
+fn roughen(input: ptr<function, PbrInput>, frame: Frame, uv: vec2<f32>) {
+    let texel = textureSampleBias(roughness_texture, roughness_sampler, uv, view.mip_bias).rgb;
+    let d = mix(pyramid.roughness_min, pyramid.roughness_max, texel);
+#ifdef ROUGHCAST_FACTOR
+    // K = D D^T with D = [[d1, d2], [0, d3]].
+    var k = vec3(d.x * d.x + d.y * d.y, d.y * d.z, d.z * d.z);
+#else
+    var k = vec3(d.x * d.x, 0.0, d.x * d.x);
+#endif
+    k *= frame.scale.xxy * frame.scale.xyy;
+    let alpha = lighting::perceptualRoughnessToRoughness((*input).material.perceptual_roughness);
+#ifdef STANDARD_MATERIAL_ANISOTROPY
+    // The base lobe, in the frame of K.
+    let strength = (*input).anisotropy_strength;
+    let along = mix(alpha, 1.0, strength * strength);
+    var axis = vec2(dot((*input).anisotropy_T, frame.e1), dot((*input).anisotropy_T, frame.e2));
+    axis /= max(length(axis), 1e-6);
+    let across = alpha * alpha;
+    var a = vec3(across, 0.0, across) + (along * along - across) * axis.xxy * axis.xyy;
+    a += 2.0 * pyramid.correction_factor * k;
+    // Eigenvalues, and the axis of the larger one.
+    let middle = 0.5 * (a.x + a.z);
+    let difference = 0.5 * (a.x - a.z);
+    let radius = length(vec2(difference, a.y));
+    let major = min(middle + radius, 1.0);
+    let minor = clamp(middle - radius, across, 1.0);
+    var e = select(vec2(a.y, radius - difference), vec2(radius + difference, a.y), difference > 0.0);
+    let size = length(e);
+    e = select(axis, e / max(size, 1e-20), size > 1e-9);
+    // The roughness and strength that give these alphas in KHR_materials_anisotropy.
+    let alpha_t = sqrt(major);
+    let alpha_b = sqrt(minor);
+    (*input).material.perceptual_roughness = sqrt(alpha_b);
+    (*input).anisotropy_strength = sqrt(saturate((alpha_t - alpha_b) / max(1.0 - alpha_b, 1e-6)));
+    // Bevy keeps the axes in the surface. Lobes about tilted normals are then not normalised, and too bright.
+    let t = e.x * frame.e1 + e.y * frame.e2;
+    (*input).anisotropy_T = normalize(t - dot(t, (*input).N) * (*input).N);
+    (*input).anisotropy_B = cross((*input).N, (*input).anisotropy_T);
+#else
+    // Different scales of u and v make the lobe anisotropic. This shader has isotropic lobes only, so it takes the mean.
+    let squared = alpha * alpha + pyramid.correction_factor * (k.x + k.z);
+    (*input).material.perceptual_roughness = sqrt(sqrt(min(squared, 1.0)));
+#endif
+}
+
+fn bumps(in: VertexOutput, is_front: bool, input: ptr<function, PbrInput>) {
+    var uv = in.uv;
+    var roughness_uv = in.uv;
+#ifdef VERTEX_UVS_B
+#ifdef ROUGHCAST_OFFSET_UV_B
+    uv = in.uv_b;
+#endif
+#ifdef ROUGHCAST_ROUGHNESS_UV_B
+    roughness_uv = in.uv_b;
+#endif
+#endif
+    uv = (pyramid.offset_uv * vec3(uv, 1.0)).xy;
+    roughness_uv = (pyramid.roughness_uv * vec3(roughness_uv, 1.0)).xy;
+    let frame = frame_at(in, uv);
+    tilt(input, frame, uv, is_front);
+#ifdef ROUGHCAST_FACTOR
+    roughen(input, frame, roughness_uv);
+#endif
+#ifdef ROUGHCAST_DEVIATION
+    roughen(input, frame, roughness_uv);
+#endif
+}
+
+#endif  // VERTEX_UVS_A
+#endif  // VERTEX_TANGENTS
+
+@fragment
+fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> FragmentOutput {
+    var input = pbr_input_from_standard_material(in, is_front);
+#ifdef VERTEX_TANGENTS
+#ifdef VERTEX_UVS_A
+    bumps(in, is_front, &input);
+#endif
+#endif
+    input.material.base_color = alpha_discard(input.material, input.material.base_color);
+    var out: FragmentOutput;
+    if (input.material.flags & STANDARD_MATERIAL_FLAGS_UNLIT_BIT) == 0u {
+        out.color = apply_pbr_lighting(input);
+    } else {
+        out.color = input.material.base_color;
+    }
+    out.color = main_pass_post_lighting_processing(input, out.color);
+    return out;
+}

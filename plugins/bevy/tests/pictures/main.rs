@@ -1,0 +1,153 @@
+//! Pictures that Bevy draws of a baked plane, on any Vulkan. Mesa's software renderer is enough.
+
+mod asset;
+mod lobe;
+mod renderer;
+
+use std::path::{Path, PathBuf};
+
+use asset::{Asset, ROUGHNESS};
+use bevy::math::{Mat2, Vec2};
+use lobe::Lobe;
+use renderer::{Picture, Renderer};
+
+/// Makes the plane in a temporary folder, or returns `None` where the tests cannot run.
+fn setup() -> Option<(tempfile::TempDir, Asset)> {
+    let missing = match tool() {
+        None => "`cargo build` in the folder of Roughcast (or $ROUGHCAST)",
+        Some(_) if !has_vulkan() => "Vulkan (Debian: mesa-vulkan-drivers)",
+        Some(tool) => {
+            let folder = tempfile::tempdir().unwrap();
+            let asset = Asset::new(folder.path(), tool);
+            return Some((folder, asset));
+        }
+    };
+    assert!(std::env::var("CI").as_deref() != Ok("true"), "pictures need {missing}");
+    eprintln!("skipped: pictures need {missing}");
+    None
+}
+
+/// Returns $ROUGHCAST, else the newest tool that Cargo built.
+fn tool() -> Option<PathBuf> {
+    if let Some(tool) = std::env::var_os("ROUGHCAST") {
+        return Some(tool.into());
+    }
+    let target = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../target");
+    let built = ["release", "debug"].map(|profile| target.join(profile).join("roughcast"));
+    built.into_iter().filter(|tool| tool.exists()).max_by_key(|tool| tool.metadata().and_then(|m| m.modified()).ok())
+}
+
+fn has_vulkan() -> bool {
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+    descriptor.backends = wgpu::Backends::VULKAN;
+    let adapters = wgpu::Instance::new(descriptor).enumerate_adapters(wgpu::Backends::VULKAN);
+    !bevy::tasks::block_on(adapters).is_empty()
+}
+
+/// Returns the mean difference over the mean radiance.
+fn relative_l1(found: &Picture, expected: &Picture) -> f32 {
+    let difference: f32 = found.iter().zip(expected).map(|(a, b)| (a - b).abs()).sum();
+    difference / expected.iter().sum::<f32>()
+}
+
+fn assert_close(found: &Picture, expected: &Picture, tolerance: f32, what: &str) {
+    let error = relative_l1(found, expected);
+    assert!(error <= tolerance, "{what}: expected a picture off by at most {tolerance}, found {error}");
+}
+
+/// Returns K of all slopes of the map, and their mean.
+fn moments(slopes: &[Vec2]) -> (Mat2, Vec2) {
+    let count = slopes.len() as f32;
+    let mean = slopes.iter().sum::<Vec2>() / count;
+    let outer = |s: Vec2| Mat2::from_cols(s * s.x, s * s.y);
+    (slopes.iter().map(|s| outer(*s - mean)).fold(Mat2::ZERO, |a, b| a + b) * (1.0 / count), mean)
+}
+
+/// Returns what each pixel shows without filtering: the base lobe about the normals of all texels.
+fn reference(slopes: &[Vec2]) -> Picture {
+    let lobes: Vec<Lobe> = slopes.iter().map(|slope| Lobe { slope: *slope, ..base_lobe() }).collect();
+    lobe::mean(&lobes)
+}
+
+/// Returns the base lobe.
+fn base_lobe() -> Lobe {
+    Lobe::isotropic(ROUGHNESS * ROUGHNESS)
+}
+
+#[test]
+fn a_pyramid_shades_with_the_lobe_of_the_extension() {
+    let Some((folder, asset)) = setup() else { return };
+    let mut renderer = Renderer::new(folder.path(), true);
+    let (k, slope) = moments(&asset.slopes);
+    let baked = asset.bake("factor", "--profile pyramid --model anisotropic");
+    let anisotropic = Lobe { a: base_lobe().a + 2.0 * baked.correction_factor() * k, slope };
+    let factor = renderer.draw(&baked.path);
+    assert_close(&factor, &anisotropic.picture(), 0.005, "D");
+    // One lobe cannot come closer. Without K the error is 0.9.
+    assert_close(&factor, &reference(&asset.slopes), 0.3, "D and the reference");
+
+    let baked = asset.bake("deviation", "--profile pyramid --model isotropic");
+    let (centre, radius) = Lobe { a: k, slope }.mean_and_radius();
+    let isotropic = base_lobe().a + 2.0 * baked.correction_factor() * (centre + radius) * Mat2::IDENTITY;
+    let deviation = renderer.draw(&baked.path);
+    assert_close(&deviation, &Lobe { a: isotropic, slope }.picture(), 0.005, "lambda_1");
+    assert!(relative_l1(&deviation, &factor) > 0.1);
+
+    // Other frames give the same picture. On the plane z = 0, m = x has e1 = -y and e2 = x.
+    for (name, options) in [("natural", ""), ("mainDirection", "--main-direction 1,0,0")] {
+        let frame = if name == "natural" { name } else { "main-direction" };
+        let baked = asset.bake(name, &format!("--profile pyramid --model anisotropic --frame {frame} {options}"));
+        assert_eq!(baked.frame(), name);
+        assert_close(&renderer.draw(&baked.path), &factor, 0.005, name);
+    }
+}
+
+#[test]
+fn a_roughened_core_material_is_not_roughened_again() {
+    let Some((folder, asset)) = setup() else { return };
+    let mut renderer = Renderer::new(folder.path(), true);
+    let [pyramid, both] = ["pyramid", "both"].map(|profile| {
+        let baked = asset.bake(profile, &format!("--profile {profile} --model anisotropic"));
+        renderer.draw(&baked.path)
+    });
+    assert_close(&both, &pyramid, 0.001, "both profiles");
+}
+
+#[test]
+fn a_portable_asset_needs_no_plugin() {
+    let Some((folder, asset)) = setup() else { return };
+    let mut renderer = Renderer::new(folder.path(), false);
+    let reference = reference(&asset.slopes);
+    let plain = renderer.draw(&asset.bake("none", "--model none").path);
+    // Encoding moves the normals of this level by one step.
+    assert_close(&plain, &base_lobe().picture(), 0.05, "plain mips");
+    let baked = asset.bake("portable", "--model isotropic");
+    let portable = renderer.draw(&baked.path);
+    let roughness = asset.last_roughness(&baked);
+    assert_close(&portable, &Lobe::isotropic(roughness * roughness).picture(), 0.03, "portable");
+    let [error, plain_error] = [&portable, &plain].map(|picture| relative_l1(picture, &reference));
+    assert!(error < 0.8 * plain_error, "expected less than the error of plain mips, {plain_error}, found {error}");
+}
+
+/// When this test fails, Bevy has corrected its shader: the override in pyramid.wgsl can go, and `roughcast bake
+/// --engine bevy` may bake anisotropic lobes.
+#[test]
+fn bevy_squares_the_alphas_of_anisotropic_lobes_once_more() {
+    let Some((folder, asset)) = setup() else { return };
+    let (roughness, strength) = (0.7_f32, 0.5_f32);
+    let picture = Renderer::new(folder.path(), false).draw(&asset.anisotropic(roughness, strength));
+    let expected = |across: f32| {
+        let along = across + (1.0 - across) * strength * strength;
+        Lobe { a: Mat2::from_diagonal(Vec2::new(along * along, across * across)), slope: Vec2::ZERO }.picture()
+    };
+    // Pictures are normalised, since multiple scattering depends on the roughness of the material.
+    let shape = |picture: Picture| -> Picture {
+        let sum: f32 = picture.iter().sum();
+        picture.iter().map(|value| value / sum).collect()
+    };
+    let picture = shape(picture);
+    let error = |power| relative_l1(&shape(expected(roughness.powi(power))), &picture);
+    let (khronos, squared) = (error(2), error(4));
+    assert!(khronos > 0.3, "off by {khronos} from KHR_materials_anisotropy");
+    assert!(squared < 0.01, "off by {squared} from its squared alphas");
+}

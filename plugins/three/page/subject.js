@@ -1,0 +1,52 @@
+// The subject: the asset itself, or a plane or a sphere with the first material that has bumps.
+import * as THREE from 'three';
+
+/** Repeats of the maps on a plane and around a sphere. */
+const REPEATS = { plane: 8, sphere: 6 };
+
+/** Makes a mesh with glTF's tangents: v points down the image, and B points up. */
+function withTangents(geometry, repeats) {
+  const uv = geometry.attributes.uv;
+  for (let i = 0; i < uv.count; i++) uv.setXY(i, uv.getX(i) * repeats, (1 - uv.getY(i)) * repeats);
+  geometry.computeTangents();
+  // three.js takes B along +v.
+  const tangent = geometry.attributes.tangent;
+  for (let i = 0; i < tangent.count; i++) tangent.setW(i, -tangent.getW(i));
+  return geometry;
+}
+
+const GEOMETRIES = {
+  plane: () => withTangents(new THREE.PlaneGeometry(4, 4, 8, 8).rotateX(-Math.PI / 2), REPEATS.plane),
+  sphere: () => withTangents(new THREE.SphereGeometry(1, 96, 48), REPEATS.sphere),
+};
+
+/** Returns the first material with bumps, else the first material. */
+function bumpy(scene) {
+  const materials = [];
+  scene.traverse((object) => object.isMesh && materials.push(object.material));
+  return materials.find((material) => material.normalMap) ?? materials[0];
+}
+
+/**
+ * @param {THREE.Object3D} scene What a loader returned.
+ * @param {'asset' | 'plane' | 'sphere'} kind
+ * @returns {THREE.Object3D} centred, about 2 units large
+ */
+export function subject(scene, kind) {
+  const object = kind === 'asset' ? scene.clone() : new THREE.Mesh(GEOMETRIES[kind](), tangential(bumpy(scene)));
+  const box = new THREE.Box3().setFromObject(object);
+  const size = box.getSize(new THREE.Vector3()).length() || 1;
+  const group = new THREE.Group().add(object);
+  const scale = kind === 'asset' ? 2.4 / size : 1;
+  group.scale.setScalar(scale);
+  group.position.copy(box.getCenter(new THREE.Vector3())).multiplyScalar(-scale);
+  return group;
+}
+
+/** Undoes a flip: GLTFLoader flips B of materials whose mesh has no tangents, and these meshes have tangents. */
+function tangential(material) {
+  if (material.normalScale?.y >= 0) return material;
+  const copy = material.clone();
+  copy.normalScale.y *= -1;
+  return copy;
+}

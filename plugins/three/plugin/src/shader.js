@@ -1,0 +1,184 @@
+// GLSL that the patch inserts into three.js' standard and physical shaders. The offset map has the slot of the normal
+// map, and the roughness map has the slot of the bump map, so three.js itself computes texture coordinates and
+// transforms of both.
+
+/** Goes first in the fragment shader: definitions and uniforms. */
+export const declarations = ({ model, frame }) => /* glsl */ `
+#define ROUGHCAST_FRAME_${frame === 'mainDirection' ? 'MAIN' : frame.toUpperCase()}
+${model === 'covarianceFactor' ? '#define ROUGHCAST_FACTOR' : ''}
+${model === 'standardDeviation' ? '#define ROUGHCAST_DEVIATION' : ''}
+#if defined( ROUGHCAST_FACTOR ) && ! defined( USE_ANISOTROPY )
+  // D needs the anisotropic lobe. The base lobe of a material without anisotropy is isotropic.
+  #define USE_ANISOTROPY
+#endif
+uniform vec2 roughcastOffsetMin;
+uniform vec2 roughcastOffsetMax;
+uniform vec3 roughcastRoughnessMin;
+uniform vec3 roughcastRoughnessMax;
+uniform float roughcastCorrection;
+#ifdef ROUGHCAST_FRAME_NATURAL
+  varying vec3 vRoughcastPosition;
+#endif
+#ifdef ROUGHCAST_FRAME_MAIN
+  varying vec4 vRoughcastMain;
+#endif
+`;
+
+/** Goes first in the vertex shader. */
+export const vertexDeclarations = ({ frame }) =>
+  ({
+    unit: '',
+    natural: 'varying vec3 vRoughcastPosition;\n',
+    mainDirection: 'varying vec4 vRoughcastMain;\nuniform vec3 roughcastMain;\n',
+  })[frame];
+
+/** Goes after `#include <begin_vertex>`. */
+export const vertexBody = ({ frame }) =>
+  ({
+    unit: '',
+    natural: /* glsl */ `
+  vRoughcastPosition = position;`,
+    mainDirection: /* glsl */ `
+  mat3 roughcastToView = mat3( modelViewMatrix );
+  #ifdef USE_INSTANCING
+    roughcastToView *= mat3( instanceMatrix );
+  #endif
+  // w is -1 where the node mirrors the mesh, which mirrors e1 as well.
+  vRoughcastMain = vec4( roughcastToView * roughcastMain, sign( determinant( roughcastToView ) ) );`,
+  })[frame];
+
+/** Replaces `#include <normal_fragment_maps>`: n' = n - f_u e1 - f_v e2. */
+export const normal = /* glsl */ `
+  vec3 roughcastE1, roughcastE2;
+  // The scale of the slopes in the map. normalScale includes the sign of B: three.js flips it where a mesh has no
+  // tangents, since B from derivatives points down the image.
+  vec2 roughcastScale = normalScale;
+  {
+    roughcastE1 = normalize( tbn[ 0 ] );
+    roughcastE2 = normalize( tbn[ 1 ] );
+    #ifdef ROUGHCAST_FRAME_MAIN
+      // e1 = m x n, e2 = n x e1: the part of m along the surface. Where n is parallel to m, that part is 0.
+      vec3 alongSurface = vRoughcastMain.xyz - dot( vRoughcastMain.xyz, normal ) * normal;
+      if ( length( alongSurface ) > 1e-4 * length( vRoughcastMain.xyz ) ) {
+        roughcastE2 = normalize( alongSurface );
+        roughcastE1 = vRoughcastMain.w * cross( roughcastE2, normal );
+        #ifdef DOUBLE_SIDED
+          // On back faces three.js has flipped the normal, and e1 with it.
+          roughcastE2 *= faceDirection;
+        #endif
+        roughcastScale = abs( normalScale );
+      }
+    #endif
+    #ifdef ROUGHCAST_FRAME_NATURAL
+      // |p_u| and |p_v|, in units of the mesh per repeat.
+      vec3 px = dFdx( vRoughcastPosition ), py = dFdy( vRoughcastPosition );
+      vec2 tx = dFdx( vNormalMapUv ), ty = dFdy( vNormalMapUv );
+      float det = tx.x * ty.y - ty.x * tx.y;
+      vec2 stretch = vec2( length( px * ty.y - py * tx.y ), length( py * tx.x - px * ty.x ) );
+      roughcastScale *= abs( det ) / max( stretch, vec2( 1e-20 ) );
+    #endif
+    vec2 f = roughcastScale * mix( roughcastOffsetMin, roughcastOffsetMax, texture2D( normalMap, vNormalMapUv ).rg );
+    normal = normalize( normal - f.x * roughcastE1 - f.y * roughcastE2 );
+  }
+`;
+
+/** Goes after `#include <lights_physical_pars_fragment>`: the environment as an anisotropic lobe reflects it. */
+export const surroundings = /* glsl */ `
+#if defined( USE_ANISOTROPY ) && defined( USE_ENVMAP )
+  // Averages what facets reflect, each with the roughness of the base lobe. Facets are weighted by their area in the
+  // map and do not hide each other, as in an unfiltered map. three.js' single look-up along a bent normal is far too
+  // bright on spheres. Weights by the visible area of real facets (B. Walter et al., 2007, eq. 41) are too bright on
+  // planes.
+  vec3 roughcastRadiance( vec3 view, vec3 n, vec3 t, vec3 b, float alphaT, float alphaB, float base ) {
+    const int TAPS = 16;
+    const float GOLDEN_ANGLE = 2.39996323;
+    // A' - A = 2 c K is the spread of the facets. An isotropic part of the spread is left to blur, since there are few
+    // taps.
+    vec2 spread = max( vec2( pow2( alphaT ), pow2( alphaB ) ) - pow4( base ), 0.0 );
+    float blur = 0.25 * spread.y;
+    spread = sqrt( spread - blur );
+    float roughness = sqrt( sqrt( pow4( base ) + blur ) );
+    vec3 sum = vec3( 0.0 );
+    for ( int i = 0; i < TAPS; i ++ ) {
+      // Slopes at quantiles of a normal distribution, on a spiral.
+      float radius = sqrt( - log( 1.0 - ( float( i ) + 0.5 ) / float( TAPS ) ) ), angle = GOLDEN_ANGLE * float( i );
+      vec2 slope = radius * spread * vec2( cos( angle ), sin( angle ) );
+      sum += getIBLRadiance( view, normalize( n + slope.x * t + slope.y * b ), roughness );
+    }
+    return sum / float( TAPS );
+  }
+#endif
+`;
+
+/**
+ * Goes after `#include <lights_physical_fragment>` of a material without a pyramid: makes axes perpendicular to the
+ * normal.
+ */
+export const axes = /* glsl */ `
+float roughcastBase = material.roughness;
+#ifdef USE_ANISOTROPY
+  // three.js keeps the axes in the surface. Lobes about tilted normals are then not normalised, and too bright.
+  material.anisotropyT = normalize( material.anisotropyT - dot( material.anisotropyT, normal ) * normal );
+  material.anisotropyB = cross( normal, material.anisotropyT );
+#endif
+`;
+
+/** Wraps `#include <lights_fragment_maps>`: replaces three.js' look-up of the environment. */
+export const reflection = /* glsl */ `
+#if defined( USE_ANISOTROPY ) && defined( USE_ENVMAP )
+  #define getIBLAnisotropyRadiance( view, n, roughness, b, strength ) \
+    roughcastRadiance( view, n, material.anisotropyT, b, material.alphaT, pow2( roughness ), roughcastBase )
+#endif
+#include <lights_fragment_maps>
+#undef getIBLAnisotropyRadiance
+`;
+
+/** The arguments, in `lights_fragment_begin`, of the light that facets lose to and regain from each other. */
+export const LOST_LIGHT = 'vec2( material.roughness, dotNVms )';
+/** Bumps of a map neither hide nor light each other, so the base lobe alone decides on that light. */
+export const baseLostLight = 'vec2( roughcastBase, dotNVms )';
+
+/** Goes after `#include <lights_physical_fragment>`: roughens the lobe, A' = A + 2 c K. */
+export const roughen = /* glsl */ `
+  float roughcastBase = material.roughness;
+  #if defined( ROUGHCAST_FACTOR ) || defined( ROUGHCAST_DEVIATION )
+  {
+    // D or lambda_1, filtered by the sampler.
+    vec3 d = mix( roughcastRoughnessMin, roughcastRoughnessMax, texture2D( bumpMap, vBumpMapUv ).rgb );
+    #ifdef ROUGHCAST_FACTOR
+      // K = D D^T with D = [[d1, d2], [0, d3]].
+      vec3 k = vec3( d.x * d.x + d.y * d.y, d.y * d.z, d.z * d.z );
+    #else
+      vec3 k = vec3( d.x * d.x, 0.0, d.x * d.x );
+    #endif
+    k *= roughcastScale.xxy * roughcastScale.xyy;
+    #if defined( USE_ANISOTROPY )
+      // The base lobe, in the frame of K.
+      float across = pow2( pow2( material.roughness ) ), along = pow2( material.alphaT );
+      vec2 axis = vec2( dot( material.anisotropyT, roughcastE1 ), dot( material.anisotropyT, roughcastE2 ) );
+      axis /= max( length( axis ), 1e-6 );
+      vec3 a = vec3( across, 0.0, across ) + ( along - across ) * axis.xxy * axis.xyy;
+      a += 2.0 * roughcastCorrection * k;
+      // Eigenvalues, and the axis of the larger one.
+      float mean = 0.5 * ( a.x + a.z ), difference = 0.5 * ( a.x - a.z ), radius = length( vec2( difference, a.y ) );
+      float major = min( mean + radius, 1.0 ), minor = clamp( mean - radius, across, 1.0 );
+      vec2 e = difference > 0.0 ? vec2( radius + difference, a.y ) : vec2( a.y, radius - difference );
+      float size = length( e );
+      e = size > 1e-9 ? e / size : axis;
+      material.alphaT = sqrt( major );
+      float alphaB = sqrt( minor );
+      material.roughness = sqrt( alphaB );
+      // The strength that gives these alphas in KHR_materials_anisotropy.
+      material.anisotropy = sqrt( saturate( ( material.alphaT - alphaB ) / max( 1.0 - alphaB, 1e-6 ) ) );
+      vec3 t = e.x * roughcastE1 + e.y * roughcastE2;
+      material.anisotropyT = normalize( t - dot( t, normal ) * normal );
+      material.anisotropyB = cross( normal, material.anisotropyT );
+    #else
+      // Different scales of u and v make the lobe anisotropic; this shader has isotropic lobes only, so it takes the
+      // mean.
+      float squared = pow2( pow2( material.roughness ) ) + roughcastCorrection * ( k.x + k.z );
+      material.roughness = sqrt( sqrt( min( squared, 1.0 ) ) );
+    #endif
+  }
+  #endif
+`;

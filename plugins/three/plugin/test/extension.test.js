@@ -1,0 +1,86 @@
+import assert from 'node:assert/strict';
+import test from 'node:test';
+import { EXTENSION, readExtension } from '../src/index.js';
+import { withBaseLobe } from '../src/extension.js';
+
+const definition = () => ({
+  offsetTexture: { index: 3, texCoord: 1 },
+  offsetMin: [-1, -0.5],
+  offsetMax: [1, 0.5],
+  roughnessModel: 'covarianceFactor',
+  roughnessTexture: { index: 4 },
+  roughnessMin: [0, -0.1, 0],
+  roughnessMax: [0.2, 0.1, 0.3],
+  correctionFactor: 0.8,
+  frame: 'unit',
+});
+
+test('reads what the tool writes', () => {
+  const { offset, roughness, ...rest } = readExtension(definition());
+  assert.deepEqual(offset, { texture: { index: 3, texCoord: 1 }, min: [-1, -0.5], max: [1, 0.5] });
+  assert.deepEqual(roughness, {
+    model: 'covarianceFactor',
+    texture: { index: 4 },
+    min: [0, -0.1, 0],
+    max: [0.2, 0.1, 0.3],
+  });
+  assert.deepEqual(rest, { correctionFactor: 0.8, frame: 'unit', mainDirection: null, baseLobe: null });
+});
+
+test('reads pyramids without roughness and with lambda_1 in one channel', () => {
+  const { roughnessModel, roughnessTexture, roughnessMin, roughnessMax, ...smooth } = definition();
+  assert.equal(readExtension(smooth).roughness, null);
+  const lambda1 = { ...definition(), roughnessModel: 'standardDeviation', roughnessMin: [0], roughnessMax: [0.4] };
+  assert.deepEqual(readExtension(lambda1).roughness.max, [0.4]);
+});
+
+test('reads the main direction with its frame only', () => {
+  const main = { ...definition(), frame: 'mainDirection', mainDirection: [0, 0, 1] };
+  assert.deepEqual(readExtension(main).mainDirection, [0, 0, 1]);
+  assert.equal(readExtension({ ...definition(), frame: 'natural' }).mainDirection, null);
+});
+
+test('names each wrong property', () => {
+  const wrong = {
+    offsetTexture: [undefined, null, 3, {}, { index: -1 }, { index: 0.5 }],
+    offsetMin: [undefined, [0], [0, 0, 0], [0, NaN], ['0', 0], { length: 2 }],
+    offsetMax: [[1, Infinity]],
+    roughnessModel: [undefined, 'beckmann', 'toString', 1],
+    roughnessTexture: [undefined, { index: '4' }],
+    roughnessMin: [undefined, [0]],
+    roughnessMax: [[1, 1, null]],
+    correctionFactor: [undefined, -1, NaN, '1'],
+    frame: [undefined, 'world', null],
+    baseLobe: [null, 1, []],
+  };
+  for (const [name, values] of Object.entries(wrong)) {
+    for (const value of values) {
+      assert.throws(() => readExtension({ ...definition(), [name]: value }), {
+        name: 'TypeError',
+        message: new RegExp(`^${EXTENSION}: ${name}: expected .*, found `),
+      });
+    }
+  }
+  assert.throws(() => readExtension({ ...definition(), frame: 'mainDirection' }), /mainDirection: expected 3/);
+  for (const nothing of [null, undefined, 1, 'x', []])
+    assert.throws(() => readExtension(nothing), /expected an object/);
+});
+
+test('replaces the whole roughened lobe by the base lobe', () => {
+  const roughened = {
+    name: 'brass',
+    pbrMetallicRoughness: { metallicFactor: 1, roughnessFactor: 1, metallicRoughnessTexture: { index: 5 } },
+    extensions: { KHR_materials_anisotropy: { anisotropyStrength: 1 }, KHR_materials_ior: {} },
+  };
+  assert.deepEqual(withBaseLobe(roughened, { roughnessFactor: 0.3 }), {
+    name: 'brass',
+    pbrMetallicRoughness: { metallicFactor: 1, roughnessFactor: 0.3 },
+    extensions: { KHR_materials_ior: {} },
+  });
+  const anisotropy = { anisotropyStrength: 0.5 };
+  const metallicRoughnessTexture = { index: 1 };
+  assert.deepEqual(withBaseLobe({}, { metallicRoughnessTexture, anisotropy }), {
+    pbrMetallicRoughness: { metallicRoughnessTexture },
+    extensions: { KHR_materials_anisotropy: anisotropy },
+  });
+});

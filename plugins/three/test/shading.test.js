@@ -1,0 +1,155 @@
+// The plugin against three.js' own materials: surfaces of one slope and one K have an exact counterpart there.
+import assert from 'node:assert/strict';
+import test, { after, before } from 'node:test';
+import path from 'node:path';
+import { launch, missing, open } from '../browser.js';
+import { serve } from '../server.js';
+import { example } from './roughcast.js';
+
+let server, browser, page;
+before(async () => {
+  if (missing) return;
+  server = await serve({
+    engines: path.join(example, 'engines'),
+    plugin: path.join(example, 'plugin'),
+    three: path.join(example, 'node_modules/three'),
+  });
+  browser = await launch();
+  page = await open(browser, `${server.url}/engines/shading.html`);
+  await page.waitForFunction('window.ready');
+});
+after(async () => {
+  await browser?.close();
+  await server?.close();
+});
+
+/**
+ * A metal so dark that light between facets is negligible. Pyramids differ in that light, which has a test of its own.
+ */
+const DARK = { metalness: 1, color: 0x272727 };
+const PLANE = { width: 1, height: 1, tangents: true, mirrored: false, behind: false };
+
+/** Returns the parameters of KHR_materials_anisotropy for A = [uu, uv, vv]. */
+function lobe([uu, uv, vv]) {
+  const radius = Math.hypot((uu - vv) / 2, uv);
+  const [along, across] = [(uu + vv) / 2 + radius, (uu + vv) / 2 - radius].map(Math.sqrt);
+  const anisotropy = Math.sqrt((along - across) / (1 - across));
+  return { ...DARK, roughness: Math.sqrt(across), anisotropy, anisotropyRotation: 0.5 * Math.atan2(2 * uv, uu - vv) };
+}
+
+const normal = ([u, v]) => [-u, -v, 1].map((c) => c / Math.hypot(u, v, 1));
+
+async function assertAlike(pyramid, plain) {
+  const found = await page.evaluate((o) => window.pyramid(o), { plane: PLANE, ...pyramid });
+  const expected = await page.evaluate((o) => window.plain(o), { plane: PLANE, ...plain });
+  const brightest = Math.max(...expected.filter((_, i) => i % 4 < 3));
+  assert.ok(brightest > 0.01, `the light is seen: ${brightest}`);
+  const worst = Math.max(...found.map((value, i) => Math.abs(value - expected[i])));
+  assert.ok(worst < 0.01 * brightest, `off by ${worst} of ${brightest}`);
+  assert.deepEqual(page.problems, []);
+}
+
+const options = { skip: missing };
+const ALPHA = 0.2;
+const OWN = { ...DARK, roughness: Math.sqrt(ALPHA) };
+// D = [[d1, d2], [0, d3]] and K = D D^T.
+const [D, K] = [
+  [0.2, 0.1, 0.1],
+  [0.05, 0.01, 0.01],
+];
+const C = 0.8;
+const folded = ([uu, uv, vv]) => [ALPHA ** 2 + 2 * C * uu, 2 * C * uv, ALPHA ** 2 + 2 * C * vv];
+const FLAT = { own: OWN, offset: [0, 0], lost: D, correctionFactor: C, frame: 'unit' };
+
+test('D gives the anisotropic lobe of a physical material', options, async () => {
+  for (const type of ['MeshStandardMaterial', 'MeshPhysicalMaterial']) {
+    await assertAlike({ ...FLAT, type }, { own: lobe(folded(K)), normal: [0, 0, 1] });
+  }
+});
+
+test('K = 0 leaves the base lobe', options, async () => {
+  await assertAlike({ ...FLAT, lost: [0, 0, 0] }, { own: OWN, normal: [0, 0, 1] });
+  await assertAlike({ ...FLAT, lost: null }, { own: OWN, normal: [0, 0, 1] });
+  await assertAlike({ ...FLAT, correctionFactor: 0 }, { own: OWN, normal: [0, 0, 1] });
+});
+
+test('adds K to an anisotropic base lobe', options, async () => {
+  const own = lobe([0.09, 0.02, 0.04]);
+  const sum = [0.09 + 2 * C * K[0], 0.02 + 2 * C * K[1], 0.04 + 2 * C * K[2]];
+  await assertAlike({ ...FLAT, own }, { own: lobe(sum), normal: [0, 0, 1] });
+});
+
+test('lambda_1 roughens isotropic and anisotropic base lobes alike in all directions', options, async () => {
+  const squared = ALPHA ** 2 + 2 * C * 0.3 ** 2;
+  await assertAlike({ ...FLAT, lost: [0.3] }, { own: { ...OWN, roughness: squared ** 0.25 }, normal: [0, 0, 1] });
+  const sum = [0.09 + 2 * C * 0.04, 0.02, 0.04 + 2 * C * 0.04];
+  await assertAlike({ ...FLAT, own: lobe([0.09, 0.02, 0.04]), lost: [0.2] }, { own: lobe(sum), normal: [0, 0, 1] });
+});
+
+test('bumps lose no light to each other', options, async () => {
+  const metal = { metalness: 1, color: 0xffffff };
+  for (const lost of [D, [0.3]]) {
+    const squared = ALPHA ** 2 + 2 * C * 0.3 ** 2;
+    const whole = lost === D ? lobe(folded(K)) : { ...OWN, roughness: squared ** 0.25 };
+    const drawn = await page.evaluate((o) => window.pyramid(o), {
+      ...FLAT,
+      plane: PLANE,
+      lost,
+      own: { ...OWN, ...metal },
+    });
+    const three = await page.evaluate((o) => window.plain(o), {
+      own: { ...whole, ...metal },
+      normal: [0, 0, 1],
+      plane: PLANE,
+    });
+    // three.js gives back the light that a rough metal loses; the pyramid gives back what the smoother base lobe loses.
+    const ratio = Math.max(...drawn.filter((_, i) => i % 4 < 3)) / Math.max(...three.filter((_, i) => i % 4 < 3));
+    assert.ok(ratio > 0.7 && ratio < 0.99, `${ratio}`);
+  }
+});
+
+const SLOPE = [0.3, -0.2];
+const BUMPY = { ...FLAT, offset: SLOPE, lost: [0.2] };
+const ROUND = { own: { ...OWN, roughness: (ALPHA ** 2 + 2 * C * 0.04) ** 0.25 }, normal: normal(SLOPE) };
+
+test('offsets tilt the normal, with and without tangents, from behind and in mirrored nodes', options, async () => {
+  for (const change of [
+    {},
+    { tangents: false },
+    { behind: true },
+    { mirrored: true },
+    { mirrored: true, tangents: false },
+  ]) {
+    const plane = { ...PLANE, ...change };
+    await assertAlike({ ...BUMPY, plane }, { ...ROUND, plane });
+  }
+});
+
+test('natural offsets are heights per repeat', options, async () => {
+  const plane = { ...PLANE, width: 2, height: 4 };
+  const offset = [SLOPE[0] * 2, SLOPE[1] * 4];
+  for (const tangents of [true, false]) {
+    const natural = { ...BUMPY, offset, frame: 'natural', lost: null, plane: { ...plane, tangents } };
+    await assertAlike(natural, { own: OWN, normal: normal(SLOPE), plane: { ...plane, tangents } });
+    // D also is per repeat: its rows are divided by 2 and 4.
+    const ellipse = { ...FLAT, frame: 'natural', lost: [D[0], D[1], 2 * D[2]], plane: { ...plane, tangents } };
+    await assertAlike(ellipse, {
+      own: lobe(folded(K.map((k) => k / 4))),
+      normal: [0, 0, 1],
+      plane: { ...plane, tangents },
+    });
+  }
+});
+
+test('a main direction needs no tangents', options, async () => {
+  // On the plane z = 0, m = x has e1 = m x n = -y and e2 = n x e1 = x.
+  const main = { ...BUMPY, frame: 'mainDirection', mainDirection: [1, 0, 0], offset: [-SLOPE[1], SLOPE[0]] };
+  const turned = { ...FLAT, frame: 'mainDirection', mainDirection: [1, 0, 0] };
+  // With tangents, three.js computes B of a mirrored mesh from the mirrored T and N, which flips the bumps of its own
+  // normal maps.
+  for (const change of [{}, { tangents: false }, { behind: true }, { mirrored: true, tangents: false }]) {
+    const plane = { ...PLANE, ...change };
+    await assertAlike({ ...main, plane }, { ...ROUND, plane });
+    await assertAlike({ ...turned, plane }, { own: lobe(folded([K[2], -K[1], K[0]])), normal: [0, 0, 1], plane });
+  }
+});
