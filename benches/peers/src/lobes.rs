@@ -61,8 +61,7 @@ fn errors(image: &Image) -> Result<[f64; COLUMNS], Failure> {
     let map = || NormalMap::new(image.clone(), NormalLayout::Auto, false);
     let surface = Surface::of_map(&map()?, SquaredAlpha::isotropic(Alpha(ALPHA)));
     let base = BaseRoughness { image: None, factor: Roughness::from(Alpha(ALPHA)).0 };
-    let settings =
-        Settings::default().with_model(Model::Anisotropic).with_target(Target::Float).with_provenance(false);
+    let settings = Settings::default().with_model(Model::Anisotropic).with_target(Target::Float).with_provenance(false);
     let baked = bake_map(&BumpMap::Normals(map()?), Some(&base), &settings)?;
     let files: Vec<_> = baked.textures.iter().map(|t| (t.content, t.mip_chain.to_ktx2(&[]).unwrap())).collect();
     let mut sums = [0.0; COLUMNS];
