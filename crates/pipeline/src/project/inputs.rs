@@ -183,8 +183,11 @@ fn find_one(argument: &Path, output: &Path, is_baked: &mut dyn FnMut(&Path) -> b
                 |e| {
                     let extension = e.to_string_lossy();
                     let is_scene = SCENES.iter().any(|scene| extension.eq_ignore_ascii_case(scene));
-                    let remedy =
-                        if is_scene { "export the scene as glTF 2.0" } else { "bare maps are for `roughcast map`" };
+                    let remedy = if is_scene {
+                        "export the scene as glTF 2.0"
+                    } else {
+                        "standalone maps are for `roughcast map`"
+                    };
                     format!("a .{extension} file ({remedy})")
                 },
             );

@@ -45,7 +45,7 @@ fn errors_on_other_files_say_what_to_do() {
         ("a.fbx", b"Kaydara FBX Binary  \0", "a .fbx file (export the scene as glTF 2.0)"),
         ("a.OBJ", b"v 0 0 0", "a .OBJ file (export the scene as glTF 2.0)"),
         ("a.usdz", b"PK\x03\x04", "a .usdz file (export the scene as glTF 2.0)"),
-        ("a.png", b"\x89PNG", "a .png file (bare maps are for `roughcast map`)"),
+        ("a.png", b"\x89PNG", "a .png file (standalone maps are for `roughcast map`)"),
     ] {
         let path = folder.path().join(name);
         fs::write(&path, bytes).expect("a file");
