@@ -89,13 +89,14 @@ struct Order {
     server: Option<NamedServer>,
     /// The output folder; `None` for a plan, whose jobs name their own.
     output: Option<PathBuf>,
-    /// PartialFile until all outputs are written. A plan takes none: other parts of the plan write to the same folders.
+    /// The lock on the output folder, held until all outputs are written. A plan takes no lock, because other parts of
+    /// the plan write to the same folders.
     _lock: Option<OutputLock>,
     /// The outcome so far.
     outcome: Outcome,
 }
 
-/// Assets whose dependencies a depfile cannot name.
+/// Assets with dependencies that a depfile cannot name, each with the reason.
 type Refused = Vec<(PlannedAsset, DepfileError)>;
 
 /// Runs the command.

@@ -47,8 +47,8 @@ pub(crate) fn round<F: Real>(v: F) -> F {
 
 /// The weight that each index of a mode stands for, 0..=64: `gain * index` and two corrections.
 ///
-/// The numbers are parameters, and not constants of the code, so that one search is compiled for all modes: code for
-/// each number of bits took the compiler twice as long.
+/// The numbers are parameters, and not constants of the code, so that one search is compiled for all modes. Code for
+/// each number of bits made the compiler take a third more time for the crate (136 s of CPU instead of 103).
 pub(crate) struct Ramp {
     /// The largest index.
     pub last: f32,
