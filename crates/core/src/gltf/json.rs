@@ -6,12 +6,12 @@
 //! document.
 //!
 //! ```
-//! use roughcast::gltf::json::Json;
+//! use roughcast_core::gltf::json::Json;
 //!
 //! let mut json = Json::parse(br#"{ "asset": {"version":"2.0"}, "odd" : 1.0e+00 }"#)?;
 //! json.set("/asset/generator", "roughcast")?;
 //! assert_eq!(json.to_string(), r#"{ "asset": {"version":"2.0", "generator":"roughcast"}, "odd" : 1.0e+00 }"#);
-//! # Ok::<(), roughcast::gltf::json::JsonError>(())
+//! # Ok::<(), roughcast_core::gltf::json::JsonError>(())
 //! ```
 
 mod error;

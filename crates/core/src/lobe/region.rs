@@ -23,9 +23,9 @@ impl Region {
     /// deviation of [`Region::Normal`] is 5.8.
     ///
     /// ```
-    /// use roughcast::bump::{Offset, normal_from_offset};
-    /// use roughcast::lobe::{Factor, Region};
-    /// use roughcast::math::symmetric::Symmetric2;
+    /// use roughcast_core::bump::{Offset, normal_from_offset};
+    /// use roughcast_core::lobe::{Factor, Region};
+    /// use roughcast_core::math::symmetric::Symmetric2;
     ///
     /// // What the ray tracer reads where its ray hits: the mean offset and D.
     /// let (mean, d) = (Offset { u: 0.1, v: 0.0 }, Factor { d1: 0.3, d2: 0.1, d3: 0.05 });
