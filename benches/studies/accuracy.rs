@@ -1,7 +1,7 @@
 //! Prints the accuracy table of docs/accuracy.md as markdown.
 //!
-//! `cargo run --release --example accuracy [TEXELS]` uses TEXELS texels per level and map, 16 by default. It reads
-//! `../shared/data/maps`, else `fixtures/maps`.
+//! `cargo run --release -p studies --bin accuracy [TEXELS]` uses TEXELS texels per level and map, 16 by default. It
+//! reads `../shared/data/maps`, else `fixtures/maps`.
 
 use std::array::from_fn;
 use std::error::Error;

@@ -1,8 +1,8 @@
 //! Measures the cost of checking many up-to-date outputs, with and without decoding them.
 //!
-//! `cargo run --release --example check_cost -- 1000` bakes an asset and copies the asset and its source 1000 times. It
-//! prints the time of `check --source` and of `check --source --deep`, and the time of reading and hashing the sources.
-//! A folder after the number is baked in place of a fixture.
+//! `cargo run --release -p studies --bin check_cost -- 1000` bakes an asset and copies the asset and its source 1000
+//! times. It prints the time of `check --source` and of `check --source --deep`, and the time of reading and hashing
+//! the sources. A folder after the number is baked in place of a fixture.
 
 use std::error::Error;
 use std::fs;

@@ -1,7 +1,7 @@
 //! Prints what block encoding of normals adds to the lobe error, as markdown.
 //!
-//! `cargo run --release --example encoding [TEXELS]` uses TEXELS texels per level and map, 64 by default. It reads
-//! `../shared/data/maps`, else `fixtures/maps`.
+//! `cargo run --release -p studies --bin encoding [TEXELS]` uses TEXELS texels per level and map, 64 by default. It
+//! reads `../shared/data/maps`, else `fixtures/maps`.
 
 use std::error::Error;
 use std::path::Path;

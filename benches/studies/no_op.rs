@@ -1,8 +1,8 @@
 //! Measures a bake of many assets that are all in the cache.
 //!
-//! `cargo run --release --example no_op -- 1000` bakes 1000 assets twice. It prints the time of the second run, and the
-//! time of reading and hashing the same files one after the other. A second number makes each image that many KiB
-//! longer.
+//! `cargo run --release -p studies --bin no_op -- 1000` bakes 1000 assets twice. It prints the time of the second run,
+//! and the time of reading and hashing the same files one after the other. A second number makes each image that many
+//! KiB longer.
 
 use std::error::Error;
 use std::fs;

@@ -1,7 +1,8 @@
 //! Prints what `--rdo` saves on real maps and what it costs, as markdown.
 //!
-//! `cargo run --release --example rdo [DB] [fast|best]` uses 0.5 dB and `fast` by default. It reads `../shared/data`,
-//! else `fixtures`. It encodes and compresses level 0 of each normal map and of each map with roughness as `bake` does.
+//! `cargo run --release -p studies --bin rdo [DB] [fast|best]` uses 0.5 dB and `fast` by default. It reads
+//! `../shared/data`, else `fixtures`. It encodes and compresses level 0 of each normal map and of each map with
+//! roughness as `bake` does.
 
 use std::error::Error;
 use std::path::{Path, PathBuf};

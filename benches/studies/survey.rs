@@ -1,8 +1,8 @@
 //! Compares the quick survey of `bake` with full references.
 //!
-//! `cargo run --release --example survey` takes the mean lobe errors of plain mips, corrected vMF and D over 64 texels
-//! of each map and level. It compares references from the survey with full references at the same texels, and with full
-//! references at four times as many other texels. It reads `../shared/data/maps`, else `fixtures/maps`.
+//! `cargo run --release -p studies --bin survey` takes the mean lobe errors of plain mips, corrected vMF and D over 64
+//! texels of each map and level. It compares references from the survey with full references at the same texels, and
+//! with full references at four times as many other texels. It reads `../shared/data/maps`, else `fixtures/maps`.
 
 use std::error::Error;
 use std::path::{Path, PathBuf};

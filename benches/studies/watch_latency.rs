@@ -1,7 +1,7 @@
 //! Measures how long `roughcast watch` takes from a save to the baked output, for a material of 1024x1024 texels.
 //!
-//! `cargo build --release && cargo run --release --example watch_latency` saves a normal map repeatedly, with new
-//! texels each time. It prints the time from before the save until the event `baked` arrives. `--bin PATH` names
+//! `cargo build --release && cargo run --release -p studies --bin watch_latency` saves a normal map repeatedly, with
+//! new texels each time. It prints the time from before the save until the event `baked` arrives. `--bin PATH` names
 //! another command than `target/release/roughcast`. Arguments after `--` go to that command (`-- --model isotropic`).
 
 use std::error::Error;

@@ -68,6 +68,7 @@ fn base_lobes_satisfy_the_schema_and_the_strict_reader() {
 fn schema_and_strict_reader_refuse_the_same_values() {
     let schema = schema(&format!("material.{EXTENSION}"));
     let whole = json!({
+        "formatVersion": 1,
         "offsetTexture": { "index": 1, "texCoord": 1, "extensions": { "KHR_texture_transform": { "scale": [2, 2] } } },
         "offsetMin": [-1.0, -1.0], "offsetMax": [1.0, 1.0],
         "roughnessModel": "covarianceFactor",
@@ -91,6 +92,9 @@ fn schema_and_strict_reader_refuse_the_same_values() {
         ("/offsetTexture", json!({ "index": -1 })),
         ("/offsetTexture", json!({ "index": 1.5 })),
         ("/offsetTexture", json!({ "index": 1, "texcoord": 1 })),
+        ("/formatVersion", json!(2)),
+        ("/formatVersion", json!("1")),
+        ("/formatVersion", json!(null)),
         ("/offsetMin", json!([0])),
         ("/offsetMax", json!([0, 0, 0])),
         ("/offsetMax", json!(["0", 0])),

@@ -14,7 +14,7 @@ mod generator;
 fn committed_fixtures_are_what_the_generator_writes() {
     let mut generated = generator::all();
     generated.sort();
-    let remedy = "run `cargo run --example generate_fixtures`, and delete what it does not write";
+    let remedy = "run `cargo run -p studies --bin generate_fixtures`, and delete what it does not write";
     // A photograph is not generated: fixtures/real/README.md.
     let committed: Vec<_> = files(&fixtures()).into_iter().filter(|(name, _)| !name.starts_with("real/")).collect();
     let names = |all: &[(String, _)]| all.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();

@@ -1,7 +1,7 @@
 //! Fits the correction tables of `crates/core/src/lobe/table.rs` and prints that file.
 //!
-//! `cargo run --release --example correction_table > crates/core/src/lobe/table.rs` takes some minutes. The tables have
-//! the least mean lobe error over synthetic footprints (`synthetic.rs`). No real map is used.
+//! `cargo run --release -p studies --bin correction_table > crates/core/src/lobe/table.rs` takes some minutes. The
+//! tables have the least mean lobe error over synthetic footprints (`synthetic.rs`). No real map is used.
 
 mod synthetic;
 
@@ -71,7 +71,7 @@ fn main() {
     println!(
         "//! Correction factors and shifts of the centre, by deviation over alpha (1/4 to 32, a row each) and kurtosis"
     );
-    println!("//! (1 to 64). Fitted and printed by `cargo run --release --example correction_table`.");
+    println!("//! (1 to 64). Fitted and printed by `cargo run --release -p studies --bin correction_table`.");
     println!("\nuse super::lattice::Table;");
     for (name, doc, family) in FAMILIES {
         let columns = synthetic::COLUMNS.map(|(field, quantile)| (field, column(family, quantile)));

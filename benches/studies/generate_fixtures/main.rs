@@ -1,7 +1,7 @@
 //! Writes `fixtures/`: small generated assets for tests, the README and first tries.
 //!
-//! Run with `cargo run --example generate_fixtures`. `tests/cli/fixtures.rs` asserts that the committed files are equal
-//! to what this program writes.
+//! Run with `cargo run -p studies --bin generate_fixtures`. `tests/cli/fixtures.rs` asserts that the committed files
+//! are equal to what this program writes.
 
 mod fixtures;
 

@@ -1,7 +1,7 @@
 //! A discrete simulation of farms on which the tool has not been run, with measured costs of jobs.
 //!
-//! `cargo run --release --example scale_simulation` prints the tables of docs/scale.md. With the name of a file, the
-//! program draws the chart to that file.
+//! `cargo run --release -p studies --bin scale_simulation` prints the tables of docs/scale.md. With the name of a file,
+//! the program draws the chart to that file.
 
 mod chart;
 mod farm;

@@ -1,7 +1,7 @@
 //! Prints the tables of docs/stability.md as markdown and draws its pictures.
 //!
-//! `cargo run --release --example stability [FOLDER]` writes pictures to FOLDER, `docs/pictures` by default. It reads
-//! `../shared/data/maps`, else `fixtures/maps`, for the one table of real maps.
+//! `cargo run --release -p studies --bin stability [FOLDER]` writes pictures to FOLDER, `docs/pictures` by default. It
+//! reads `../shared/data/maps`, else `fixtures/maps`, for the one table of real maps.
 
 use std::error::Error;
 use std::path::PathBuf;

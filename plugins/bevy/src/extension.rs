@@ -7,6 +7,9 @@ use serde_json::Value;
 /// Name of the glTF extension.
 pub const EXTENSION: &str = "ROUGHCAST_materials_roughness_pyramid";
 
+/// The format version that the plugin reads.
+const FORMAT_VERSION: u32 = 1;
+
 /// The extension object of the schema (`schemas/` of Roughcast).
 #[derive(Clone, Debug, Deserialize)]
 #[serde(rename_all = "camelCase")]
@@ -108,6 +111,14 @@ impl Default for Transform {
 impl Extension {
     /// Reads and checks the object. The error names the wrong property.
     pub fn read(definition: &Value) -> Result<Self, String> {
+        // Objects of other versions may have other members, so that the version comes first.
+        match definition.get("formatVersion") {
+            Some(version) if *version == FORMAT_VERSION => {}
+            found => {
+                let found = found.map_or_else(|| "none".to_owned(), Value::to_string);
+                return Err(format!("formatVersion: expected {FORMAT_VERSION}, found {found}"));
+            }
+        }
         let extension = Self::deserialize(definition).map_err(|error| error.to_string())?;
         let channels = extension.roughness_model.map(|model| match model {
             Model::CovarianceFactor => 3,
@@ -175,6 +186,7 @@ mod tests {
 
     fn definition() -> Value {
         json!({
+            "formatVersion": 1,
             "offsetTexture": { "index": 1, "extensions": { "KHR_texture_transform": { "scale": [2, 3], "texCoord": 1 } } },
             "offsetMin": [-1, -2],
             "offsetMax": [1, 2],
@@ -194,6 +206,7 @@ mod tests {
         assert_eq!(extension.offset_texture.channel(), 1);
         assert_eq!(extension.offset_texture.uv_transform() * Vec3::ONE, Vec3::new(2.0, 3.0, 1.0));
         let smooth = json!({
+            "formatVersion": 1,
             "offsetTexture": { "index": 0 }, "offsetMin": [0, 0], "offsetMax": [1, 1], "correctionFactor": 1,
             "frame": "mainDirection", "mainDirection": [0, 1, 0],
         });
@@ -214,6 +227,8 @@ mod tests {
     #[test]
     fn names_what_the_schema_does_not_allow() {
         let cases = [
+            ("formatVersion", json!(null), "formatVersion: expected 1, found none"),
+            ("formatVersion", json!(2), "formatVersion: expected 1, found 2"),
             ("offsetTexture", json!(null), "offsetTexture"),
             ("offsetMin", json!([1]), "length 1"),
             ("roughnessModel", json!("variance"), "unknown variant `variance`"),

@@ -4,7 +4,9 @@ use serde_json::Map;
 
 use crate::bump::Frame;
 use crate::gltf::material::{Layer, Mapping, TextureUse};
-use crate::gltf::roughness_pyramid::{Anisotropy, FrameName, RoughnessModel, RoughnessPyramid, TextureInfo};
+use crate::gltf::roughness_pyramid::{
+    Anisotropy, FORMAT_VERSION, FrameName, RoughnessModel, RoughnessPyramid, TextureInfo,
+};
 use crate::material::Range;
 
 pub use crate::gltf::roughness_pyramid::EXTENSION;
@@ -79,6 +81,7 @@ impl Extension {
             Frame::MainDirection(m) => (FrameName::MainDirection, Some(m)),
         };
         Self {
+            format_version: FORMAT_VERSION,
             offset_texture: info(offset.texture),
             offset_min: pair(&offset.range.min),
             offset_max: pair(&offset.range.max),

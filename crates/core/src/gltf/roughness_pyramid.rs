@@ -10,10 +10,16 @@ use serde_json::{Map, Value};
 /// Name of the extension.
 pub const EXTENSION: &str = "ROUGHCAST_materials_roughness_pyramid";
 
+/// The `formatVersion` of extension objects that this version of the crate writes and reads. A change that plugins must
+/// know of increases it.
+pub const FORMAT_VERSION: u32 = 1;
+
 /// The extension object of a material. Numbers are written as `f32`, as short as they can be, and read as `f64`.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct RoughnessPyramid<N = f64> {
+    /// The format version, [`FORMAT_VERSION`].
+    pub format_version: u32,
     /// Texture of (f_u, f_v).
     pub offset_texture: TextureInfo,
     /// Offsets that a texel of 0 stands for.
@@ -154,6 +160,12 @@ impl RoughnessPyramid {
         // Optional members may be absent, not null; serde makes no difference between both.
         if has_null(value) {
             return Err("null in place of a value".to_owned());
+        }
+        // Objects of other versions may have other members, so that the version comes first.
+        match value.get("formatVersion") {
+            Some(version) if *version == FORMAT_VERSION => {}
+            Some(version) => return Err(format!("formatVersion {version} instead of {FORMAT_VERSION}")),
+            None => return Err(format!("no formatVersion, which should be {FORMAT_VERSION}")),
         }
         let read = Self::deserialize(value).map_err(|e| e.to_string())?;
         read.check()?;

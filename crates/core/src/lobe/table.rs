@@ -1,5 +1,5 @@
 //! Correction factors and shifts of the centre, by deviation over alpha (1/4 to 32, a row each) and kurtosis
-//! (1 to 64). Fitted and printed by `cargo run --release --example correction_table`.
+//! (1 to 64). Fitted and printed by `cargo run --release -p studies --bin correction_table`.
 
 use crate::lobe::lattice::Table;
 

@@ -3,6 +3,9 @@
 /** Name of the glTF extension. */
 export const EXTENSION = 'ROUGHCAST_materials_roughness_pyramid';
 
+/** The format version that the plugin reads. */
+const FORMAT_VERSION = 1;
+
 /** Channels of the roughness texture, by model. */
 const CHANNELS = { covarianceFactor: 3, standardDeviation: 1 };
 const FRAMES = ['natural', 'unit', 'mainDirection'];
@@ -15,6 +18,9 @@ const FRAMES = ['natural', 'unit', 'mainDirection'];
 export function readExtension(definition) {
   if (typeof definition !== 'object' || definition === null || Array.isArray(definition)) {
     throw new TypeError(`${EXTENSION}: expected an object, found ${JSON.stringify(definition)}`);
+  }
+  if (definition.formatVersion !== FORMAT_VERSION) {
+    throw wrong('formatVersion', `${FORMAT_VERSION} (other versions need another version of the plugin)`, definition.formatVersion);
   }
   const frame = oneOf(definition, 'frame', FRAMES);
   const correctionFactor = definition.correctionFactor;

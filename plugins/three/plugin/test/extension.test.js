@@ -4,6 +4,7 @@ import { EXTENSION, readExtension } from '../src/index.js';
 import { withBaseLobe } from '../src/extension.js';
 
 const definition = () => ({
+  formatVersion: 1,
   offsetTexture: { index: 3, texCoord: 1 },
   offsetMin: [-1, -0.5],
   offsetMax: [1, 0.5],
@@ -42,6 +43,7 @@ test('reads the main direction with its frame only', () => {
 
 test('names each wrong property', () => {
   const wrong = {
+    formatVersion: [undefined, 0, 2, '1'],
     offsetTexture: [undefined, null, 3, {}, { index: -1 }, { index: 0.5 }],
     offsetMin: [undefined, [0], [0, 0, 0], [0, NaN], ['0', 0], { length: 2 }],
     offsetMax: [[1, Infinity]],

@@ -4,6 +4,7 @@ import { MeshBasicMaterial, MeshStandardMaterial, Texture } from 'three';
 import { EXTENSION, RoughcastPlugin } from '../src/index.js';
 
 const definition = {
+  formatVersion: 1,
   offsetTexture: { index: 0 },
   offsetMin: [-1, -1],
   offsetMax: [1, 1],
