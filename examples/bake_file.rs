@@ -26,7 +26,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         write(output, path, &read(path)?)?;
     }
     for layer in &baked.report.layers {
-        println!("{}: {:?} {}", layer.material, layer.model, layer.notes.join("; "));
+        println!("{}: {:?}", layer.material, layer.model);
+        for note in &layer.notes {
+            println!("  {:?}: {note}", note.kind);
+        }
     }
     Ok(())
 }

@@ -118,7 +118,7 @@ pub mod cli;
 #[doc(hidden)]
 pub use roughcast_core::{
     api, bake, bump, codec, decode, digest, foreign, gltf, image, ktx2, lobe, material, math, memory, metric, mip,
-    report, select, settings,
+    note, report, select, settings,
 };
 #[cfg(feature = "cli")]
 #[doc(hidden)]
@@ -147,6 +147,8 @@ pub use lobe::{Distribution, Family};
 pub use material::{BumpMap, Range};
 #[doc(inline)]
 pub use mip::Wrap;
+#[doc(inline)]
+pub use note::{Note, NoteKind};
 #[doc(inline)]
 pub use report::{
     AssetReport as Report, Candidate, Choice, Content, LayerReport, Miss, Reason as MissReason, TextureReport,

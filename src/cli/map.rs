@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use clap::ValueEnum;
 use serde_json::json;
 
-use super::notes::asks_for_action;
 use super::options::{TextureOptions, finite, unit_interval};
 use super::outcome::Outcome;
 use crate::bake::{BakeError, BakedMap, BakedTexture, BaseRoughness, bake_map, output_stem_of};
@@ -19,6 +18,7 @@ use crate::ktx2::{Key, Provenance, SourceDigest};
 use crate::lobe::Family;
 use crate::material::{BumpMap, notes};
 use crate::mip::Wrap;
+use crate::note;
 use crate::output::{Guard, PublishError};
 use crate::report::Content;
 use crate::settings::Settings;
@@ -168,9 +168,8 @@ impl Written {
         if let Some(choice) = &self.baked.choice {
             text += &format!("model {}{}\n", self.baked.model.name(), choice.summary());
         }
-        let is_shown = |note: &&String| is_verbose || asks_for_action(note, self.baked.choice.as_ref());
-        for note in self.baked.notes.iter().filter(is_shown) {
-            text += &format!("note: {}\n", printable(note));
+        for note in self.baked.notes.iter().filter(|note| is_verbose || note.asks_for_action) {
+            text += &format!("note: {}\n", printable(&note.text));
         }
         text
     }
@@ -213,7 +212,7 @@ fn bake(args: &Args, settings: &Settings) -> Result<Written, MapCommandError> {
     // The decoded images take more memory than the baked levels and are not needed any more.
     drop((bump_map, base));
     if is_jpeg {
-        baked.notes.push(notes::JPEG.to_owned());
+        baked.notes.push(note::jpeg_source());
     }
     let mut outputs = vec![first];
     for texture in baked.textures.iter().skip(1) {

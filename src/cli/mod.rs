@@ -11,7 +11,6 @@ mod jobs;
 mod man;
 mod map;
 mod merge;
-mod notes;
 mod options;
 mod outcome;
 mod plan;

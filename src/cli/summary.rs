@@ -1,6 +1,5 @@
 //! The outcome of an asset as lines of text.
 
-use super::notes::asks_for_action;
 use crate::gltf::material::LayerKind;
 use crate::report::{AssetOutcome, Choice, LayerReport, Status};
 use crate::text::printable;
@@ -21,9 +20,8 @@ pub fn summary(asset: &AssetOutcome, is_verbose: bool) -> String {
     };
     for layer in &asset.report.layers {
         text += &layer_line(layer);
-        let is_shown = |note: &&String| is_verbose || asks_for_action(note, layer.choice.as_ref());
-        for note in layer.notes.iter().filter(is_shown) {
-            text += &format!("    note: {}\n", printable(note));
+        for note in layer.notes.iter().filter(|note| is_verbose || note.asks_for_action) {
+            text += &format!("    note: {}\n", printable(&note.text));
         }
     }
     text

@@ -1,9 +1,11 @@
 //! Tests that the schemas accept the outputs of the commands and refuse broken ones, and that the strict reader of the
 //! extension agrees with its schema.
 
+use std::collections::BTreeSet;
 use std::fs;
 
 use jsonschema::Validator;
+use roughcast::NoteKind;
 use roughcast::cli::Outcome;
 use roughcast::gltf::roughness_pyramid::{EXTENSION, RoughnessPyramid};
 use serde_json::{Value, json};
@@ -147,12 +149,29 @@ fn bake_reports_satisfy_their_schema() {
         ("/assets/0/status", json!("baked")),
         ("/assets/2/status", json!("failed")),
         ("/assets/2/textures/0/content", json!("colour")),
+        ("/assets/2/layers/0/notes", json!(["the bump map is a JPEG"])),
         ("/settings/target", json!("jpeg")),
         ("/version", json!(1)),
     ] {
         let mut broken = report.clone();
         *broken.pointer_mut(pointer).unwrap() = value;
         assert!(!schema.is_valid(&broken), "{pointer}");
+    }
+}
+
+#[test]
+fn the_schema_and_the_documents_list_all_kinds_of_notes() {
+    let text = fs::read("schemas/report.schema.json").unwrap();
+    let mut schema: Value = serde_json::from_slice(&text).unwrap();
+    let listed: BTreeSet<String> =
+        serde_json::from_value(schema["$defs"]["note"]["properties"]["kind"]["enum"].take()).unwrap();
+    // The error on an unknown kind names all kinds between backquotes, after the unknown one.
+    let error = serde_json::from_value::<NoteKind>(json!("unknown kind")).unwrap_err().to_string();
+    let kinds: BTreeSet<String> = error.split('`').skip(3).step_by(2).map(str::to_owned).collect();
+    assert_eq!(listed, kinds);
+    let document = fs::read_to_string("docs/stability.md").unwrap();
+    for kind in kinds {
+        assert!(document.contains(&format!("\n| `{kind}` |")), "{kind}");
     }
 }
 

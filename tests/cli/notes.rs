@@ -4,6 +4,7 @@
 use std::fs;
 use std::path::Path;
 
+use serde_json::Value;
 use tempfile::tempdir;
 
 use super::process::{bake, copy, fixtures, roughcast};
@@ -45,6 +46,10 @@ fn notes_that_ask_for_nothing_are_printed_with_verbose_only() {
     let (document, note) = (fixtures().join("knobs/knobs.gltf"), "was resampled to 64 x 48");
     assert!(!bake(&document, baked.path(), &[]).out.contains(note));
     assert!(bake(&document, baked.path(), &["-v"]).out.contains(note));
-    let report = bake(&document, baked.path(), &["--json"]).out;
-    assert!(report.contains(note), "{report}");
+    let report: Value = serde_json::from_str(&bake(&document, baked.path(), &["--json"]).out).expect("a report");
+    let layers = report["assets"][0]["layers"].as_array().expect("layers");
+    let is_resampled = |found: &&Value| found["kind"] == "resampled";
+    let found = layers.iter().find_map(|layer| layer["notes"].as_array()?.iter().find(is_resampled)).expect("a note");
+    assert_eq!(found["asksForAction"], false);
+    assert!(found["text"].as_str().is_some_and(|text| text.contains(note)), "{found}");
 }

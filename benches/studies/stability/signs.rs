@@ -10,6 +10,7 @@ use roughcast::lobe::{Anisotropy, SquaredAlpha};
 use roughcast::material::BumpMap;
 use roughcast::math::symmetric::Symmetric2;
 use roughcast::mip::Level;
+use roughcast::note::Note;
 use roughcast::report::Content;
 use roughcast::settings::{Model, Settings};
 
@@ -51,7 +52,7 @@ pub fn print(folder: &Path) -> Result<(), Box<dyn Error>> {
 }
 
 /// Returns the level of the anisotropy texture, and the notes of the bake.
-fn baked(level: &Level<roughcast::bump::Moments>) -> Result<(Image, Vec<String>), Box<dyn Error>> {
+fn baked(level: &Level<roughcast::bump::Moments>) -> Result<(Image, Vec<Note>), Box<dyn Error>> {
     let bump_map = BumpMap::Normals(map(SIZE, Samples::F32(normals(level).into_iter().map(|c| c as f32).collect()))?);
     let settings = Settings::default().with_model(Model::Anisotropic);
     let baked = bake_map(&bump_map, Some(&BaseRoughness { image: None, factor: 0.3 }), &settings)?;

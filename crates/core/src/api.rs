@@ -9,6 +9,7 @@ use crate::image::{DecodeOptions, Image, MapError};
 use crate::material::{BumpMap, Range};
 use crate::memory::OutOfMemory;
 use crate::mip::Wrap;
+use crate::note::Note;
 use crate::report::{Choice, Content};
 use crate::settings::{Model, Settings, SettingsError};
 
@@ -80,7 +81,7 @@ pub struct BakedMap {
     /// The candidates for the model, if the surface's own roughness is known.
     pub choice: Option<Choice>,
     /// What is not as exact as it could be, and why.
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
 }
 
 /// A texture that was made from a standalone map.

@@ -23,6 +23,7 @@ pub mod math;
 pub mod memory;
 pub mod metric;
 pub mod mip;
+pub mod note;
 pub mod report;
 pub mod select;
 pub mod settings;

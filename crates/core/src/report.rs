@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::gltf::material::{LayerKind, Material};
 use crate::material::Range;
+use crate::note::{self, Note};
 use crate::settings::{Finest, Model, Settings};
 
 /// The report of one asset.
@@ -46,7 +47,7 @@ pub struct LayerReport {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub finest: Option<Finest>,
     /// What was left unchanged or is not as exact as it could be, and why.
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
 }
 
 impl LayerReport {
@@ -59,7 +60,7 @@ impl LayerReport {
             model: None,
             choice: None,
             finest: None,
-            notes: vec!["no normal or height map: left as it was".to_owned()],
+            notes: vec![note::no_bump_map()],
         }
     }
 }
@@ -129,8 +130,8 @@ impl Choice {
         format!("{size} (error {:.2}{others})", worst(taken))
     }
 
-    /// Returns the error bound and the levels that exceed it, in a sentence; `None` if no level does.
-    pub fn warning(&self, settings: &Settings) -> Option<String> {
+    /// Returns the note on the levels that exceed the error bound of `settings`; `None` if no level does.
+    pub fn note(&self, settings: &Settings) -> Option<Note> {
         let worst = self.misses.iter().max_by(|a, b| a.error.total_cmp(&b.error))?;
         let mut reasons: Vec<Reason> = self.misses.iter().map(|m| m.reason).collect();
         reasons.sort();
@@ -143,14 +144,15 @@ impl Choice {
         };
         let why: Vec<String> = reasons.iter().map(why).collect();
         let (levels, verb) = if self.misses.len() == 1 { ("level", "misses") } else { ("levels", "miss") };
-        Some(format!(
+        let text = format!(
             "{levels} {all} {verb} --max-error {} (worst {:.2}, at level {}; the best lobe has {:.2} there): {}",
             settings.max_error,
             worst.error,
             worst.level,
             worst.oracle,
             why.join("; ")
-        ))
+        );
+        Some(note::missed_bound(text, reasons.iter().any(|reason| reason.is_avoidable())))
     }
 }
 
@@ -226,6 +228,28 @@ impl Content {
             Self::Offset => "offset",
             Self::Factor => "factor",
             Self::Lambda1 => "lambda1",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn missed_bounds_ask_for_action_where_a_setting_comes_closer() {
+        let choice = |reason| Choice {
+            finest: 0,
+            candidates: Vec::new(),
+            chosen: 0,
+            misses: vec![Miss { level: 2, error: 0.2, oracle: 0.1, reason }],
+        };
+        let asks = |reason| choice(reason).note(&Settings::default()).expect("a note").asks_for_action;
+        for reason in [Reason::Encoding, Reason::Isotropic, Reason::Fit] {
+            assert!(asks(reason), "{reason:?}");
+        }
+        for reason in [Reason::AlphaAboveOne, Reason::TwoPeaked, Reason::Steep, Reason::NoSingleLobe] {
+            assert!(!asks(reason), "{reason:?}");
         }
     }
 }

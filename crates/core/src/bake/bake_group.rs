@@ -16,6 +16,7 @@ use super::pyramid::PyramidInput;
 use super::reader::Reader;
 use crate::gltf::density::NoDensity;
 use crate::material::notes;
+use crate::note::{self, Note};
 use crate::settings::{Finest, Settings};
 
 /// Bakes `group`.
@@ -133,20 +134,17 @@ impl GroupBake<'_> {
 
     /// Returns the finest level that the view can sample of `layer`, and the notes that are known before any lobe is
     /// made. `size` is the grid of the bump map.
-    fn notes(&self, layer: &GroupLayer, map_notes: &[String], size: (u32, u32)) -> (Option<Finest>, Vec<String>) {
+    fn notes(&self, layer: &GroupLayer, map_notes: &[Note], size: (u32, u32)) -> (Option<Finest>, Vec<Note>) {
         let mut notes = layer.notes.clone();
         if !self.group.source.samples_mips {
-            notes.push(
-                "the minFilter of the texture's sampler never reads mips: the bake has no effect in engines that obey it"
-                    .to_owned(),
-            );
+            notes.push(note::sampler_without_mips());
         }
         notes.extend_from_slice(map_notes);
         match self.finest(layer, size) {
             None => (None, notes),
             Some(Ok(finest)) => (Some(finest), notes),
             Some(Err(reason)) => {
-                notes.push(format!("every level counts as seen: {reason}"));
+                notes.push(note::unknown_texel_size(&reason));
                 (None, notes)
             }
         }

@@ -6,6 +6,7 @@ use crate::bake::offsets::MapOffsets;
 use crate::bake::products::{BakedTexture, LayerNormals, lobe_textures, normal_encoding, normals_of_lobes};
 use crate::codec::EncodeError;
 use crate::material::{Normals, Product, Roughening, notes};
+use crate::note::Note;
 use crate::settings::Model;
 
 /// What the bake makes of a layer.
@@ -19,7 +20,7 @@ pub struct LayerProducts {
     /// The textures of the portable profile: roughness and anisotropy.
     pub textures: Vec<BakedTexture>,
     /// Notes to the user.
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
 }
 
 /// The normal texture of a bump map as far as earlier layers have decided it.
@@ -72,8 +73,7 @@ fn layer_products(
     lobes: LayerLobes<'_>,
 ) -> Result<LayerProducts, EncodeError> {
     let LayerLobes { roughening, correction } = lobes;
-    let mut notes: Vec<String> =
-        model.choice.as_ref().and_then(|choice| choice.warning(map.settings)).into_iter().collect();
+    let mut notes: Vec<Note> = model.choice.as_ref().and_then(|choice| choice.note(map.settings)).into_iter().collect();
     let is_stored = map.settings.profile.is_portable() && model.model != Model::None;
     let mut textures = Vec::new();
     if let Some(roughening) = roughening.filter(|_| is_stored) {

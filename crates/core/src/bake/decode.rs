@@ -14,6 +14,7 @@ use crate::gltf::texture::{ImageLocation, TextureSource};
 use crate::image::{DecodeOptions, Image};
 use crate::ktx2::{Ktx2, PROVENANCE_KEY};
 use crate::material::{BumpMap, notes};
+use crate::note::{self, Note};
 
 /// A decoder of image bytes: [`decode`] for bumps, [`decode_colours`] for all other textures.
 type Decode = fn(&[u8], &DecodeOptions) -> Result<Image, DecodeError>;
@@ -42,13 +43,13 @@ impl<'a> Images<'a> {
     }
 
     /// Decodes the bump map of `group` and returns it with notes to the user.
-    pub fn bump_map(&self, group: &BumpMapGroup) -> Result<(BumpMap, Vec<String>), ImageError> {
+    pub fn bump_map(&self, group: &BumpMapGroup) -> Result<(BumpMap, Vec<Note>), ImageError> {
         let material = group.layers.first().map(|layer| layer.name.clone()).unwrap_or_default();
         let file = self.file(&group.source, &material)?;
         let image = self.decoded(&file, &group.source, &material, decode)?;
         let failed = |error| ImageError::Map { material, texture: describe(&group.source.location), error };
         let bump_map = bump_map_of(image, group.kind).map_err(failed)?;
-        let notes = if notes::is_jpeg(&file) { vec![notes::JPEG.to_owned()] } else { Vec::new() };
+        let notes = if notes::is_jpeg(&file) { vec![note::jpeg_source()] } else { Vec::new() };
         Ok((bump_map, notes))
     }
 

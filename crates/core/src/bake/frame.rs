@@ -5,6 +5,7 @@ use super::group::GroupLayer;
 use super::offsets::size_of;
 use crate::bump::{Frame, FrameTransform};
 use crate::material::{BumpMap, FrameTransforms};
+use crate::note::{self, Note};
 
 /// Largest deviation of the tangent rotations of triangles that count as equal, root mean square, in radians: 6
 /// degrees.
@@ -17,7 +18,7 @@ pub fn offset_frame(
     geometry: &Geometry<'_>,
     bump_map: &BumpMap,
     layer: &GroupLayer,
-) -> (Frame, FrameTransforms, Option<String>) {
+) -> (Frame, FrameTransforms, Option<Note>) {
     match transforms(requested, geometry, bump_map, layer) {
         Ok(transforms) => (requested, transforms, None),
         Err(reason) => (Frame::Unit, FrameTransforms::IDENTITY, Some(reason)),
@@ -29,10 +30,10 @@ fn transforms(
     geometry: &Geometry<'_>,
     bump_map: &BumpMap,
     layer: &GroupLayer,
-) -> Result<FrameTransforms, String> {
+) -> Result<FrameTransforms, Note> {
     match (requested, layer.layout.as_ref()) {
         (Frame::Unit, _) => Ok(FrameTransforms::IDENTITY),
-        (_, None) => Err("no mesh shows how the texture lies on it: offsets are in the unit frame".to_owned()),
+        (_, None) => Err(note::unknown_layout()),
         (Frame::Natural, Some(layout)) => {
             let [p_u, p_v] = layout.units_per_repeat;
             Ok(FrameTransforms::Uniform(FrameTransform::natural(p_u, p_v)))
@@ -45,13 +46,10 @@ fn transforms(
             let (mapping, (width, height)) = (&layer.layer.bumps.texture().mapping, size_of(bump_map));
             match geometry.rotation_map(layer.material, mapping, [width, height]) {
                 Some(map) if map.conflict <= MAX_ROTATION_DEVIATION => Ok(FrameTransforms::PerTexel(map)),
-                map => Err(format!(
-                    "the tangent does not keep its angle to the main direction over the mesh (deviation {:.2}), and \
-                     parts of the map are used in several directions (deviation {:.2}): one offset map cannot serve, \
-                     so offsets are in the unit frame",
-                    layout.rotation_deviation,
-                    map.map_or(2.0, |map| map.conflict)
-                )),
+                map => {
+                    let over_map = map.map_or(2.0, |map| map.conflict);
+                    Err(note::conflicting_rotations(layout.rotation_deviation, over_map))
+                }
             }
         }
     }

@@ -13,6 +13,7 @@ use crate::gltf::material::{BumpSource, Layer, Material, TextureUse};
 use crate::gltf::rewrite::Slot;
 use crate::gltf::texture::{ImageLocation, TextureError, TextureSource, Textures};
 use crate::mip::Wrap;
+use crate::note::{self, Note};
 use crate::settings::{Model, Settings};
 
 /// A bump map and all layers that use it.
@@ -56,9 +57,9 @@ pub struct GroupLayer {
     /// How the material lies on its meshes, if a frame asks for it.
     pub layout: Option<Layout>,
     /// The textures of the base lobe, or why bumps cannot be added to the base lobe texel by texel.
-    pub base: Result<BaseTextures, String>,
+    pub base: Result<BaseTextures, Note>,
     /// Notes to the user.
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
 }
 
 /// The textures of a layer's base lobe.
@@ -165,7 +166,7 @@ fn kind_of(
     source: &TextureSource,
     settings: &Settings,
     layout: Option<&Layout>,
-    notes: &mut Vec<String>,
+    notes: &mut Vec<Note>,
 ) -> (BumpMapKind, f32) {
     let scale = match bumps {
         BumpSource::Normals(_, scale) => return (BumpMapKind::Normals, *scale),
@@ -175,10 +176,7 @@ fn kind_of(
         // Heights are in mesh units, and the mesh has the size of a repeat.
         (Frame::Natural, Some(layout)) => (layout.units_per_repeat.map(|units| scale / units), false),
         (Frame::Natural, None) => {
-            notes.push(
-                "no mesh shows how large a repeat of the height map is: heights are taken in widths of a repeat"
-                    .to_owned(),
-            );
+            notes.push(note::unknown_repeat_size());
             ([scale; 2], true)
         }
         _ => ([scale; 2], true),
@@ -192,26 +190,16 @@ fn base_textures(
     textures: &mut Textures<'_>,
     layer: &Layer,
     bumps: &TextureSource,
-) -> Result<Result<BaseTextures, String>, TextureError> {
+) -> Result<Result<BaseTextures, Note>, TextureError> {
     let mapping = &layer.bumps.texture().mapping;
-    let mut reason = layer.has_other_workflow.then(|| {
-        "the material has KHR_materials_pbrSpecularGlossiness, and engines that know it read glossiness: \
-         the roughness was left unchanged"
-            .to_owned()
-    });
-    let mut read = |what: &str, texture: Option<&TextureUse>| {
+    let mut reason = layer.has_other_workflow.then(note::specular_glossiness);
+    let mut read = |name: &str, texture: Option<&TextureUse>| {
         let Some(texture) = texture else { return Ok(None) };
         let source = textures.get(texture.texture)?;
         if !texture.mapping.is_same(mapping) {
-            reason = Some(format!(
-                "the {what} texture has other texture coordinates or another KHR_texture_transform than the bumps: \
-                 their texels do not lie over each other, so it was left unchanged"
-            ));
+            reason = Some(note::other_texture_coordinates(name));
         } else if source.wrap != bumps.wrap {
-            reason = Some(format!(
-                "the sampler of the {what} texture has another wrap mode than the sampler of the bumps: \
-                 the texture was left unchanged"
-            ));
+            reason = Some(note::other_wrap_mode(name));
         }
         Ok(Some(source))
     };

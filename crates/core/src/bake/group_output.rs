@@ -14,6 +14,7 @@ use crate::digest::Digest;
 use crate::gltf::material::Mapping;
 use crate::gltf::rewrite::Slot;
 use crate::gltf::texture::{ImageLocation, TextureSource};
+use crate::note::{self, Note};
 use crate::report::{Content, LayerReport};
 use crate::settings::{Finest, Model, Settings};
 
@@ -100,7 +101,7 @@ impl GroupOutput {
         settings: &Settings,
         products: BumpMapProducts,
         lobe_groups: &[Vec<usize>],
-        notes: impl Fn(&GroupLayer) -> (Option<Finest>, Vec<String>),
+        notes: impl Fn(&GroupLayer) -> (Option<Finest>, Vec<Note>),
     ) -> Self {
         let BumpMapProducts { normals, layers: products, pyramid } = products;
         let before_pyramid = usize::from(normals.is_some()) + products.iter().map(|p| p.textures.len()).sum::<usize>();
@@ -179,19 +180,17 @@ impl LayerPlacement<'_> {
     fn output(
         &self,
         in_pyramid: Option<PyramidLayer>,
-        (finest, mut notes): (Option<Finest>, Vec<String>),
+        (finest, mut notes): (Option<Finest>, Vec<Note>),
     ) -> GroupLayerOutput {
         let Self { layer, products, settings, .. } = self;
         notes.extend(layer.base.as_ref().err().filter(|_| settings.profile.is_portable()).cloned());
         notes.extend(products.notes.iter().cloned());
         let anisotropy = self.anisotropy_change();
         if matches!(anisotropy, AnisotropyChange::Dropped { .. }) && settings.model == Model::Isotropic {
-            notes.push("the material's anisotropy was dropped because `--model isotropic` was requested".to_owned());
+            notes.push(note::anisotropy_dropped());
         }
         if settings.profile.has_pyramid() && in_pyramid.is_none() {
-            notes.push(
-                "the extension describes the base lobe only: no pyramid was written for the clearcoat".to_owned(),
-            );
+            notes.push(note::clearcoat_without_pyramid());
         }
         notes.extend(in_pyramid.iter().flat_map(|in_pyramid| in_pyramid.notes.iter().cloned()));
         let report = LayerReport {

@@ -9,6 +9,7 @@ use crate::bump::{Frame, Moments};
 use crate::codec::EncodeError;
 use crate::material::{Encoding, FrameTransforms, Framed, Product, Quantity, QuantityTexture, filter_loss, notes};
 use crate::mip::{AreaResampled, Pyramid, TexelRows};
+use crate::note::Note;
 use crate::report::Content;
 use crate::settings::Model;
 
@@ -21,7 +22,7 @@ pub struct PyramidInput {
     /// The transforms to the frame.
     pub transforms: Arc<FrameTransforms>,
     /// Why the frame is not the requested one.
-    pub note: Option<String>,
+    pub note: Option<Note>,
 }
 
 /// The textures of a layer in the pyramid profile.
@@ -33,7 +34,7 @@ pub struct PyramidLayer {
     /// Index of the texture of D or lambda_1; none under [`Model::None`].
     pub roughness: Option<usize>,
     /// Notes to the user.
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
 }
 
 /// The textures of the pyramid profile.
@@ -57,7 +58,7 @@ struct TextureKey {
 struct Textures<'m, 'a> {
     map: &'m MapOffsets<'a>,
     textures: Vec<BakedTexture>,
-    keys: Vec<(TextureKey, Option<String>)>,
+    keys: Vec<(TextureKey, Option<Note>)>,
 }
 
 /// Makes the offsets and D or lambda_1 of all `inputs`. Offsets have no levels finer than `first`.
@@ -95,7 +96,7 @@ impl Textures<'_, '_> {
         &mut self,
         key: TextureKey,
         lobe_errors: impl FnOnce() -> Vec<f32>,
-    ) -> Result<(usize, Option<String>), EncodeError> {
+    ) -> Result<(usize, Option<Note>), EncodeError> {
         if let Some(index) = self.keys.iter().position(|(known, _)| *known == key) {
             return Ok((index, self.keys[index].1.clone()));
         }
@@ -105,7 +106,7 @@ impl Textures<'_, '_> {
         Ok((self.textures.len() - 1, note))
     }
 
-    fn make(&self, key: &TextureKey) -> Result<(BakedTexture, Option<String>), EncodeError> {
+    fn make(&self, key: &TextureKey) -> Result<(BakedTexture, Option<Note>), EncodeError> {
         if *key.transforms == FrameTransforms::IDENTITY {
             return self.of_moments(self.map.bumps.moments(), key);
         }
@@ -118,7 +119,7 @@ impl Textures<'_, '_> {
         &self,
         moments: &Pyramid<R>,
         &TextureKey { quantity, first, .. }: &TextureKey,
-    ) -> Result<(BakedTexture, Option<String>), EncodeError> {
+    ) -> Result<(BakedTexture, Option<Note>), EncodeError> {
         let encoding = Encoding::of(self.map.settings, quantity.channels() as u32).starting_at(first);
         let texture = QuantityTexture::new(moments, quantity, encoding);
         let mip_chain = texture.encode(encoding)?;

@@ -12,6 +12,7 @@ use crate::bake::pyramid::PyramidInput;
 use crate::bump::Frame;
 use crate::image::Image;
 use crate::material::{BumpMap, FrameTransforms, notes};
+use crate::note::Note;
 use crate::report::Choice;
 use crate::settings::{Form, Model, Settings};
 
@@ -32,7 +33,7 @@ pub struct BakedMap {
     /// The candidates and their errors, if the base roughness is known.
     pub choice: Option<Choice>,
     /// Notes to the user.
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
 }
 
 /// Bakes a standalone map. The portable profile writes roughness only if the base roughness is known.

@@ -65,6 +65,15 @@ impl Evidence {
 }
 
 impl Reason {
+    /// Returns whether another setting may come closer to the bound. For the other reasons the best lobe exceeds the
+    /// bound, too, or no engine can show that lobe.
+    pub fn is_avoidable(self) -> bool {
+        match self {
+            Self::Encoding | Self::Isotropic | Self::Fit => true,
+            Self::AlphaAboveOne | Self::TwoPeaked | Self::Steep | Self::NoSingleLobe => false,
+        }
+    }
+
     /// Returns the reason as part of a sentence.
     pub fn text(self) -> &'static str {
         match self {

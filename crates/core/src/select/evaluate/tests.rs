@@ -209,10 +209,10 @@ fn distinguishes_two_peaks_from_too_simple_a_model() {
     );
     assert!(!grooves.misses.is_empty());
     assert!(grooves.misses.iter().all(|m| m.reason == Reason::TwoPeaked), "{:#?}", grooves.misses);
-    let warning = grooves.warning(&settings(0.1)).unwrap();
+    let note = grooves.note(&settings(0.1)).unwrap();
     assert!(
-        warning.starts_with("levels 1-6 miss --max-error 0.1") && warning.ends_with("two peaks, one lobe"),
-        "{warning}"
+        note.text.starts_with("levels 1-6 miss --max-error 0.1") && note.text.ends_with("two peaks, one lobe"),
+        "{note}"
     );
     // The model none was requested, and a single lobe would meet the bound.
     let none = choice_of(&normals(64, rough_noise), 0.4, &Settings { model: Model::None, ..settings(0.14) });

@@ -1,0 +1,311 @@
+//! Notes to the user: what a bake left unchanged or cannot make exact, and why. Each function returns the note of one
+//! kind with its sentence. docs/stability.md lists the kinds.
+
+use std::fmt::{self, Display};
+
+use serde::{Deserialize, Serialize};
+
+use crate::bump::MAX_SLOPE;
+
+/// A note to the user on a layer of a material, or on a standalone map.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "camelCase")]
+#[non_exhaustive]
+pub struct Note {
+    /// What the note is about.
+    pub kind: NoteKind,
+    /// Whether another source, document or setting can improve the result. The command line prints other notes with
+    /// `--verbose` only.
+    pub asks_for_action: bool,
+    /// The note as a sentence.
+    pub text: String,
+}
+
+/// What a [`Note`] is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "camelCase")]
+#[non_exhaustive]
+pub enum NoteKind {
+    /// The material has no normal or height map.
+    NoBumpMap,
+    /// The chosen model exceeds the error bound at some levels.
+    MissedBound,
+    /// The bump map is a JPEG.
+    JpegSource,
+    /// Rounding of the bump map roughens the surface.
+    SmallDepth,
+    /// Normals point along the surface or below it.
+    NormalsBelowSurface,
+    /// Slopes are beyond the clamp.
+    SteepSlopes,
+    /// The map has another size than its textures.
+    Resampled,
+    /// Lobes are wider than an engine can show.
+    AlphaAboveOne,
+    /// Directions of anisotropy point away from those of neighbours.
+    OpposedDirections,
+    /// Filtering of D loses variance that filtering of K would keep.
+    FilterLoss,
+    /// The sampler of the bump map never reads mips.
+    SamplerWithoutMips,
+    /// The levels that the view can sample are not known.
+    UnknownTexelSize,
+    /// The size of a repeat of a height map is not known.
+    UnknownRepeatSize,
+    /// How the bump map lies on the mesh is not known.
+    UnknownLayout,
+    /// Parts of the bump map are used in several directions.
+    ConflictingRotations,
+    /// A texture of the base lobe has other texture coordinates than the bump map.
+    OtherTextureCoordinates,
+    /// A texture of the base lobe has another wrap mode than the bump map.
+    OtherWrapMode,
+    /// The material has glossiness besides roughness.
+    SpecularGlossiness,
+    /// The material's anisotropy was dropped.
+    AnisotropyDropped,
+    /// The pyramid profile does not describe the clearcoat.
+    ClearcoatWithoutPyramid,
+}
+
+impl NoteKind {
+    /// Returns whether notes of this kind ask the user for something. [`missed_bound`] decides for each of its notes.
+    fn asks_for_action(self) -> bool {
+        match self {
+            // Another source file is better.
+            Self::JpegSource | Self::SmallDepth | Self::NormalsBelowSurface => true,
+            // The document or the command line does not fit the purpose.
+            Self::SamplerWithoutMips | Self::UnknownTexelSize | Self::OtherTextureCoordinates => true,
+            Self::NoBumpMap
+            | Self::MissedBound
+            | Self::SteepSlopes
+            | Self::Resampled
+            | Self::AlphaAboveOne
+            | Self::OpposedDirections
+            | Self::FilterLoss
+            | Self::UnknownRepeatSize
+            | Self::UnknownLayout
+            | Self::ConflictingRotations
+            | Self::OtherWrapMode
+            | Self::SpecularGlossiness
+            | Self::AnisotropyDropped
+            | Self::ClearcoatWithoutPyramid => false,
+        }
+    }
+}
+
+impl Display for Note {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text)
+    }
+}
+
+fn note(kind: NoteKind, text: impl Into<String>) -> Note {
+    Note { kind, asks_for_action: kind.asks_for_action(), text: text.into() }
+}
+
+/// Returns the note on a material without bumps.
+pub fn no_bump_map() -> Note {
+    note(NoteKind::NoBumpMap, "no normal or height map: left as it was")
+}
+
+/// Returns the note `text` on levels that exceed the error bound. `is_avoidable` if another setting comes closer to the
+/// bound.
+pub fn missed_bound(text: String, is_avoidable: bool) -> Note {
+    Note { kind: NoteKind::MissedBound, asks_for_action: is_avoidable, text }
+}
+
+/// Returns the note on a bump map that is a JPEG.
+pub fn jpeg_source() -> Note {
+    let text = "the bump map is a JPEG: its compression adds and removes bumps, which the bake takes for the \
+                surface's; use a lossless source";
+    note(NoteKind::JpegSource, text)
+}
+
+/// Returns the note on rounding of a bump map that moves the lobes of a smooth surface. `error` is the lobe error of
+/// rounding alone.
+pub fn small_depth(error: f32) -> Note {
+    let text = format!(
+        "the depth of the bump map is too small for so smooth a surface: rounding alone moves its lobes by {error:.3}; \
+         use a map with more bits"
+    );
+    note(NoteKind::SmallDepth, text)
+}
+
+/// Returns the note on a normal map of `texels` texels, `count` of which have no slope.
+pub fn normals_below_surface(count: u64, texels: u64) -> Note {
+    let text = format!(
+        "{count} of {texels} normals point along the surface or below it: they are baked with a slope of {MAX_SLOPE}"
+    );
+    note(NoteKind::NormalsBelowSurface, text)
+}
+
+/// Returns the note on a bump map of `texels` texels, `count` of which have slopes beyond the clamp.
+pub fn steep_slopes(count: u64, texels: u64) -> Note {
+    let text = format!("{count} of {texels} texels are steeper than {MAX_SLOPE}: they are baked with that slope");
+    note(NoteKind::SteepSlopes, text)
+}
+
+/// Returns the note on a map that was resampled from `source` to `grid` (columns, rows).
+pub fn resampled(source: (u32, u32), grid: (u32, u32)) -> Note {
+    let text = format!(
+        "the map of {} x {} texels was resampled to {} x {}: block formats need multiples of 4",
+        source.0, source.1, grid.0, grid.1
+    );
+    note(NoteKind::Resampled, text)
+}
+
+/// Returns the note on about `texels` texels over all levels whose lobes are wider than an engine can show.
+pub fn alpha_above_one(texels: u64) -> Note {
+    let text =
+        format!("about {texels} texels over all levels are rougher than an engine can show: alpha is clamped to 1");
+    note(NoteKind::AlphaAboveOne, text)
+}
+
+/// Returns the note on the share of texels whose direction of anisotropy points away from a neighbour's.
+pub fn opposed_directions(share: f32) -> Note {
+    let text = format!(
+        "{:.1} % of the directions of anisotropy point away from a neighbour's, as around the centre of circular \
+         grooves: filtering loses the direction there",
+        100.0 * share
+    );
+    note(NoteKind::OpposedDirections, text)
+}
+
+/// Returns the note on a texture of D that loses the share `loss` of the variance under bilinear filtering.
+pub fn filter_loss(loss: f32) -> Note {
+    let text = format!(
+        "halfway between texels, filtering D loses up to {:.0} % of the variance that filtering K would keep: \
+         neighbours differ that much",
+        100.0 * loss
+    );
+    note(NoteKind::FilterLoss, text)
+}
+
+/// Returns the note on a sampler whose minFilter has no mips.
+pub fn sampler_without_mips() -> Note {
+    let text =
+        "the minFilter of the texture's sampler never reads mips: the bake has no effect in engines that obey it";
+    note(NoteKind::SamplerWithoutMips, text)
+}
+
+/// Returns the note on a material whose texels on the meshes have an unknown size.
+pub fn unknown_texel_size(reason: &impl Display) -> Note {
+    note(NoteKind::UnknownTexelSize, format!("every level counts as seen: {reason}"))
+}
+
+/// Returns the note on heights whose unit on the mesh is not known.
+pub fn unknown_repeat_size() -> Note {
+    let text = "no mesh shows how large a repeat of the height map is: heights are taken in widths of a repeat";
+    note(NoteKind::UnknownRepeatSize, text)
+}
+
+/// Returns the note on offsets that are in the unit frame because no mesh has the material.
+pub fn unknown_layout() -> Note {
+    let text = "no mesh shows how the texture lies on it: offsets are in the unit frame";
+    note(NoteKind::UnknownLayout, text)
+}
+
+/// Returns the note on offsets that are in the unit frame because the tangent rotation is not unique. `over_mesh` and
+/// `over_map` are its deviations over the mesh and over texels that several triangles use.
+pub fn conflicting_rotations(over_mesh: f32, over_map: f32) -> Note {
+    let text = format!(
+        "the tangent does not keep its angle to the main direction over the mesh (deviation {over_mesh:.2}), and parts \
+         of the map are used in several directions (deviation {over_map:.2}): one offset map cannot serve, so offsets \
+         are in the unit frame"
+    );
+    note(NoteKind::ConflictingRotations, text)
+}
+
+/// Returns the note on a texture of the base lobe, `roughness` or `anisotropy`, whose texels do not lie over those of
+/// the bump map.
+pub fn other_texture_coordinates(texture: &str) -> Note {
+    let text = format!(
+        "the {texture} texture has other texture coordinates or another KHR_texture_transform than the bumps: their \
+         texels do not lie over each other, so it was left unchanged"
+    );
+    note(NoteKind::OtherTextureCoordinates, text)
+}
+
+/// Returns the note on a texture of the base lobe, `roughness` or `anisotropy`, whose wrap mode is not that of the bump
+/// map.
+pub fn other_wrap_mode(texture: &str) -> Note {
+    let text = format!(
+        "the sampler of the {texture} texture has another wrap mode than the sampler of the bumps: the texture was left \
+         unchanged"
+    );
+    note(NoteKind::OtherWrapMode, text)
+}
+
+/// Returns the note on a material with glossiness, which engines may read instead of roughness.
+pub fn specular_glossiness() -> Note {
+    let text = "the material has KHR_materials_pbrSpecularGlossiness, and engines that know it read glossiness: the \
+                roughness was left unchanged";
+    note(NoteKind::SpecularGlossiness, text)
+}
+
+/// Returns the note on an anisotropic material that was baked with the isotropic model.
+pub fn anisotropy_dropped() -> Note {
+    let text = "the material's anisotropy was dropped because `--model isotropic` was requested";
+    note(NoteKind::AnisotropyDropped, text)
+}
+
+/// Returns the note on a clearcoat, which the extension of the pyramid profile does not describe.
+pub fn clearcoat_without_pyramid() -> Note {
+    let text = "the extension describes the base lobe only: no pyramid was written for the clearcoat";
+    note(NoteKind::ClearcoatWithoutPyramid, text)
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    #[test]
+    fn notes_on_sources_and_documents_ask_for_action() {
+        let asking = [
+            jpeg_source(),
+            small_depth(0.1),
+            normals_below_surface(1, 4),
+            sampler_without_mips(),
+            unknown_texel_size(&"the material is in no scene"),
+            other_texture_coordinates("roughness"),
+            missed_bound("level 2 misses --max-error 0.1".to_owned(), true),
+        ];
+        asking.iter().for_each(|note| assert!(note.asks_for_action, "{note:?}"));
+    }
+
+    #[test]
+    fn notes_that_only_explain_ask_for_nothing() {
+        let explaining = [
+            no_bump_map(),
+            steep_slopes(1, 4),
+            resampled((61, 47), (64, 48)),
+            alpha_above_one(3),
+            opposed_directions(0.1),
+            filter_loss(0.2),
+            unknown_repeat_size(),
+            unknown_layout(),
+            conflicting_rotations(0.5, 0.5),
+            other_wrap_mode("anisotropy"),
+            specular_glossiness(),
+            anisotropy_dropped(),
+            clearcoat_without_pyramid(),
+            missed_bound("level 2 misses --max-error 0.1".to_owned(), false),
+        ];
+        explaining.iter().for_each(|note| assert!(!note.asks_for_action, "{note:?}"));
+    }
+
+    #[test]
+    fn a_note_is_an_object_of_the_report_and_reads_back() {
+        let note = resampled((61, 47), (64, 48));
+        let json = json!({
+            "kind": "resampled",
+            "asksForAction": false,
+            "text": "the map of 61 x 47 texels was resampled to 64 x 48: block formats need multiples of 4",
+        });
+        assert_eq!(serde_json::to_value(&note).expect("JSON"), json);
+        assert_eq!(serde_json::from_value::<Note>(json).expect("a note"), note);
+    }
+}
