@@ -135,7 +135,8 @@ pub fn small_depth(error: f32) -> Note {
 /// Returns the note on a normal map of `texels` texels, `count` of which have no slope.
 pub fn normals_below_surface(count: u64, texels: u64) -> Note {
     let text = format!(
-        "{count} of {texels} normals point along the surface or below it: they are baked with a slope of {MAX_SLOPE}"
+        "{count} of {texels} normals point along the surface or below it: they are baked with a slope of {MAX_SLOPE} \
+         and roughen what is around them; remove them from the source"
     );
     note(NoteKind::NormalsBelowSurface, text)
 }
@@ -184,14 +185,18 @@ pub fn filter_loss(loss: f32) -> Note {
 
 /// Returns the note on a sampler whose minFilter has no mips.
 pub fn sampler_without_mips() -> Note {
-    let text =
-        "the minFilter of the texture's sampler never reads mips: the bake has no effect in engines that obey it";
+    let text = "the minFilter of the texture's sampler never reads mips: the bake has no effect in engines that obey it; set \
+         one with mips";
     note(NoteKind::SamplerWithoutMips, text)
 }
 
 /// Returns the note on a material whose texels on the meshes have an unknown size.
 pub fn unknown_texel_size(reason: &impl Display) -> Note {
-    note(NoteKind::UnknownTexelSize, format!("every level counts as seen: {reason}"))
+    let text = format!(
+        "{reason}, so that the levels which the view can sample are not known: every level counts as seen, and none is \
+         left out; put the mesh into a scene with a fixed size, or bake without a view"
+    );
+    note(NoteKind::UnknownTexelSize, text)
 }
 
 /// Returns the note on heights whose unit on the mesh is not known.
@@ -222,7 +227,8 @@ pub fn conflicting_rotations(over_mesh: f32, over_map: f32) -> Note {
 pub fn other_texture_coordinates(texture: &str) -> Note {
     let text = format!(
         "the {texture} texture has other texture coordinates or another KHR_texture_transform than the bumps: their \
-         texels do not lie over each other, so it was left unchanged"
+         texels do not lie over each other, so the {texture} texture was left unchanged and lacks the roughness of lost \
+         bumps; give both textures the same coordinates"
     );
     note(NoteKind::OtherTextureCoordinates, text)
 }
