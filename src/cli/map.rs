@@ -9,7 +9,7 @@ use serde_json::json;
 use super::notes::asks_for_action;
 use super::options::{TextureOptions, finite, unit_interval};
 use super::outcome::Outcome;
-use crate::bake::{BakeError, BakedMap, BakedTexture, BaseRoughness, bake_map, output_stem_of};
+use crate::bake::{BakeError, BaseRoughness, EncodedMap, EncodedTexture, bake_map, output_stem_of};
 use crate::bump::{HeightMap, NormalLayout, NormalMap};
 use crate::decode::{DecodeError, decode, decode_colours};
 use crate::digest::digest;
@@ -124,7 +124,7 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
 }
 
 struct Written {
-    baked: BakedMap,
+    baked: EncodedMap,
     files: Vec<(PathBuf, u64)>,
 }
 
@@ -266,9 +266,9 @@ fn source_digest(path: &Path, bytes: &[u8]) -> SourceDigest {
 }
 
 fn texture_keys(
-    texture: &BakedTexture,
+    texture: &EncodedTexture,
     args: &Args,
-    baked: &BakedMap,
+    baked: &EncodedMap,
     sources: &[SourceDigest],
     settings: &Settings,
 ) -> Vec<Key> {

@@ -114,7 +114,7 @@ pub fn bake_map(
     settings.validate()?;
     settings.target.check_available()?;
     let baked = bake::bake_map(bump_map, base_roughness, settings)?;
-    let texture = |mut texture: bake::BakedTexture| {
+    let texture = |mut texture: bake::EncodedTexture| {
         let (width, height) = (texture.mip_chain.width, texture.mip_chain.height);
         let ktx2 = texture.mip_chain.take_ktx2(&[])?;
         Ok(BakedTexture { content: texture.content, width, height, ktx2, range: texture.range })

@@ -8,8 +8,8 @@ use crate::material::{AnisotropyTexture, Encoding, MipChain, Normals, Product, R
 use crate::report::Content;
 use crate::settings::Model;
 
-/// A baked texture.
-pub struct BakedTexture {
+/// A baked texture whose levels are encoded in memory, and which is no file yet.
+pub struct EncodedTexture {
     /// What its texels are.
     pub content: Content,
     /// The encoded levels.
@@ -52,12 +52,12 @@ pub fn normal_texture(
     map: &MapOffsets<'_>,
     decided: Option<LayerNormals<'_>>,
     first: usize,
-) -> Result<BakedTexture, EncodeError> {
+) -> Result<EncodedTexture, EncodeError> {
     let mip_chain = match decided {
         Some(decided) => decided.mip_chain,
         None => Normals::of_means(&map.bumps).encode(normal_encoding(map, first))?,
     };
-    Ok(BakedTexture { content: Content::Normal, mip_chain, range: None, model: Model::None, lobe_errors: Vec::new() })
+    Ok(EncodedTexture { content: Content::Normal, mip_chain, range: None, model: Model::None, lobe_errors: Vec::new() })
 }
 
 /// Makes the roughness texture of a layer and, under the anisotropic model, its anisotropy texture.
@@ -65,9 +65,9 @@ pub fn lobe_textures(
     map: &MapOffsets<'_>,
     roughening: &Roughening<'_>,
     model: &LayerModel,
-) -> Result<Vec<BakedTexture>, EncodeError> {
+) -> Result<Vec<EncodedTexture>, EncodeError> {
     let encoding = Encoding::of(map.settings, 3).starting_at(model.first);
-    let texture = |content, mip_chain| BakedTexture {
+    let texture = |content, mip_chain| EncodedTexture {
         content,
         mip_chain,
         range: None,
