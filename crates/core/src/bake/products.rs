@@ -5,7 +5,7 @@ use crate::bake::lobes::{LayerInput, LayerLobes};
 use crate::bake::offsets::MapOffsets;
 use crate::codec::EncodeError;
 use crate::material::{AnisotropyTexture, Encoding, MipChain, Normals, Product, Range, Roughening, RoughnessTexture};
-use crate::report::Content;
+use crate::report::{Content, TextureReport};
 use crate::settings::Model;
 
 /// A baked texture whose levels are encoded in memory, and which is no file yet.
@@ -20,6 +20,22 @@ pub struct EncodedTexture {
     pub model: Model,
     /// Mean lobe errors of its layer, level by level, if it holds roughness data that were chosen.
     pub lobe_errors: Vec<f32>,
+}
+
+impl EncodedTexture {
+    /// Returns the report of the texture as a KTX2 file of `bytes` bytes at `path`.
+    pub fn report(&self, path: String, bytes: usize) -> TextureReport {
+        TextureReport {
+            path,
+            content: self.content,
+            width: self.mip_chain.width,
+            height: self.mip_chain.height,
+            levels: self.mip_chain.level_count(),
+            trimmed: self.mip_chain.trimmed,
+            bytes,
+            range: self.range.clone(),
+        }
+    }
 }
 
 /// The normal texture that the lobes of a layer decided.
