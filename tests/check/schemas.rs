@@ -230,7 +230,7 @@ fn outputs_of_map_satisfy_their_schema() {
             ("/choice", Value::Null),
             ("/choice/candidates/0/errors/0", json!(2)),
             ("/textures/0/content", json!("colour")),
-            ("/textures/0/range", Value::Null),
+            ("/textures/0/levels", json!(0)),
             ("/textures", json!([])),
         ],
     );

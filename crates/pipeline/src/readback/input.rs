@@ -99,7 +99,7 @@ impl Input {
     /// the roughness that suits `scene`.
     ///
     /// # Errors
-    /// The errors of `then`.
+    /// The errors of `then`, and [`ReadBackError::Document`].
     pub fn with_source<T, E: From<ReadBackError>>(
         &self,
         scene: SceneName,
