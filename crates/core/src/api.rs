@@ -1,5 +1,5 @@
-//! The functions that the crate root exports: checked settings in, bytes out, one error type. `roughcast map` shares the
-//! functions that read and bake standalone maps.
+//! The functions that the crate root exports: checked settings in, bytes out, one error type.
+//! `roughcast map` shares the functions that read and bake standalone maps.
 
 use crate::bake::{self, BakeError, BakedAsset, BaseRoughness, EncodedMap, EncodedTexture, Files, Source};
 use crate::bump::{HeightMap, NormalLayout, NormalMap};
