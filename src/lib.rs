@@ -123,7 +123,8 @@ pub use roughcast_core::{
 #[cfg(feature = "cli")]
 #[doc(hidden)]
 pub use roughcast_pipeline::{
-    cache, check, compare, input_file, inspect, output, project, remote, render, run, text, watch,
+    cache, check, compare, input_file, inspect, output, pictures, project, readback, remote, render, run, standalone,
+    text, watch,
 };
 
 #[doc(inline)]

@@ -4,7 +4,7 @@
 use std::array::from_fn;
 use std::ops::RangeInclusive;
 
-use roughcast::bake::{BakedMap, BaseRoughness, bake_map};
+use roughcast::bake::{BaseRoughness, EncodedMap, bake_map};
 use roughcast::bump::{NormalLayout, NormalMap};
 use roughcast::codec::Target;
 use roughcast::codec::uastc::Effort;
@@ -66,7 +66,7 @@ fn means(image: &Image, alpha: f32, shaded_as: Family, settings: Settings, level
         .collect()
 }
 
-fn decoded(baked: &BakedMap, level: u32, base: Roughness) -> Decoded {
+fn decoded(baked: &EncodedMap, level: u32, base: Roughness) -> Decoded {
     let of = |content| {
         let texture = baked.textures.iter().find(|t| t.content == content)?;
         let bytes = texture.mip_chain.to_ktx2(&[]).unwrap();

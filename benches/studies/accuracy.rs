@@ -7,7 +7,7 @@ use std::array::from_fn;
 use std::error::Error;
 use std::path::Path;
 
-use roughcast::bake::{BakedMap, BaseRoughness, bake_map};
+use roughcast::bake::{BaseRoughness, EncodedMap, bake_map};
 use roughcast::bump::{NormalLayout, NormalMap};
 use roughcast::codec::Target;
 use roughcast::codec::uastc::Effort;
@@ -169,7 +169,7 @@ fn errors_by_level(image: &Image, alpha: f32, texels: usize) -> Result<Vec<Means
 }
 
 /// Returns the KTX2 files of a bake, each with the content of its texture.
-fn files_of(baked: &BakedMap) -> Vec<(Content, Vec<u8>)> {
+fn files_of(baked: &EncodedMap) -> Vec<(Content, Vec<u8>)> {
     baked.textures.iter().map(|t| (t.content, t.mip_chain.to_ktx2(&[]).unwrap())).collect()
 }
 

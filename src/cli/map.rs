@@ -1,27 +1,18 @@
 //! `roughcast map`.
 
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::ValueEnum;
-use serde_json::json;
 
 use super::options::{TextureOptions, finite, unit_interval};
 use super::outcome::Outcome;
-use crate::bake::{BakeError, BakedMap, BakedTexture, BaseRoughness, bake_map, output_stem_of};
-use crate::bump::{HeightMap, NormalLayout, NormalMap};
-use crate::decode::{DecodeError, decode, decode_colours};
-use crate::digest::digest;
-use crate::image::{DecodeOptions, Image, MapError};
-use crate::input_file::read_file;
-use crate::ktx2::{Key, Provenance, SourceDigest};
+use crate::api::BumpTexels;
+use crate::bump::NormalLayout;
 use crate::lobe::Family;
-use crate::material::{BumpMap, notes};
 use crate::mip::Wrap;
-use crate::note;
-use crate::output::{Guard, PublishError};
-use crate::report::Content;
-use crate::settings::Settings;
+use crate::report::MapReport;
+use crate::standalone::{MapFileError, MapOptions, WrittenMap, bake_map_file};
 use crate::text::printable;
 
 /// Bake one standalone normal or height map into KTX2 files.
@@ -77,221 +68,72 @@ pub struct Args {
     texture: TextureOptions,
 }
 
-/// Why the map is not baked.
-#[derive(Debug, thiserror::Error)]
-enum MapCommandError {
-    #[error("{}: expected a readable file, found: {error}; check the path", path.display())]
-    Read { path: PathBuf, error: io::Error },
-    #[error("{}: {error}", path.display())]
-    Decode { path: PathBuf, error: DecodeError },
-    #[error("{}: {error}", path.display())]
-    Map { path: PathBuf, error: MapError },
-    #[error(transparent)]
-    Bake(#[from] BakeError),
-    #[error(transparent)]
-    Publish(#[from] PublishError),
-    #[error(
-        "-o {}: expected the name of a .ktx2 file, found another extension; name it {}",
-        path.display(), path.with_extension("ktx2").display()
-    )]
-    NotKtx2 { path: PathBuf },
-}
-
 /// Bakes the map and prints what was written.
 ///
 /// # Errors
 /// When `out` or `err` cannot be written to.
 pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<Outcome> {
-    let settings = args.texture.settings().with_family(args.lobe);
-    if let Err(reason) = settings.target.check_available() {
+    let options = args.options();
+    if let Err(reason) = options.settings.target.check_available() {
         writeln!(err, "error: {reason}")?;
         return Ok(Outcome::Usage);
     }
-    match bake(args, &settings) {
+    match bake_map_file(&options) {
         Err(error) => {
             writeln!(err, "error: {error}")?;
-            Ok(if matches!(error, MapCommandError::NotKtx2 { .. }) { Outcome::Usage } else { Outcome::Failed })
+            Ok(if matches!(error, MapFileError::NotKtx2 { .. }) { Outcome::Usage } else { Outcome::Failed })
         }
-        Ok(written) => {
+        Ok(WrittenMap { report, .. }) => {
             if args.json {
-                writeln!(out, "{}", serde_json::to_string_pretty(&written.json()).map_err(io::Error::other)?)?;
+                writeln!(out, "{}", serde_json::to_string_pretty(&report).map_err(io::Error::other)?)?;
             } else if !args.quiet {
-                write!(out, "{}", written.summary(args.verbose))?;
+                write!(out, "{}", summary(&report, args.verbose))?;
             }
             Ok(Outcome::Done)
         }
     }
 }
 
-struct Written {
-    baked: BakedMap,
-    files: Vec<(PathBuf, u64)>,
-}
-
-impl Written {
-    fn json(&self) -> serde_json::Value {
-        let textures = self.baked.textures.iter().zip(&self.files).map(|(texture, (path, bytes))| {
-            json!({
-                "path": path.display().to_string(),
-                "content": texture.content,
-                "width": texture.mip_chain.width,
-                "height": texture.mip_chain.height,
-                "levels": texture.mip_chain.level_count(),
-                "bytes": bytes,
-                "range": texture.range,
-            })
-        });
-        json!({
-            "model": self.baked.model,
-            "choice": self.baked.choice,
-            "notes": self.baked.notes,
-            "textures": textures.collect::<Vec<_>>(),
-        })
-    }
-
-    /// Returns a line for each file, the model, and the notes. Without `is_verbose`, notes that ask for nothing are
-    /// left out.
-    fn summary(&self, is_verbose: bool) -> String {
-        let mut text = String::new();
-        for (texture, (path, bytes)) in self.baked.textures.iter().zip(&self.files) {
-            let mip_chain = &texture.mip_chain;
-            text += &format!(
-                "{}: {}, {} x {}, {} levels, {:.1} kB\n",
-                printable(&path.display().to_string()),
-                texture.content.name(),
-                mip_chain.width,
-                mip_chain.height,
-                mip_chain.level_count(),
-                *bytes as f64 / 1e3
-            );
-        }
-        if let Some(choice) = &self.baked.choice {
-            text += &format!("model {}{}\n", self.baked.model.name(), choice.summary());
-        }
-        for note in self.baked.notes.iter().filter(|note| is_verbose || note.asks_for_action) {
-            text += &format!("note: {}\n", printable(&note.text));
-        }
-        text
-    }
-}
-
-fn bake(args: &Args, settings: &Settings) -> Result<Written, MapCommandError> {
-    let mut guard = Guard::default();
-    [Some(&args.image), args.roughness.as_ref()].into_iter().flatten().for_each(|input| guard.add_source(input));
-    let first = guard.reserve_file(&args.output)?;
-    if !args.output.extension().is_some_and(|e| e.eq_ignore_ascii_case("ktx2")) {
-        return Err(MapCommandError::NotKtx2 { path: args.output.clone() });
-    }
-    let bytes = read(&args.image)?;
-    let image = decoded(&args.image, &bytes, args.layer.clone(), settings, decode)?;
-    let mut sources = vec![source_digest(&args.image, &bytes)];
-    let is_jpeg = notes::is_jpeg(&bytes);
-    drop(bytes);
-    let failed = |error| MapCommandError::Map { path: args.image.clone(), error };
-    let bump_map = if args.height {
-        let slope = args.height_scale * image.width as f32;
-        BumpMap::Heights { map: HeightMap::new(image).map_err(failed)?, slope_per_step: [slope; 2], wrap: args.wrap }
-    } else {
-        BumpMap::Normals(NormalMap::new(image, args.channels, args.green_down).map_err(failed)?)
-    };
-    let base = match (&args.roughness, args.roughness_factor) {
-        (None, None) => None,
-        (image, factor) => {
-            let mut load = |path: &PathBuf| {
-                let bytes = read(path)?;
-                let image = decoded(path, &bytes, None, settings, decode_colours)?;
-                let failed = |error| MapCommandError::Map { path: path.clone(), error };
-                let image = image.into_finite_colours().map_err(failed)?;
-                sources.push(source_digest(path, &bytes));
-                Ok::<_, MapCommandError>(image)
-            };
-            Some(BaseRoughness { image: image.as_ref().map(&mut load).transpose()?, factor: factor.unwrap_or(1.0) })
-        }
-    };
-    let mut baked = bake_map(&bump_map, base.as_ref(), settings)?;
-    // The decoded images take more memory than the baked levels and are not needed any more.
-    drop((bump_map, base));
-    if is_jpeg {
-        baked.notes.push(note::jpeg_source());
-    }
-    let mut outputs = vec![first];
-    for texture in baked.textures.iter().skip(1) {
-        outputs.push(guard.reserve_file(&beside(&args.output, texture.content))?);
-    }
-    let keys: Vec<_> =
-        baked.textures.iter().map(|texture| texture_keys(texture, args, &baked, &sources, settings)).collect();
-    let mut written = Vec::new();
-    for (texture, (output, keys)) in baked.textures.iter_mut().zip(outputs.into_iter().zip(keys)) {
-        let bytes = texture.mip_chain.take_ktx2(&keys).map_err(|error| BakeError::Encode(error.into()))?;
-        output.write(&bytes)?;
-        written.push((output.path().to_owned(), bytes.len() as u64));
-    }
-    Ok(Written { baked, files: written })
-}
-
 impl Args {
-    /// Returns how the images are read, for the provenance.
-    fn reading(&self) -> serde_json::Value {
-        let mut reading = if self.height {
-            json!({ "height": true, "heightScale": self.height_scale, "wrap": self.wrap })
-        } else {
-            json!({ "channels": format!("{:?}", self.channels).to_lowercase(), "greenDown": self.green_down })
-        };
-        reading["layer"] = json!(self.layer);
-        reading["roughnessFactor"] = json!(self.roughness_factor);
-        reading
-    }
-}
-
-fn read(path: &Path) -> Result<Vec<u8>, MapCommandError> {
-    read_file(path).map_err(|error| MapCommandError::Read { path: path.to_owned(), error })
-}
-
-fn decoded(
-    path: &Path,
-    bytes: &[u8],
-    layer: Option<String>,
-    settings: &Settings,
-    decode: fn(&[u8], &DecodeOptions) -> Result<Image, DecodeError>,
-) -> Result<Image, MapCommandError> {
-    let extension = path.extension().map(|e| e.to_string_lossy().into_owned());
-    let options = DecodeOptions { max_pixels: settings.max_texels, layer, extension };
-    decode(bytes, &options).map_err(|error| MapCommandError::Decode { path: path.to_owned(), error })
-}
-
-fn source_digest(path: &Path, bytes: &[u8]) -> SourceDigest {
-    let uri = path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
-    SourceDigest { uri, blake3: digest(bytes) }
-}
-
-fn texture_keys(
-    texture: &BakedTexture,
-    args: &Args,
-    baked: &BakedMap,
-    sources: &[SourceDigest],
-    settings: &Settings,
-) -> Vec<Key> {
-    let mut recorded = settings.to_json(baked.model);
-    recorded["range"] = json!(texture.range);
-    recorded["map"] = args.reading();
-    if settings.provenance {
-        Provenance {
-            version: env!("CARGO_PKG_VERSION").to_owned(),
-            content: texture.content.name().to_owned(),
-            settings: recorded,
-            lobe_errors: texture.lobe_errors.clone(),
-            sources: sources.to_vec(),
+    fn options(&self) -> MapOptions {
+        MapOptions {
+            image: self.image.clone(),
+            texels: if self.height {
+                BumpTexels::Heights { scale: self.height_scale, wrap: self.wrap }
+            } else {
+                BumpTexels::Normals { layout: self.channels, is_green_down: self.green_down }
+            },
+            layer: self.layer.clone(),
+            roughness: self.roughness.clone(),
+            roughness_factor: self.roughness_factor,
+            output: self.output.clone(),
+            settings: self.texture.settings().with_family(self.lobe),
         }
-        .keys()
-    } else {
-        Vec::new()
     }
 }
 
-/// Returns the path of another texture beside `output`: `wool.ktx2` becomes `wool.roughness.ktx2`.
-fn beside(output: &Path, content: Content) -> PathBuf {
-    let stem = output_stem_of(output);
-    output.with_file_name(format!("{stem}.{}.ktx2", content.name()))
+/// Returns a line for each file, the model, and the notes. Without `is_verbose`, notes that ask for nothing are left
+/// out.
+fn summary(report: &MapReport, is_verbose: bool) -> String {
+    let mut text = String::new();
+    for texture in &report.textures {
+        text += &format!(
+            "{}: {}, {} x {}, {} levels, {:.1} kB\n",
+            printable(&texture.path),
+            texture.content.name(),
+            texture.width,
+            texture.height,
+            texture.levels,
+            texture.bytes as f64 / 1e3
+        );
+    }
+    if let Some(choice) = &report.choice {
+        text += &format!("model {}{}\n", report.model.name(), choice.summary());
+    }
+    for note in report.notes.iter().filter(|note| is_verbose || note.asks_for_action) {
+        text += &format!("note: {}\n", printable(&note.text));
+    }
+    text
 }
 
 fn wrap_modes(text: &str) -> Result<[Wrap; 2], String> {

@@ -10,7 +10,7 @@ use roughcast::cli::Outcome;
 use roughcast::gltf::roughness_pyramid::{EXTENSION, RoughnessPyramid};
 use serde_json::{Value, json};
 
-use crate::fixture::{bake, roughcast};
+use crate::fixture::{bake, roughcast, write_asset};
 
 pub fn schema(name: &str) -> Validator {
     let text = fs::read(format!("schemas/{name}.schema.json")).unwrap();
@@ -206,5 +206,130 @@ fn inspected_facts_satisfy_their_schema() {
         let mut broken = facts.clone();
         broken["surplus"] = json!(1);
         assert!(!schema.is_valid(&broken));
+    }
+}
+
+/// Returns the output of a command as JSON, whose first member is the format version.
+fn json_of(arguments: &[&str]) -> Value {
+    let (outcome, out, err) = roughcast(arguments);
+    assert_eq!((outcome, err.as_str()), (Outcome::Done, ""), "{arguments:?}");
+    let value: Value = serde_json::from_str(&out).unwrap();
+    let members: Vec<&String> = value.as_object().unwrap().keys().collect();
+    assert_eq!(members[0], "formatVersion", "{arguments:?}");
+    value
+}
+
+fn assert_refused(schema: &Validator, value: &Value, edits: &[(&str, Value)]) {
+    for (pointer, edit) in edits {
+        let mut broken = value.clone();
+        *broken.pointer_mut(pointer).unwrap() = edit.clone();
+        assert!(!schema.is_valid(&broken), "{pointer}");
+    }
+}
+
+#[test]
+fn outputs_of_map_satisfy_their_schema() {
+    let schema = schema("map");
+    let folder = tempfile::tempdir().unwrap();
+    let output = folder.path().join("out.ktx2");
+    let paths = ["map", "fixtures/maps/vgroove_normal.png", "-o", output.to_str().unwrap(), "--json"];
+    let plain = json_of(&paths);
+    assert_valid(&schema, &plain);
+    assert!(plain.get("choice").is_none() && plain["textures"][0].get("range").is_none(), "{plain:#}");
+    let both = json_of(&[&paths[..], &["--roughness-factor", "0.3", "--profile", "both"]].concat());
+    assert_valid(&schema, &both);
+    let textures = both["textures"].as_array().unwrap();
+    assert!(textures.iter().any(|texture| texture.get("range").is_some()), "{both:#}");
+    for texture in textures {
+        let bytes = fs::metadata(texture["path"].as_str().unwrap()).unwrap().len();
+        assert_eq!(texture["bytes"], bytes);
+    }
+    assert_refused(
+        &schema,
+        &both,
+        &[
+            ("/formatVersion", json!(2)),
+            ("/model", json!("auto")),
+            ("/choice", Value::Null),
+            ("/choice/candidates/0/errors/0", json!(2)),
+            ("/textures/0/content", json!("colour")),
+            ("/textures/0/levels", json!(0)),
+            ("/textures", json!([])),
+        ],
+    );
+}
+
+#[test]
+fn outputs_of_render_satisfy_their_schema() {
+    let schema = schema("render");
+    let folder = tempfile::tempdir().unwrap();
+    let (source, output) = (folder.path().join("source"), folder.path().join("output"));
+    write_asset(&source);
+    let input = source.join("ridges.gltf");
+    let paths = ["render", input.to_str().unwrap(), "-o", output.to_str().unwrap(), "--json"];
+    let scenes = ["--scene", "sphere,highlight", "--distance", "1,2", "--width", "8", "--samples", "2"];
+    let report = json_of(&[&paths[..], &scenes].concat());
+    assert_valid(&schema, &report);
+    let rows = |sheet: usize| report["sheets"][sheet]["rows"].as_array().unwrap().len();
+    assert_eq!((rows(0), rows(1)), (2, 0));
+    assert_refused(
+        &schema,
+        &report,
+        &[
+            ("/formatVersion", json!(2)),
+            ("/sheets/0/scene", json!("moon")),
+            ("/sheets/0/scene", json!("highlight")),
+            ("/sheets/1/scene", json!("plane")),
+            ("/sheets/0/rows/0/distance", json!(0)),
+            ("/sheets/0/rows/0/columns/0/name", json!("supersampled")),
+            ("/sheets/0/rows/0/columns/0/relativeL1", Value::Null),
+        ],
+    );
+}
+
+#[test]
+fn outputs_of_compare_satisfy_their_schema() {
+    let schema = schema("compare");
+    let folder = tempfile::tempdir().unwrap();
+    let (source, output) = (folder.path().join("source"), folder.path().join("output"));
+    write_asset(&source);
+    let input = source.join("ridges.gltf");
+    let paths = ["compare", input.to_str().unwrap(), "-o", output.to_str().unwrap()];
+    let report = json_of(&[&paths[..], &["--texels", "1", "--json"]].concat());
+    assert_valid(&schema, &report);
+    let file: Value = serde_json::from_slice(&fs::read(output.join("compare.json")).unwrap()).unwrap();
+    assert_eq!(file, report);
+    assert_refused(
+        &schema,
+        &report,
+        &[
+            ("/formatVersion", json!(2)),
+            ("/version", Value::Null),
+            ("/materials/0/entries", json!([])),
+            ("/materials/0/entries/0/kind", json!("theirs")),
+            ("/materials/0/entries/0/levelErrors/0", json!(-1)),
+            ("/materials/0/entries/0/fetches", json!(1.5)),
+        ],
+    );
+}
+
+/// Reports of `bake` and of `map` describe choices and textures with the same types.
+#[test]
+fn schemas_of_bake_and_map_agree() {
+    let read = |name: &str| -> Value {
+        serde_json::from_slice(&fs::read(format!("schemas/{name}.schema.json")).unwrap()).unwrap()
+    };
+    let (report, map) = (read("report"), read("map"));
+    for pointer in [
+        "/$defs/candidate",
+        "/$defs/error",
+        "/$defs/choice/required",
+        "/$defs/choice/properties/candidates",
+        "/$defs/choice/properties/misses/items",
+        "/$defs/texture/required",
+        "/$defs/texture/properties/content",
+        "/$defs/texture/properties/range",
+    ] {
+        assert!(report.pointer(pointer).is_some() && report.pointer(pointer) == map.pointer(pointer), "{pointer}");
     }
 }

@@ -25,7 +25,7 @@ fn errors(arguments: &[&str]) -> Vec<Vec<(String, f64)>> {
     let folder = tempdir().expect("a folder");
     let run = render(&[arguments, &LARGER, &["--json"]].concat(), folder.path());
     let report: Value = serde_json::from_str(&run.out).expect("JSON");
-    let rows = report.pointer("/0/rows").and_then(Value::as_array).expect("rows").clone();
+    let rows = report.pointer("/sheets/0/rows").and_then(Value::as_array).expect("rows").clone();
     let row = |row: &Value| {
         let columns = row["columns"].as_array().expect("columns");
         columns

@@ -1,11 +1,12 @@
 //! The functions that the crate root exports: checked settings in, bytes out, one error type.
+//! `roughcast map` shares the functions that read and bake standalone maps.
 
-use crate::bake::{self, BakeError, BakedAsset, BaseRoughness, Files, Source};
+use crate::bake::{self, BakeError, BakedAsset, BaseRoughness, EncodedMap, EncodedTexture, Files, Source};
 use crate::bump::{HeightMap, NormalLayout, NormalMap};
 use crate::codec::EncodeError;
 use crate::decode::{DecodeError, decode, decode_colours};
 use crate::gltf::document::{Document, DocumentError};
-use crate::image::{DecodeOptions, Image, MapError};
+use crate::image::{DecodeOptions, MapError};
 use crate::material::{BumpMap, Range};
 use crate::memory::OutOfMemory;
 use crate::mip::Wrap;
@@ -112,10 +113,8 @@ pub fn bake_map(
     base_roughness: Option<&BaseRoughness>,
     settings: &Settings,
 ) -> Result<BakedMap, Error> {
-    settings.validate()?;
-    settings.target.check_available()?;
-    let baked = bake::bake_map(bump_map, base_roughness, settings)?;
-    let texture = |mut texture: bake::BakedTexture| {
+    let baked = encode_map(bump_map, base_roughness, settings)?;
+    let texture = |mut texture: EncodedTexture| {
         let (width, height) = (texture.mip_chain.width, texture.mip_chain.height);
         let ktx2 = texture.mip_chain.take_ktx2(&[])?;
         Ok(BakedTexture { content: texture.content, width, height, ktx2, range: texture.range })
@@ -124,12 +123,27 @@ pub fn bake_map(
     Ok(BakedMap { textures, model: baked.model, choice: baked.choice, notes: baked.notes })
 }
 
+/// Bakes as [`bake_map`] does, and leaves the making of the files to the caller: `roughcast map` records provenance in
+/// them, and holds one at a time.
+///
+/// # Errors
+/// [`Error`] if the settings are wrong, or a texture is too large or cannot be encoded.
+pub fn encode_map(
+    bump_map: &BumpMap,
+    base_roughness: Option<&BaseRoughness>,
+    settings: &Settings,
+) -> Result<EncodedMap, Error> {
+    settings.validate()?;
+    settings.target.check_available()?;
+    Ok(bake::bake_map(bump_map, base_roughness, settings)?)
+}
+
 /// Reads an image file as a normal map in tangent space. Green points up (OpenGL convention) unless `is_green_down`.
 ///
 /// # Errors
 /// [`Error::Image`] if the bytes are no image, and [`Error::Map`] if the image is no normal map.
 pub fn read_normal_map(bytes: &[u8], layout: NormalLayout, is_green_down: bool) -> Result<BumpMap, Error> {
-    Ok(BumpMap::Normals(NormalMap::new(read_image(bytes)?, layout, is_green_down)?))
+    read_bump_map(bytes, &BumpTexels::Normals { layout, is_green_down }, &decode_options())
 }
 
 /// Reads an image file as a height map. `scale` is the difference between heights of 0 and 1, in widths of the map;
@@ -138,9 +152,7 @@ pub fn read_normal_map(bytes: &[u8], layout: NormalLayout, is_green_down: bool) 
 /// # Errors
 /// [`Error::Image`] if the bytes are no image, and [`Error::Map`] if the image is no height map.
 pub fn read_height_map(bytes: &[u8], scale: f32, wrap: [Wrap; 2]) -> Result<BumpMap, Error> {
-    let image = read_image(bytes)?;
-    let slope = scale * image.width as f32;
-    Ok(BumpMap::Heights { map: HeightMap::new(image)?, slope_per_step: [slope; 2], wrap })
+    read_bump_map(bytes, &BumpTexels::Heights { scale, wrap }, &decode_options())
 }
 
 /// Reads an image file as the roughness that a surface has by itself, in green or grey. `factor` multiplies it.
@@ -148,12 +160,52 @@ pub fn read_height_map(bytes: &[u8], scale: f32, wrap: [Wrap; 2]) -> Result<Bump
 /// # Errors
 /// [`Error::Image`] if the bytes are no image, and [`Error::Map`] if texels are NaN or infinite.
 pub fn read_roughness_map(bytes: &[u8], factor: f32) -> Result<BaseRoughness, Error> {
-    let image = decode_colours(bytes, &decode_options())?.into_finite_colours()?;
-    Ok(BaseRoughness { image: Some(image), factor })
+    read_base_roughness(bytes, factor, &decode_options())
 }
 
-fn read_image(bytes: &[u8]) -> Result<Image, Error> {
-    Ok(decode(bytes, &decode_options())?)
+/// What the texels of a bump map are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum BumpTexels {
+    /// Normals in tangent space.
+    Normals {
+        /// The channels that hold the normal.
+        layout: NormalLayout,
+        /// Whether green points down the image (DirectX convention).
+        is_green_down: bool,
+    },
+    /// Heights.
+    Heights {
+        /// The difference between heights of 0 and 1, in widths of the map.
+        scale: f32,
+        /// The wrap mode of the sampler, across and down.
+        wrap: [Wrap; 2],
+    },
+}
+
+/// Reads an image file as a bump map, within the limits of `options`.
+///
+/// # Errors
+/// [`Error::Image`] if the bytes are no image, and [`Error::Map`] if the image is no such map.
+pub fn read_bump_map(bytes: &[u8], texels: &BumpTexels, options: &DecodeOptions) -> Result<BumpMap, Error> {
+    let image = decode(bytes, options)?;
+    Ok(match *texels {
+        BumpTexels::Normals { layout, is_green_down } => {
+            BumpMap::Normals(NormalMap::new(image, layout, is_green_down)?)
+        }
+        BumpTexels::Heights { scale, wrap } => {
+            let slope = scale * image.width as f32;
+            BumpMap::Heights { map: HeightMap::new(image)?, slope_per_step: [slope; 2], wrap }
+        }
+    })
+}
+
+/// Reads as [`read_roughness_map`] does, within the limits of `options`.
+///
+/// # Errors
+/// Those of [`read_roughness_map`].
+pub fn read_base_roughness(bytes: &[u8], factor: f32, options: &DecodeOptions) -> Result<BaseRoughness, Error> {
+    let image = decode_colours(bytes, options)?.into_finite_colours()?;
+    Ok(BaseRoughness { image: Some(image), factor })
 }
 
 /// Returns options with the default limit on the size of images.

@@ -1,10 +1,12 @@
 //! The report of a bake, as data. `schemas/report.schema.json` describes it as JSON.
 
 mod format;
+mod map;
 mod reason;
 mod run;
 
 pub use format::{FormatError, check_format};
+pub use map::{MAP_FORMAT, MapReport};
 pub use reason::{Evidence, Reason};
 pub use run::{AssetOutcome, Counts, Origin, PartAsset, PartReport, REPORT_FORMAT, ReportError, RunReport, Status};
 
@@ -175,7 +177,7 @@ fn ranges(numbers: impl Iterator<Item = usize>) -> String {
 #[serde(rename_all = "camelCase")]
 #[non_exhaustive]
 pub struct TextureReport {
-    /// Path relative to the document.
+    /// Path relative to the document, or of the file of a standalone map.
     pub path: String,
     /// What the texels are.
     pub content: Content,

@@ -10,14 +10,18 @@ pub mod compare;
 pub mod input_file;
 pub mod inspect;
 pub mod output;
+pub mod pictures;
 pub mod project;
+pub mod readback;
 pub mod remote;
 pub mod render;
 pub mod run;
+pub mod standalone;
 pub mod text;
 pub mod watch;
 
 // Modules of the core are named `crate::` here as they are there.
 use roughcast_core::{
-    bake, bump, codec, decode, digest, gltf, image, ktx2, lobe, material, math, memory, metric, mip, report, settings,
+    api, bake, bump, codec, decode, digest, gltf, image, ktx2, lobe, material, math, memory, metric, mip, report,
+    settings,
 };

@@ -22,7 +22,7 @@ use crate::gltf::rewrite::{NewImage, NewTexture, add_textures};
 use crate::gltf::texture::ImageLocation;
 use crate::gltf::uri::{encode_path, relative_path};
 use crate::material::Range;
-use crate::report::{AssetReport, LayerReport, TextureReport};
+use crate::report::{AssetReport, LayerReport};
 use crate::settings::{Form, Settings};
 
 /// The textures and layers of all bump maps, on their way into the document.
@@ -97,19 +97,9 @@ impl<'a> Assembly<'a> {
         }
         let path = self.names.unique(&stem, texture.content.name());
         let name = path.rsplit('/').next().unwrap_or(&path).to_owned();
-        let mip_chain = texture.mip_chain;
-        self.report.textures.push(TextureReport {
-            path: format!("{path}.ktx2"),
-            content: texture.content,
-            width: mip_chain.width,
-            height: mip_chain.height,
-            levels: mip_chain.level_count(),
-            trimmed: mip_chain.trimmed,
-            bytes: ktx2.len(),
-            range: texture.range.clone(),
-        });
+        self.report.textures.push(texture.report(format!("{path}.ktx2"), ktx2.len()));
         let ktx2 = self.add_image(&path, "ktx2", ktx2)?;
-        let source = match (mip_chain.fallback, self.settings.form) {
+        let source = match (texture.mip_chain.fallback, self.settings.form) {
             (Some(png), _) => Some(self.add_image(&path, "png", png)?),
             (None, Form::Dual) => Some(ktx2.clone()),
             (None, _) => None,

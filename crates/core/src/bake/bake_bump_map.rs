@@ -5,13 +5,13 @@ use crate::bake::bake_layer::{LayerProducts, NormalStep, bake_layer};
 use crate::bake::error::BakeError;
 use crate::bake::lobes::LayerInput;
 use crate::bake::offsets::MapOffsets;
-use crate::bake::products::{BakedTexture, LayerNormals, normal_texture};
+use crate::bake::products::{EncodedTexture, LayerNormals, normal_texture};
 use crate::bake::pyramid::{PyramidInput, PyramidProducts, pyramid};
 
 /// What the bake makes of a bump map.
 pub struct BumpMapProducts {
     /// The normal texture, in the portable profile.
-    pub normals: Option<BakedTexture>,
+    pub normals: Option<EncodedTexture>,
     /// The products of all layers, in the order of the inputs.
     pub layers: Vec<LayerProducts>,
     /// The textures of the pyramid profile; empty in the portable profile.

@@ -3,7 +3,7 @@
 use crate::bake::choose::{LayerModel, candidates};
 use crate::bake::lobes::{LayerInput, LayerLobes};
 use crate::bake::offsets::MapOffsets;
-use crate::bake::products::{BakedTexture, LayerNormals, lobe_textures, normal_encoding, normals_of_lobes};
+use crate::bake::products::{EncodedTexture, LayerNormals, lobe_textures, normal_encoding, normals_of_lobes};
 use crate::codec::EncodeError;
 use crate::material::{Normals, Product, Roughening, notes};
 use crate::note::Note;
@@ -18,7 +18,7 @@ pub struct LayerProducts {
     /// The correction factor c, for the pyramid profile.
     pub correction: Option<f32>,
     /// The textures of the portable profile: roughness and anisotropy.
-    pub textures: Vec<BakedTexture>,
+    pub textures: Vec<EncodedTexture>,
     /// Notes to the user.
     pub notes: Vec<Note>,
 }

@@ -7,7 +7,7 @@ use super::bake_layer::LayerProducts;
 use super::decode::Images;
 use super::extension::{BaseLobe, EXTENSION};
 use super::group::{BumpMapGroup, GroupLayer};
-use super::products::BakedTexture;
+use super::products::EncodedTexture;
 use super::pyramid::PyramidLayer;
 use crate::bump::Frame;
 use crate::digest::Digest;
@@ -21,7 +21,7 @@ use crate::settings::{Finest, Model, Settings};
 /// A baked texture and its place in the document.
 pub struct GroupTexture {
     /// The texture.
-    pub texture: BakedTexture,
+    pub texture: EncodedTexture,
     /// The beginning of its file's name: the name of an image, or of a material without an image.
     pub stem: String,
     /// Its source images with the digests of their bytes.
@@ -131,12 +131,12 @@ struct Places<'a> {
 }
 
 impl Places<'_> {
-    fn normals(&self, texture: BakedTexture) -> GroupTexture {
+    fn normals(&self, texture: EncodedTexture) -> GroupTexture {
         self.of_bump_map(texture, self.group.layers.iter().map(GroupLayer::normal_slot).collect())
     }
 
     /// Places a texture that is made of the bump map alone.
-    fn of_bump_map(&self, texture: BakedTexture, slots: Vec<Slot>) -> GroupTexture {
+    fn of_bump_map(&self, texture: EncodedTexture, slots: Vec<Slot>) -> GroupTexture {
         let source = &self.group.source;
         GroupTexture {
             texture,
@@ -148,7 +148,7 @@ impl Places<'_> {
     }
 
     /// Places a texture that is made of the bump map and of the base lobe of the layers `users`.
-    fn of_lobe(&self, texture: BakedTexture, users: &[usize]) -> GroupTexture {
+    fn of_lobe(&self, texture: EncodedTexture, users: &[usize]) -> GroupTexture {
         let source = &self.group.source;
         let layer = &self.group.layers[users[0]];
         let [roughness, anisotropy] = layer.base_textures();

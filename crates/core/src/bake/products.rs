@@ -5,11 +5,11 @@ use crate::bake::lobes::{LayerInput, LayerLobes};
 use crate::bake::offsets::MapOffsets;
 use crate::codec::EncodeError;
 use crate::material::{AnisotropyTexture, Encoding, MipChain, Normals, Product, Range, Roughening, RoughnessTexture};
-use crate::report::Content;
+use crate::report::{Content, TextureReport};
 use crate::settings::Model;
 
-/// A baked texture.
-pub struct BakedTexture {
+/// A baked texture whose levels are encoded in memory, and which is no file yet.
+pub struct EncodedTexture {
     /// What its texels are.
     pub content: Content,
     /// The encoded levels.
@@ -20,6 +20,22 @@ pub struct BakedTexture {
     pub model: Model,
     /// Mean lobe errors of its layer, level by level, if it holds roughness data that were chosen.
     pub lobe_errors: Vec<f32>,
+}
+
+impl EncodedTexture {
+    /// Returns the report of the texture as a KTX2 file of `bytes` bytes at `path`.
+    pub fn report(&self, path: String, bytes: usize) -> TextureReport {
+        TextureReport {
+            path,
+            content: self.content,
+            width: self.mip_chain.width,
+            height: self.mip_chain.height,
+            levels: self.mip_chain.level_count(),
+            trimmed: self.mip_chain.trimmed,
+            bytes,
+            range: self.range.clone(),
+        }
+    }
 }
 
 /// The normal texture that the lobes of a layer decided.
@@ -52,12 +68,12 @@ pub fn normal_texture(
     map: &MapOffsets<'_>,
     decided: Option<LayerNormals<'_>>,
     first: usize,
-) -> Result<BakedTexture, EncodeError> {
+) -> Result<EncodedTexture, EncodeError> {
     let mip_chain = match decided {
         Some(decided) => decided.mip_chain,
         None => Normals::of_means(&map.bumps).encode(normal_encoding(map, first))?,
     };
-    Ok(BakedTexture { content: Content::Normal, mip_chain, range: None, model: Model::None, lobe_errors: Vec::new() })
+    Ok(EncodedTexture { content: Content::Normal, mip_chain, range: None, model: Model::None, lobe_errors: Vec::new() })
 }
 
 /// Makes the roughness texture of a layer and, under the anisotropic model, its anisotropy texture.
@@ -65,9 +81,9 @@ pub fn lobe_textures(
     map: &MapOffsets<'_>,
     roughening: &Roughening<'_>,
     model: &LayerModel,
-) -> Result<Vec<BakedTexture>, EncodeError> {
+) -> Result<Vec<EncodedTexture>, EncodeError> {
     let encoding = Encoding::of(map.settings, 3).starting_at(model.first);
-    let texture = |content, mip_chain| BakedTexture {
+    let texture = |content, mip_chain| EncodedTexture {
         content,
         mip_chain,
         range: None,

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::bake::bake_layer::LayerProducts;
 use crate::bake::offsets::MapOffsets;
-use crate::bake::products::BakedTexture;
+use crate::bake::products::EncodedTexture;
 use crate::bump::{Frame, Moments};
 use crate::codec::EncodeError;
 use crate::material::{Encoding, FrameTransforms, Framed, Product, Quantity, QuantityTexture, filter_loss, notes};
@@ -41,7 +41,7 @@ pub struct PyramidLayer {
 #[derive(Default)]
 pub struct PyramidProducts {
     /// The textures, each of which several layers may share.
-    pub textures: Vec<BakedTexture>,
+    pub textures: Vec<EncodedTexture>,
     /// The layers, in the order of the inputs.
     pub layers: Vec<PyramidLayer>,
 }
@@ -57,7 +57,7 @@ struct TextureKey {
 /// The textures that have been made, with their keys and notes.
 struct Textures<'m, 'a> {
     map: &'m MapOffsets<'a>,
-    textures: Vec<BakedTexture>,
+    textures: Vec<EncodedTexture>,
     keys: Vec<(TextureKey, Option<Note>)>,
 }
 
@@ -101,12 +101,12 @@ impl Textures<'_, '_> {
             return Ok((index, self.keys[index].1.clone()));
         }
         let (texture, note) = self.make(&key)?;
-        self.textures.push(BakedTexture { lobe_errors: lobe_errors(), ..texture });
+        self.textures.push(EncodedTexture { lobe_errors: lobe_errors(), ..texture });
         self.keys.push((key, note.clone()));
         Ok((self.textures.len() - 1, note))
     }
 
-    fn make(&self, key: &TextureKey) -> Result<(BakedTexture, Option<Note>), EncodeError> {
+    fn make(&self, key: &TextureKey) -> Result<(EncodedTexture, Option<Note>), EncodeError> {
         if *key.transforms == FrameTransforms::IDENTITY {
             return self.of_moments(self.map.bumps.moments(), key);
         }
@@ -119,7 +119,7 @@ impl Textures<'_, '_> {
         &self,
         moments: &Pyramid<R>,
         &TextureKey { quantity, first, .. }: &TextureKey,
-    ) -> Result<(BakedTexture, Option<Note>), EncodeError> {
+    ) -> Result<(EncodedTexture, Option<Note>), EncodeError> {
         let encoding = Encoding::of(self.map.settings, quantity.channels() as u32).starting_at(first);
         let texture = QuantityTexture::new(moments, quantity, encoding);
         let mip_chain = texture.encode(encoding)?;
@@ -129,6 +129,6 @@ impl Textures<'_, '_> {
             Quantity::Lambda1 => (Content::Lambda1, Model::Isotropic),
         };
         let note = (quantity == Quantity::Factor).then(|| notes::of_factor(filter_loss(moments))).flatten();
-        Ok((BakedTexture { content, mip_chain, range: Some(texture.range), model, lobe_errors: Vec::new() }, note))
+        Ok((EncodedTexture { content, mip_chain, range: Some(texture.range), model, lobe_errors: Vec::new() }, note))
     }
 }

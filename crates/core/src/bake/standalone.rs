@@ -7,7 +7,7 @@ use crate::bake::bake_bump_map::{BumpMapProducts, bake_bump_map};
 use crate::bake::error::BakeError;
 use crate::bake::lobes::{BaseInput, LayerInput, PreparedBase};
 use crate::bake::offsets::MapOffsets;
-use crate::bake::products::BakedTexture;
+use crate::bake::products::EncodedTexture;
 use crate::bake::pyramid::PyramidInput;
 use crate::bump::Frame;
 use crate::image::Image;
@@ -24,10 +24,10 @@ pub struct BaseRoughness {
     pub factor: f32,
 }
 
-/// A baked standalone map.
-pub struct BakedMap {
+/// A baked standalone map, whose textures are no files yet.
+pub struct EncodedMap {
     /// The textures. The first is the bump map: normals or offsets.
-    pub textures: Vec<BakedTexture>,
+    pub textures: Vec<EncodedTexture>,
     /// What is modelled of the lost bumps.
     pub model: Model,
     /// The candidates and their errors, if the base roughness is known.
@@ -44,7 +44,7 @@ pub fn bake_map(
     bump_map: &BumpMap,
     base_roughness: Option<&BaseRoughness>,
     settings: &Settings,
-) -> Result<BakedMap, BakeError> {
+) -> Result<EncodedMap, BakeError> {
     // PNG fallbacks are for documents, which refer to both files.
     let settings = &Settings { form: Form::Strict, ..*settings };
     let map = MapOffsets::new(bump_map, settings, bump_map.wrap())?;
@@ -59,7 +59,7 @@ pub fn bake_map(
     }
     textures.extend(pyramid.textures);
     notes.extend(pyramid.layers.into_iter().flat_map(|layer| layer.notes));
-    Ok(BakedMap { textures, model, choice, notes })
+    Ok(EncodedMap { textures, model, choice, notes })
 }
 
 /// Returns the only layer of a standalone map, all of whose levels can be sampled.

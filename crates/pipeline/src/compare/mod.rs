@@ -1,13 +1,15 @@
 //! Comparison of error and cost: every model of ours and every peer on one material, scored by [`crate::metric`].
 //!
 //! The reference is level 0 of the material with unencoded normals. Our models are decoded baked textures. Peers read
-//! the encoded normals of plain mips and use exact moments for everything else. This module takes materials as the
-//! renderer reads them, never files.
+//! the encoded normals of plain mips and use exact moments for everything else. [`compare`] takes materials as the
+//! renderer reads them. [`compare_file`] bakes the materials of a file for it, and writes charts and tables.
 
 mod chart;
 mod cost;
+mod files;
 mod labels;
 mod page;
+mod report;
 mod table;
 #[cfg(test)]
 mod tests;
@@ -21,7 +23,9 @@ use crate::render::{Bumps, Material, Texture};
 
 pub use chart::file as chart;
 pub use cost::{Axis, Cost};
+pub use files::{Charts, CompareError, CompareOptions, compare_file};
 pub use page::page;
+pub use report::{COMPARE_FORMAT, ComparisonReport};
 pub use table::csv;
 
 /// Number of our entries: three models, each baked in two qualities, and the choice of `--model auto`.

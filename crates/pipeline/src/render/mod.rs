@@ -2,8 +2,8 @@
 //!
 //! A [`Scene`] is drawn with a [`Material`] in two ways. [`filtered`] shades one sample per pixel through mips as
 //! hardware filters them. [`supersampled`] shades many samples of the unfiltered level 0. [`Difference`] measures the
-//! difference of the two pictures. The paper's example images are [`Subject::Lake`] (its figures 8 and 9),
-//! [`Subject::Pattern`] (10 and 11) and [`highlight`] (14). This module takes texels, never files.
+//! difference of the two pictures. The paper's example images are [`SceneName::Lake`] (its figures 8 and 9),
+//! [`SceneName::Pattern`] (10 and 11) and [`highlight`] (14). This module takes texels, never files.
 
 mod camera;
 mod difference;
@@ -29,7 +29,7 @@ pub use environment::{Environment, Radiance, Surroundings};
 pub use highlight::highlight;
 pub use material::{BaseAnisotropy, Bumps, LostBumps, Material, Point, RangedTexture};
 pub use sampler::{Filter, Footprint, Texel, Texture};
-pub use scene::{Light, Scene, Subject};
+pub use scene::{Light, Scene, SceneName};
 pub use shade::{EnvironmentFilter, Reflection, Shader, View};
 pub use shape::{Hit, Shape};
 pub use sheet::{Panel, Sheet};

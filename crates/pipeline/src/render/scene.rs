@@ -57,40 +57,43 @@ pub struct Scene {
 }
 
 /// Scenes by name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, clap::ValueEnum)]
 #[serde(rename_all = "lowercase")]
-pub enum Subject {
+pub enum SceneName {
     /// The moon over a lake: the paper's figures 8 and 9.
     Lake,
     /// A pattern mirrored by a bumpy plane: the paper's figures 10 and 11.
     Pattern,
+    /// Phong against Blinn-Phong on a plane: the paper's figure 14.
+    Highlight,
     /// A plane in perspective, a point light and a room.
     Plane,
     /// A sphere, a point light and a room.
     Sphere,
 }
 
-impl Subject {
+impl SceneName {
     /// Returns the name used in file names.
     pub fn name(self) -> &'static str {
         match self {
             Self::Lake => "lake",
             Self::Pattern => "pattern",
+            Self::Highlight => "highlight",
             Self::Plane => "plane",
             Self::Sphere => "sphere",
         }
     }
 
-    /// Returns a roughness that shows the subject well.
+    /// Returns a roughness that suits the scene.
     pub fn roughness(self) -> f32 {
         match self {
             Self::Lake => 0.14,
             Self::Pattern => 0.06,
-            Self::Plane | Self::Sphere => 0.3,
+            Self::Highlight | Self::Plane | Self::Sphere => 0.3,
         }
     }
 
-    /// Returns a factor for the heights of [`super::waves`] that shows the subject well.
+    /// Returns a factor for the heights of [`super::waves`] that suits the scene.
     pub fn wave_height(self) -> f32 {
         match self {
             Self::Pattern => 0.25,
@@ -98,21 +101,22 @@ impl Subject {
         }
     }
 
-    /// Returns distances that show the subject well, in repeats of the map.
+    /// Returns distances that suit the scene, in repeats of the map.
     pub fn distances(self) -> &'static [f64] {
         match self {
             Self::Lake => &[0.7],
             Self::Pattern => &[2.0],
-            Self::Plane | Self::Sphere => &[1.0, 4.0],
+            Self::Highlight | Self::Plane | Self::Sphere => &[1.0, 4.0],
         }
     }
 
     /// Returns the scene for pictures `width` pixels wide. `distance` is the distance from the eye to the nearest point
-    /// of the surface, in repeats of the map.
-    pub fn scene(self, width: u32, distance: f64) -> Scene {
+    /// of the surface, in repeats of the map. Returns `None` for the highlight, which shows no material:
+    /// [`super::highlight`] draws it.
+    pub fn scene(self, width: u32, distance: f64) -> Option<Scene> {
         let size = |aspect: f64| [width.max(1), ((f64::from(width) * aspect) as u32).max(1)];
         let lamp = Light::Point { position: [-1.0, 3.4, 2.2], intensity: 12.0 };
-        match self {
+        Some(match self {
             Self::Lake => Scene {
                 shape: Shape::Plane { repeats: distance },
                 camera: Camera::new([0.0, 0.0, 1.0], [0.0, 1.0, 0.656], 0.525, size(1.1)),
@@ -133,6 +137,7 @@ impl Subject {
                 f0: 0.9,
                 key: 0.3,
             },
+            Self::Highlight => return None,
             Self::Plane => Scene {
                 shape: Shape::Plane { repeats: distance },
                 camera: Camera::new([0.0, 0.0, 1.0], [0.0, 1.0, 0.55], 0.5, size(0.9)),
@@ -150,7 +155,7 @@ impl Subject {
                 f0: 0.9,
                 key: 0.2,
             },
-        }
+        })
     }
 }
 

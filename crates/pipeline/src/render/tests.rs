@@ -117,7 +117,7 @@ fn pictures_do_not_depend_on_the_number_of_threads() {
     let draw = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
         pool.install(|| {
-            let scene = Subject::Sphere.scene(24, 2.0);
+            let scene = SceneName::Sphere.scene(24, 2.0).expect("a scene");
             let truth = supersampled(&scene, &tilted(0.3), &METAL, 5, &|_| {});
             (truth.picture, truth.half, filtered(&scene, &tilted(0.3), &METAL, Filter::Trilinear, &|_| {}))
         })
@@ -185,15 +185,15 @@ fn sheets_have_their_panels_and_labels() {
 
 #[test]
 fn scenes_show_their_surface_from_outside() {
-    for subject in [Subject::Lake, Subject::Pattern, Subject::Plane, Subject::Sphere] {
-        let Scene { shape, camera, .. } = subject.scene(20, 1.0);
+    for name in [SceneName::Lake, SceneName::Pattern, SceneName::Plane, SceneName::Sphere] {
+        let Scene { shape, camera, .. } = name.scene(20, 1.0).expect("a scene");
         let [width, height] = camera.size;
         let hits = (0..width * height).filter_map(|i| {
             let ray = camera.ray(f64::from(i % width) + 0.5, f64::from(i / width) + 0.5);
             Some((ray, shape.hit(camera.eye, ray)?))
         });
         let hits: Vec<_> = hits.collect();
-        assert!(hits.len() > (width * height / 2) as usize, "{subject:?}");
-        assert!(hits.iter().all(|(ray, hit)| dot(*ray, hit.frame[2]) < 0.0), "{subject:?}");
+        assert!(hits.len() > (width * height / 2) as usize, "{name:?}");
+        assert!(hits.iter().all(|(ray, hit)| dot(*ray, hit.frame[2]) < 0.0), "{name:?}");
     }
 }

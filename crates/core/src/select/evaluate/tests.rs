@@ -1,4 +1,4 @@
-use crate::bake::{BakedMap, BaseRoughness, bake_map};
+use crate::bake::{BaseRoughness, EncodedMap, bake_map};
 use crate::bump::{NormalLayout, NormalMap};
 use crate::codec::Target;
 use crate::image::{Image, Samples};
@@ -43,11 +43,11 @@ fn brushed(x: u32, y: u32) -> [f32; 2] {
     [0.02 * noise(x, y, 1), 0.6 * noise(0, y, 2)]
 }
 
-fn bake(image: &Image, roughness: f32, settings: &Settings) -> BakedMap {
+fn bake(image: &Image, roughness: f32, settings: &Settings) -> EncodedMap {
     bake_with(image, BaseRoughness { image: None, factor: roughness }, settings)
 }
 
-fn bake_with(image: &Image, base: BaseRoughness, settings: &Settings) -> BakedMap {
+fn bake_with(image: &Image, base: BaseRoughness, settings: &Settings) -> EncodedMap {
     let map = NormalMap::new(image.clone(), NormalLayout::Xyz, false).unwrap();
     bake_map(&BumpMap::Normals(map), Some(&base), settings).unwrap()
 }

@@ -1,106 +1,31 @@
-//! The columns of a sheet: a material after three bakes, read from the baked files as an engine reads them.
+//! The materials of a bake, read from its files as an engine reads them.
 
-use std::collections::BTreeSet;
 use std::path::Path;
 
 use serde_json::Value;
 
-use super::RenderError;
-use crate::bake::{BakedAsset, Source, bake_asset, fit_name};
-use crate::codec::Target;
+use super::error::ReadBackError;
+use crate::bake::{BakedAsset, Source};
 use crate::decode::decode;
 use crate::gltf::document::Document;
 use crate::gltf::material::{BumpSource, Layer, LayerKind, materials};
 use crate::gltf::roughness_pyramid::{EXTENSION, RoughnessModel, RoughnessPyramid};
 use crate::gltf::texture::{ImageLocation, texture_source};
 use crate::image::{DecodeOptions, Image, Rgba};
-use crate::ktx2::Ktx2;
+use crate::ktx2::{Ktx2, ReadError};
 use crate::mip::{Level, TexelRows};
 use crate::render::{BaseAnisotropy, Bumps, LostBumps, Material, RangedTexture, Texture};
-use crate::settings::{Form, Model, Profile, Settings};
 
-/// A material in all its forms.
-pub struct Columns {
-    /// Its name, fit for a file name.
-    pub name: String,
-    /// Plain normal mips in half floats. Level 0 is the reference.
-    pub plain: Material,
-    /// The portable profile.
-    pub portable: Option<Material>,
-    /// The pyramid profile.
-    pub pyramid: Option<Material>,
-}
-
-/// A column that is drawn with filtered textures.
-pub struct Column<'a> {
-    /// Its heading.
-    pub name: &'static str,
-    /// What is drawn.
-    pub material: &'a Material,
-}
-
-impl Columns {
-    /// Returns the columns beside the supersampled column.
-    pub fn filtered(&self) -> impl Iterator<Item = Column<'_>> {
-        let baked = [("portable", &self.portable), ("pyramid", &self.pyramid)];
-        let baked = baked.into_iter().filter_map(|(name, material)| Some((name, material.as_ref()?)));
-        [("plain", &self.plain)].into_iter().chain(baked).map(|(name, material)| Column { name, material })
-    }
-}
-
-/// Bakes `source` with `settings` and reads back every material that has bumps on its base layer.
+/// Returns the names and materials of `baked`, the bake of `source`, in the order of the document. Materials without
+/// bumps on their base layer are left out.
 ///
 /// # Errors
-/// [`RenderError::NoBumps`] when no material has bumps, and the errors of the bake.
-pub fn columns(source: &Source<'_>, settings: &Settings) -> Result<Vec<Columns>, RenderError> {
-    let strict = settings.with_form(Form::Strict).with_glb(false).with_provenance(false);
-    let of_profile = |profile| strict.with_profile(profile);
-    let plain = of_profile(Profile::Portable).with_model(Model::None).with_target(Target::Float);
-    let plain = read(source, &plain)?;
-    let baked = |profile: Profile, wanted: bool| {
-        if wanted { read(source, &of_profile(profile)) } else { Ok(Vec::new()) }
-    };
-    let mut portable = baked(Profile::Portable, settings.profile.is_portable())?.into_iter();
-    let mut pyramid = baked(Profile::Pyramid, settings.profile.has_pyramid())?.into_iter();
-    let mut taken = BTreeSet::new();
-    // Every bake keeps the order of the materials.
-    let columns: Vec<Columns> = plain
-        .into_iter()
-        .map(|(name, plain)| Columns {
-            name: file_name(source.stem, &name, &mut taken),
-            plain,
-            portable: portable.next().map(|(_, material)| material),
-            pyramid: pyramid.next().map(|(_, material)| material),
-        })
-        .collect();
-    if columns.is_empty() { Err(RenderError::NoBumps) } else { Ok(columns) }
-}
-
-/// Most bytes of the names of an asset and of a material in the name of a picture or a chart.
-const MOST_NAME: usize = 80;
-
-/// Returns a file name: `helmet` and `Glass / Plastic` become `helmet.Glass___Plastic`. Adds a number to a name that is
-/// taken.
-pub fn file_name(stem: &str, material: &str, taken: &mut BTreeSet<String>) -> String {
-    let safe = |c: char| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' };
-    let name = fit_name(&material.chars().map(safe).collect::<String>(), MOST_NAME);
-    let name = if stem.is_empty() { name } else { format!("{}.{name}", fit_name(stem, MOST_NAME)) };
-    let numbered = |n: u32| if n == 1 { name.clone() } else { format!("{name}-{n}") };
-    // On case-insensitive file systems, names that differ in case only are one file.
-    (1..).map(numbered).find(|name| taken.insert(name.to_lowercase())).unwrap_or_default()
-}
-
-/// Bakes `source` and reads back names and materials, in the order of the document.
-fn read(source: &Source<'_>, settings: &Settings) -> Result<Vec<(String, Material)>, RenderError> {
-    read_back(source, &bake_asset(source, settings, &|_| {})?, settings.max_texels)
-}
-
-/// Reads back names and materials with bumps of `baked`, in the order of the document.
+/// [`ReadBackError`] for the first material or texture that cannot be read.
 pub fn read_back(
     source: &Source<'_>,
     baked: &BakedAsset,
     max_texels: u64,
-) -> Result<Vec<(String, Material)>, RenderError> {
+) -> Result<Vec<(String, Material)>, ReadBackError> {
     let BakedAsset { document, files, .. } = baked;
     let document = Document::parse(document)?;
     let read = |path: &Path| match files.iter().find(|file| file.path == path) {
@@ -130,7 +55,7 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    fn material(&self, layer: &Layer, pyramid: Option<&Value>) -> Result<Material, RenderError> {
+    fn material(&self, layer: &Layer, pyramid: Option<&Value>) -> Result<Material, ReadBackError> {
         let roughness = layer.roughness.as_ref().map(|t| self.texture(t.texture)).transpose()?;
         let anisotropy = match &layer.anisotropy {
             None => None,
@@ -165,10 +90,10 @@ impl Reader<'_> {
         })
     }
 
-    fn pyramid(&self, value: &Value) -> Result<(Bumps, LostBumps), RenderError> {
-        let json = |reason: String| RenderError::Extension { material: self.material.to_owned(), reason };
+    fn pyramid(&self, value: &Value) -> Result<(Bumps, LostBumps), ReadBackError> {
+        let json = |reason: String| ReadBackError::Extension { material: self.material.to_owned(), reason };
         let pyramid = RoughnessPyramid::read(value).map_err(json)?;
-        let ranged = |index: usize, min: &[f64], max: &[f64]| -> Result<RangedTexture, RenderError> {
+        let ranged = |index: usize, min: &[f64], max: &[f64]| -> Result<RangedTexture, ReadBackError> {
             let at = |bounds: &[f64]| [0, 1, 2].map(|c| bounds.get(c).copied().unwrap_or(0.0));
             Ok(RangedTexture { texture: self.texture(index)?.texture, min: at(min), max: at(max) })
         };
@@ -187,21 +112,21 @@ impl Reader<'_> {
         Ok((Bumps::Offsets(bumps), lost))
     }
 
-    fn texture(&self, index: usize) -> Result<Loaded, RenderError> {
+    fn texture(&self, index: usize) -> Result<Loaded, ReadBackError> {
         let material = self.material.to_owned();
         let source = texture_source(self.root, index)
-            .map_err(|error| RenderError::Reference { material: material.clone(), error })?;
+            .map_err(|error| ReadBackError::Reference { material: material.clone(), error })?;
         let texture = match &*source.location {
             ImageLocation::Uri(uri) => uri.chars().take(60).collect(),
             ImageLocation::BufferView(view) => format!("bufferViews[{view}]"),
         };
-        let bytes = self.source.image(&source.location).map_err(|error| RenderError::Source {
+        let bytes = self.source.image(&source.location).map_err(|error| ReadBackError::Source {
             material: material.clone(),
             texture: texture.clone(),
             error,
         })?;
         if bytes.starts_with(&ktx2::MAGIC) {
-            return self.ktx2(&bytes).map_err(|error| RenderError::Ktx2 { material, texture, error });
+            return self.ktx2(&bytes).map_err(|error| ReadBackError::Ktx2 { material, texture, error });
         }
         let options = DecodeOptions {
             max_pixels: self.max_texels,
@@ -210,12 +135,12 @@ impl Reader<'_> {
         };
         match decode(&bytes, &options) {
             Ok(image) => Ok(Loaded { channels: image.channels, texture: Texture::with_mips(level(&image)) }),
-            Err(error) => Err(RenderError::Decode { material, texture, error }),
+            Err(error) => Err(ReadBackError::Decode { material, texture, error }),
         }
     }
 
     /// Reads all levels of a KTX2 file. Makes the missing levels of a file that has one level only.
-    fn ktx2(&self, bytes: &[u8]) -> Result<Loaded, crate::ktx2::ReadError> {
+    fn ktx2(&self, bytes: &[u8]) -> Result<Loaded, ReadError> {
         let file = Ktx2::parse(bytes)?.with_max_texels(self.max_texels);
         let first = file.decode_level(0)?;
         let channels = first.channels;
@@ -224,7 +149,7 @@ impl Reader<'_> {
             return Ok(Loaded { channels, texture: Texture::with_mips(first) });
         }
         let rest = (1..file.level_count()).map(|l| Ok(level(&file.decode_level(l)?)));
-        let rest = rest.collect::<Result<Vec<_>, crate::ktx2::ReadError>>()?;
+        let rest = rest.collect::<Result<Vec<_>, ReadError>>()?;
         Ok(Loaded { channels, texture: Texture::new(first, rest) })
     }
 }

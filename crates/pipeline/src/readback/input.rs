@@ -1,12 +1,12 @@
-//! The input of a drawing: an asset, a standalone map as the material of a new asset, or waves as a height map.
+//! The input of pictures and charts: an asset, a standalone map as the material of a new asset, or waves as a height
+//! map.
 
 use std::io;
 use std::path::{Path, PathBuf};
 
 use serde_json::json;
 
-use super::RenderError;
-use super::columns::{Columns, columns};
+use super::error::ReadBackError;
 use crate::bake::{Source, output_stem_of};
 use crate::gltf::document::Document;
 use crate::gltf::uri::encode_path;
@@ -15,8 +15,7 @@ use crate::input_file::read_file;
 use crate::inspect::encode_exr;
 use crate::output::Guard;
 use crate::project::protect;
-use crate::render::{Subject, waves};
-use crate::settings::Settings;
+use crate::render::{SceneName, waves};
 
 /// Texels of the waves along each side.
 const WAVES: u32 = 512;
@@ -50,22 +49,28 @@ pub enum MapKind {
     Normals,
     /// Heights, and their scale in widths of the map.
     Heights(f32),
-    /// The waves, whose height depends on the subject.
+    /// The waves, whose height depends on the scene.
     Waves,
 }
 
 impl Input {
-    /// Reads the file at `path`, which holds heights if there is a `height_scale`. Makes the waves where there is no
-    /// path.
-    pub fn read(path: Option<&Path>, height_scale: Option<f32>) -> Result<Self, RenderError> {
-        let Some(path) = path else {
-            let samples = Samples::F32(waves(WAVES));
-            let image = Image { width: WAVES, height: WAVES, channels: 1, samples };
-            let failed = |reason| RenderError::Encode { path: "waves.exr".into(), reason };
-            let bytes = encode_exr(image).map_err(failed)?;
-            return Ok(Self::Map { bytes, name: "waves.exr".to_owned(), kind: MapKind::Waves });
-        };
-        let bytes = read_file(path).map_err(RenderError::Read)?;
+    /// Makes the waves.
+    ///
+    /// # Errors
+    /// [`ReadBackError::Waves`] if they cannot be encoded.
+    pub fn waves() -> Result<Self, ReadBackError> {
+        let samples = Samples::F32(waves(WAVES));
+        let image = Image { width: WAVES, height: WAVES, channels: 1, samples };
+        let bytes = encode_exr(image).map_err(ReadBackError::Waves)?;
+        Ok(Self::Map { bytes, name: "waves.exr".to_owned(), kind: MapKind::Waves })
+    }
+
+    /// Reads the file at `path`. An image holds heights if there is a `height_scale`.
+    ///
+    /// # Errors
+    /// [`ReadBackError::Read`] and [`ReadBackError::Document`].
+    pub fn read(path: &Path, height_scale: Option<f32>) -> Result<Self, ReadBackError> {
+        let bytes = read_file(path).map_err(ReadBackError::Read)?;
         let extension = path.extension().unwrap_or_default();
         if ["gltf", "glb"].iter().any(|e| extension.eq_ignore_ascii_case(e)) {
             let folder = path.parent().unwrap_or(Path::new("")).to_owned();
@@ -90,24 +95,17 @@ impl Input {
         guard
     }
 
-    /// Bakes every material with bumps. A standalone map gets `roughness`, else the roughness of `subject`.
-    pub fn columns(
-        &self,
-        settings: &Settings,
-        subject: Subject,
-        roughness: Option<f32>,
-    ) -> Result<Vec<Columns>, RenderError> {
-        self.with_source(subject, roughness, |source| columns(source, settings))
-    }
-
     /// Passes the document to `then`. A standalone map becomes the material of a new document, with `roughness`, else
-    /// the roughness of `subject`.
-    pub fn with_source<T>(
+    /// the roughness that suits `scene`.
+    ///
+    /// # Errors
+    /// The errors of `then`, and [`ReadBackError::Document`].
+    pub fn with_source<T, E: From<ReadBackError>>(
         &self,
-        subject: Subject,
+        scene: SceneName,
         roughness: Option<f32>,
-        then: impl FnOnce(&Source<'_>) -> Result<T, RenderError>,
-    ) -> Result<T, RenderError> {
+        then: impl FnOnce(&Source<'_>) -> Result<T, E>,
+    ) -> Result<T, E> {
         match self {
             Self::Asset { document, folder, stem } => {
                 let read = |path: &Path| read_file(&folder.join(path));
@@ -118,12 +116,12 @@ impl Input {
                 let texture = json!({ "index": 0 });
                 let mut material = json!({
                     "name": stem,
-                    "pbrMetallicRoughness": { "roughnessFactor": roughness.unwrap_or(subject.roughness()) },
+                    "pbrMetallicRoughness": { "roughnessFactor": roughness.unwrap_or(scene.roughness()) },
                 });
                 let height_scale = match kind {
                     MapKind::Normals => None,
                     MapKind::Heights(scale) => Some(*scale),
-                    MapKind::Waves => Some(subject.wave_height()),
+                    MapKind::Waves => Some(scene.wave_height()),
                 };
                 match height_scale {
                     None => material["normalTexture"] = texture,
@@ -138,7 +136,7 @@ impl Input {
                     "textures": [{ "source": 0 }],
                     "materials": [material],
                 });
-                let document = Document::parse(asset.to_string().as_bytes())?;
+                let document = Document::parse(asset.to_string().as_bytes()).map_err(ReadBackError::from)?;
                 let read = |path: &Path| {
                     if path == Path::new(name) { Ok(bytes.clone()) } else { Err(io::ErrorKind::NotFound.into()) }
                 };

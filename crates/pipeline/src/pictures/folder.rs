@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::error::RenderError;
+use super::error::PictureError;
 use crate::codec::encode_png;
 use crate::codec::uastc::Effort;
 use crate::image::{Image, Samples};
@@ -48,7 +48,7 @@ impl<'a> Folder<'a> {
 
     /// Writes a sheet of rows, each with its distance where there are several, and every picture. Returns the sheet's
     /// path.
-    pub fn write(&mut self, stem: &str, rows: &[(Option<f64>, Vec<Shown>)]) -> Result<String, RenderError> {
+    pub fn write(&mut self, stem: &str, rows: &[(Option<f64>, Vec<Shown>)]) -> Result<String, PictureError> {
         for (distance, row) in rows {
             let distance = distance.map_or(String::new(), |d| format!(".d{d}"));
             for Shown { name, picture, tone, .. } in row {
@@ -68,7 +68,7 @@ impl<'a> Folder<'a> {
         self.write_sheet(stem, Sheet::from_rows(&sheet))
     }
 
-    fn write_sheet(&mut self, stem: &str, sheet: Option<Sheet>) -> Result<String, RenderError> {
+    fn write_sheet(&mut self, stem: &str, sheet: Option<Sheet>) -> Result<String, PictureError> {
         let path = self.output.join(format!("{stem}.png"));
         let encoded = match sheet {
             Some(sheet) => encode_png(&sheet.rgba, sheet.width, sheet.height, Effort::Best),
@@ -77,9 +77,9 @@ impl<'a> Folder<'a> {
         self.write_file(&path, encoded)
     }
 
-    fn write_file(&mut self, path: &Path, encoded: Result<Vec<u8>, String>) -> Result<String, RenderError> {
+    fn write_file(&mut self, path: &Path, encoded: Result<Vec<u8>, String>) -> Result<String, PictureError> {
         let output = self.guard.reserve_file(path)?;
-        let bytes = encoded.map_err(|reason| RenderError::Encode { path: path.to_owned(), reason })?;
+        let bytes = encoded.map_err(|reason| PictureError::Encode { path: path.to_owned(), reason })?;
         output.write(&bytes)?;
         Ok(path.display().to_string())
     }

@@ -1,0 +1,174 @@
+//! Bakes the materials of a file with every model, compares them, and writes charts and tables.
+
+use std::collections::BTreeSet;
+use std::io;
+use std::path::PathBuf;
+use std::time::Instant;
+
+use serde_json::{Value, json};
+
+use super::report::ComparisonReport;
+use super::{Comparison, OURS, Ours, chart, compare, csv, page};
+use crate::bake::{BakeError, BakedAsset, Source, bake_asset};
+use crate::codec::Target;
+use crate::codec::uastc::Effort;
+use crate::gltf::document::{Document, DocumentError};
+use crate::gltf::json::JsonError;
+use crate::gltf::material::{Layer, LayerKind, MaterialError, materials};
+use crate::output::PublishError;
+use crate::readback::{Input, ReadBackError, file_name, read_back};
+use crate::render::{Material, SceneName};
+use crate::settings::{Form, Model, Settings};
+
+/// What is compared, and where the charts are written.
+#[derive(Clone, Debug)]
+pub struct CompareOptions {
+    /// A .gltf or .glb file, or an image.
+    pub input: PathBuf,
+    /// The folder of the charts.
+    pub output: PathBuf,
+    /// Texels of each level that are measured.
+    pub texels: usize,
+    /// Distance between heights 0 and 1, in widths of the map, if the input is an image of heights.
+    pub height_scale: Option<f32>,
+    /// Roughness of a standalone map, 0 to 1.
+    pub roughness: f32,
+    /// The error bound by which the marked model is chosen, 0 to 1.
+    pub max_error: f32,
+    /// The quality of the bake that is marked.
+    pub quality: Effort,
+    /// Largest number of texels of an input image.
+    pub max_texels: u64,
+}
+
+/// The charts that were written.
+#[derive(Clone, Debug)]
+pub struct Charts {
+    /// The files.
+    pub files: Vec<PathBuf>,
+    /// What the files show.
+    pub report: ComparisonReport,
+}
+
+/// Why nothing is charted.
+#[derive(Debug, thiserror::Error)]
+pub enum CompareError {
+    /// The input, or a material of its bake, cannot be read.
+    #[error(transparent)]
+    ReadBack(#[from] ReadBackError),
+    /// The document is damaged.
+    #[error(transparent)]
+    Document(#[from] DocumentError),
+    /// The JSON of the document is damaged.
+    #[error(transparent)]
+    Json(#[from] JsonError),
+    /// A material is damaged.
+    #[error(transparent)]
+    Material(#[from] MaterialError),
+    /// The input cannot be baked.
+    #[error(transparent)]
+    Bake(#[from] BakeError),
+    /// The table cannot be made.
+    #[error("expected to write compare.csv, found: {0}")]
+    Table(io::Error),
+    /// A file cannot be written.
+    #[error(transparent)]
+    Publish(#[from] PublishError),
+}
+
+/// Charts every material of the input, and writes the files. `progress` receives the finished share of the work and the
+/// name of the material.
+///
+/// # Errors
+/// [`CompareError`] for the first file that cannot be read, baked or written.
+pub fn compare_file(options: &CompareOptions, progress: &dyn Fn(f32, &str)) -> Result<Charts, CompareError> {
+    let input = Input::read(&options.input, options.height_scale)?;
+    let comparisons = input
+        .with_source(SceneName::Plane, Some(options.roughness), |source| compare_document(options, source, progress))?;
+    let report = ComparisonReport::new(comparisons);
+    let comparisons = &report.materials;
+    let mut files = vec![
+        ("compare.html".to_owned(), page(comparisons, report.version)),
+        ("compare.csv".to_owned(), csv(comparisons).map_err(CompareError::Table)?),
+        ("compare.json".to_owned(), report.to_json() + "\n"),
+    ];
+    let mut taken = BTreeSet::new();
+    for comparison in comparisons {
+        let name = file_name("", &comparison.material, &mut taken);
+        files.push((format!("compare-{name}.svg"), chart(comparison)));
+    }
+    let mut guard = input.guard(Some(&options.input));
+    let mut outputs = Vec::with_capacity(files.len());
+    for (name, text) in files {
+        outputs.push((guard.reserve_file(&options.output.join(name))?, text));
+    }
+    outputs.iter().try_for_each(|(output, text)| output.write(text.as_bytes()))?;
+    Ok(Charts { files: outputs.iter().map(|(output, _)| output.path().to_owned()).collect(), report })
+}
+
+fn compare_document(
+    options: &CompareOptions,
+    source: &Source<'_>,
+    progress: &dyn Fn(f32, &str),
+) -> Result<Vec<Comparison>, CompareError> {
+    let root: Value = source.document.json().value("")?.unwrap_or_default();
+    let materials = materials(&root).into_iter().collect::<Result<Vec<_>, _>>()?;
+    let has_base = |layers: &[Layer]| layers.iter().any(|layer| layer.kind == LayerKind::Base);
+    let bumpy: Vec<usize> =
+        materials.iter().filter(|material| has_base(&material.layers)).map(|material| material.index).collect();
+    if bumpy.is_empty() {
+        return Err(ReadBackError::NoBumps.into());
+    }
+    let mut comparisons = Vec::new();
+    for (done, &index) in bumpy.iter().enumerate() {
+        // Bytes and times are to be those of one material, so the other materials lose their bumps.
+        let mut document = Document::parse(&source.document.to_bytes().map_err(BakeError::from)?)?;
+        for other in materials.iter().map(|material| material.index).filter(|other| *other != index) {
+            document.json_mut().set(&format!("/materials/{other}"), &json!({}))?;
+        }
+        let advance = |share: f32, name: &str| progress((done as f32 + share) / bumpy.len() as f32, name);
+        comparisons.extend(compare_material(options, &Source { document: &document, ..*source }, &advance)?);
+    }
+    Ok(comparisons)
+}
+
+/// Bakes and scores the one material of `source` that has bumps.
+fn compare_material(
+    options: &CompareOptions,
+    source: &Source<'_>,
+    advance: &dyn Fn(f32, &str),
+) -> Result<Option<Comparison>, CompareError> {
+    let settings = Settings::default()
+        .with_form(Form::Strict)
+        .with_target(Target::Basis)
+        .with_max_error(options.max_error)
+        .with_max_texels(options.max_texels)
+        .with_provenance(false);
+    let material = |baked: &BakedAsset| -> Result<(String, Material), ReadBackError> {
+        read_back(source, baked, options.max_texels)?.into_iter().next().ok_or(ReadBackError::NoBumps)
+    };
+    let plain = bake_asset(source, &settings.with_model(Model::None).with_target(Target::Float), &|_| {})?;
+    let (name, truth) = material(&plain)?;
+    let models = [(Model::None, "none"), (Model::Isotropic, "isotropic"), (Model::Anisotropic, "anisotropic")];
+    let named = |(model, name): (Model, &str)| {
+        [(Effort::Fast, "fast"), (Effort::Best, "best")]
+            .map(|(effort, quality)| (model, effort, format!("ours, {name}, {quality}")))
+    };
+    let auto = (Model::Auto, options.quality, "ours, auto".to_owned());
+    let mut ours = Vec::with_capacity(OURS);
+    for (model, effort, label) in models.into_iter().flat_map(named).chain([auto]) {
+        let start = Instant::now();
+        let baked = bake_asset(source, &settings.with_model(model).with_effort(effort), &|_| {})?;
+        let seconds = start.elapsed().as_secs_f64();
+        ours.push(Ours {
+            name: label,
+            material: material(&baked)?.1,
+            file_bytes: baked.report.textures.iter().map(|texture| texture.bytes as u64).sum(),
+            seconds,
+            chosen: model == Model::Auto,
+        });
+        advance(ours.len() as f32 / (2 * OURS) as f32, &name);
+    }
+    let scored = |share: f32| advance(0.5 + 0.5 * share, &name);
+    Ok(ours.try_into().ok().and_then(|ours| compare(&name, &truth, ours, options.texels, &scored)))
+}
