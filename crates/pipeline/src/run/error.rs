@@ -35,9 +35,6 @@ pub enum RunError {
     /// Settings of a plan with values out of range, or that contradict each other.
     #[error(transparent)]
     Value(#[from] SettingsError),
-    /// Settings of a plan that cannot be read.
-    #[error("expected the settings of a plan, found: {0}; plan again")]
-    Settings(String),
     /// The files make another job than the planned one.
     #[error("expected the job {planned}, found {found} from the same source: {reason}; plan again")]
     NotAsPlanned {

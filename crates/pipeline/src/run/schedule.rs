@@ -127,7 +127,7 @@ impl Scheduler<'_> {
         };
         let result = prepared.and_then(|PreparedJob { job, origin, prepared }| {
             let done = finish(job, prepared, guard, &mut warn);
-            let done = done.and_then(|done| Ok((job.typed_settings()?, done)));
+            let done = done.and_then(|done| Ok((job.settings.settings()?, done)));
             let (settings, done) = done.map_err(|error| JobFailure::from(&error))?;
             Ok((job, origin, settings, done))
         });
