@@ -62,7 +62,7 @@ fn a_file_that_changes_before_it_is_copied_is_not_published() {
                 }
                 let found = finish(prepared).err();
                 let is_recorded = matches!(&found, Some(error @ RunError::Changed { path: changed })
-                    if *changed == path && error.is_passing());
+                    if *changed == path && error.is_transient());
                 assert!(is_recorded, "{name}, cached: {is_cached}: {found:?}");
                 let document = out.join("brushed.gltf");
                 assert!(!out.join(name).exists() && !document.exists(), "{name} was published");

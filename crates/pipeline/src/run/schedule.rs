@@ -138,9 +138,9 @@ impl Scheduler<'_> {
                 settings: (settings != *self.settings).then(|| settings.to_json(settings.model)),
                 ..done.outcome(name.clone(), origin, seconds)
             },
-            Err(JobFailure { message, is_passing }) => {
+            Err(JobFailure { message, is_transient }) => {
                 let job = asset.job.as_ref().ok().map(|job| job.id);
-                AssetOutcome::failed(name.clone(), job, seconds, message, is_passing)
+                AssetOutcome::failed(name.clone(), job, seconds, message, is_transient)
             }
         }
     }
