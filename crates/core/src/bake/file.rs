@@ -10,3 +10,10 @@ pub struct NewFile {
     /// Its content.
     pub bytes: Vec<u8>,
 }
+
+impl NewFile {
+    /// Returns a file at `path`, which is relative to the document.
+    pub fn new(path: impl Into<PathBuf>, bytes: Vec<u8>) -> Self {
+        Self { path: path.into(), bytes }
+    }
+}
