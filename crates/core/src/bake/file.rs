@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 /// A file to be written beside the document.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct NewFile {
     /// Relative to the document.
     pub path: PathBuf,
