@@ -64,7 +64,7 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
     let mut jobs = Vec::new();
     for PlannedAsset { name, job } in plan_assets(&selected.assets) {
         let job = job.map_err(|error| {
-            let outcome = if error.is_passing() { Outcome::Retry } else { Outcome::Failed };
+            let outcome = if error.is_transient() { Outcome::Retry } else { Outcome::Failed };
             Unplanned { reason: error.to_string(), outcome }
         });
         match job.and_then(checked) {

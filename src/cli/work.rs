@@ -90,7 +90,7 @@ impl Work<'_> {
             Err(ScheduleError::Io(error)) => Err(error),
             Err(ScheduleError::Remote(error)) => {
                 writeln!(err, "error: {error}")?;
-                let ended = if error.is_passing() { Outcome::Retry } else { Outcome::Usage };
+                let ended = if error.is_transient() { Outcome::Retry } else { Outcome::Usage };
                 Ok(Worked { assets, outcome: outcome.and(ended), remote: None })
             }
         }

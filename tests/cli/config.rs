@@ -122,7 +122,7 @@ fn the_schema_has_every_setting_and_its_default() {
     let schema: Value = serde_json::from_str(include_str!("../../schemas/roughcast.schema.json")).expect("JSON");
     let validator = jsonschema::validator_for(&schema).expect("a schema");
     let settings = schema["$defs"]["settings"]["properties"].as_object().expect("properties");
-    let defaults = roughcast::project::Values::defaults().to_members();
+    let defaults = serde_json::to_value(roughcast::project::Values::defaults()).expect("JSON");
     let names = roughcast::project::Values::names();
     assert!(settings.keys().eq(names.iter()), "{:?}", settings.keys());
     for (name, property) in settings {

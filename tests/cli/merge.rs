@@ -91,7 +91,7 @@ fn jobs_that_no_part_ran_are_missing() {
 }
 
 #[test]
-fn permanent_failures_differ_from_those_worth_a_retry() {
+fn separates_permanent_from_transient_failures() {
     let folder = planned();
     let folder = folder.path();
     fs::write(folder.join("assets/heights/heights.png"), "changed").expect("a file");
@@ -112,10 +112,14 @@ fn permanent_failures_differ_from_those_worth_a_retry() {
     assert!(jsonschema::is_valid(&schema, &report));
     report["assets"][1]["retry"] = json!(true);
     assert!(jsonschema::is_valid(&schema, &report));
-    fs::write(folder.join("passing.json"), report.to_string()).expect("a file");
-    let passing = run(folder, "plan merge plan.json passing.json");
-    assert!(passing.code == 4 && passing.out.contains("\nmissing assets/heights/heights.gltf: "), "{}", passing.out);
-    let both = run(folder, "plan merge plan.json all.json passing.json");
+    fs::write(folder.join("transient.json"), report.to_string()).expect("a file");
+    let transient = run(folder, "plan merge plan.json transient.json");
+    assert!(
+        transient.code == 4 && transient.out.contains("\nmissing assets/heights/heights.gltf: "),
+        "{}",
+        transient.out
+    );
+    let both = run(folder, "plan merge plan.json all.json transient.json");
     assert_eq!(both.code, 1, "{}", both.out);
 }
 

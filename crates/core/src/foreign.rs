@@ -2,6 +2,7 @@
 
 /// What a file is instead of the expected content, and what to do about it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum Foreign {
     /// A file without bytes.
     #[error("an empty file; copy or export it again")]

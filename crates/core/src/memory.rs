@@ -11,6 +11,7 @@ use std::io;
      raise the limit on memory",
     bytes.div_ceil(1 << 20)
 )]
+#[non_exhaustive]
 pub struct OutOfMemory {
     /// Bytes that were asked for.
     pub bytes: u64,

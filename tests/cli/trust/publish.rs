@@ -40,7 +40,7 @@ fn a_file_that_changes_before_it_is_copied_is_not_published() {
     let folder = scene.path();
     fixture(folder, "brushed", "in");
     let (source, out) = (folder.join("in/brushed.gltf"), folder.join("out"));
-    let settings = resolve(&[]).expect("defaults").values.to_members();
+    let settings = resolve(&[]).expect("defaults").values;
     let cache = Cache::new(Some(&folder.join("cache")), None, 1 << 30).expect("a cache");
     let job = Job::new(&source, &out, &settings).expect("a job");
     // Fills the cache.
@@ -62,7 +62,7 @@ fn a_file_that_changes_before_it_is_copied_is_not_published() {
                 }
                 let found = finish(prepared).err();
                 let is_recorded = matches!(&found, Some(error @ RunError::Changed { path: changed })
-                    if *changed == path && error.is_passing());
+                    if *changed == path && error.is_transient());
                 assert!(is_recorded, "{name}, cached: {is_cached}: {found:?}");
                 let document = out.join("brushed.gltf");
                 assert!(!out.join(name).exists() && !document.exists(), "{name} was published");

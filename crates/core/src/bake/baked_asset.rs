@@ -7,6 +7,7 @@ use crate::gltf::document::Container;
 use crate::report::AssetReport;
 
 /// A baked asset, ready to be written.
+#[non_exhaustive]
 pub struct BakedAsset {
     /// The document.
     pub document: Vec<u8>,

@@ -1,6 +1,7 @@
 //! The output document: a copy of the source in the requested container.
 
 use std::collections::HashSet;
+use std::ffi::OsStr;
 use std::path::PathBuf;
 
 use serde::Deserialize;
@@ -15,6 +16,7 @@ use super::source::Source;
 use crate::gltf::document::{Container, Document, DocumentError};
 use crate::gltf::json::{Json, JsonError};
 use crate::gltf::uri::{Uri, encode_path};
+use crate::image::Format;
 
 /// Returns the document as a .gltf. If buffer 0 is the BIN chunk of a .glb, it becomes a file, which is returned with
 /// its path.
@@ -107,19 +109,30 @@ pub fn embed_images(document: &mut Document, source: &Source<'_>) -> Result<(), 
     for (index, uri) in image_uris(document.json())?.into_iter().enumerate() {
         let Some(uri) = uri else { continue };
         let bytes = source.uri(&uri)?;
-        let mime = match bytes.as_slice() {
-            [0x89, b'P', b'N', b'G', ..] => "image/png",
-            [0xAB, b'K', b'T', b'X', ..] => "image/ktx2",
-            [b'R', b'I', b'F', b'F', ..] => "image/webp",
-            _ => "image/jpeg",
-        };
         let view = embed(document, &bytes)?;
         let json = document.json_mut();
+        let declared = json.value(&format!("/images/{index}/mimeType"))?;
+        let mime = mime_type(&bytes, &uri, declared.as_ref().and_then(Value::as_str));
         json.remove(&format!("/images/{index}/uri"))?;
         json.set(&format!("/images/{index}/bufferView"), &view)?;
         json.set(&format!("/images/{index}/mimeType"), mime)?;
     }
     Ok(())
+}
+
+/// Returns the MIME type of an image that was at `uri`. The signature decides on formats that glTF and its extensions
+/// name. Any other image keeps the type that the document or the data URI declares, if there is one.
+fn mime_type<'a>(bytes: &[u8], uri: &'a str, declared: Option<&'a str>) -> &'a str {
+    let parsed = Uri::parse(uri).ok();
+    let (extension, in_uri) = match &parsed {
+        Some(Uri::Path(path)) => (path.extension().and_then(OsStr::to_str), None),
+        Some(Uri::Data(data)) => (None, Some(data.mime())),
+        None => (None, None),
+    };
+    let detected = Format::detect(bytes, extension);
+    let is_known = matches!(detected, Some(Format::Png | Format::Jpeg | Format::WebP | Format::Ktx2));
+    let declared = declared.or(in_uri).filter(|declared| !is_known && !declared.is_empty());
+    declared.or(detected.map(Format::mime_type)).unwrap_or("application/octet-stream")
 }
 
 /// Returns the files that images and buffers of `json` name, without repetition, relative to the document.
@@ -162,4 +175,30 @@ fn image_uris(json: &Json) -> Result<Vec<Option<String>>, JsonError> {
 fn buffer_uris(json: &Json) -> Result<Vec<Option<String>>, JsonError> {
     let buffers: Vec<Named> = json.read("/buffers")?.unwrap_or_default();
     Ok(buffers.into_iter().map(|b| b.uri).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn mime_types_follow_the_signature_then_the_document_then_the_extension() {
+        let (exr, tga): (&[u8], &[u8]) = (b"\x76\x2f\x31\x01\x02", b"\0\0\x02\0");
+        for (bytes, uri, declared, expected) in [
+            (&b"\x89PNG\r\n\x1a\n"[..], "a.jpg", Some("image/jpeg"), "image/png"),
+            (b"\xff\xd8\xff\xe0", "a", None, "image/jpeg"),
+            (b"RIFF\x10\0\0\0WEBPVP8 ", "a.webp", None, "image/webp"),
+            (b"\xabKTX 20\xbb\r\n\x1a\n", "a.ktx2", None, "image/ktx2"),
+            (exr, "a.exr", None, "image/x-exr"),
+            (exr, "a.exr", Some("image/aces"), "image/aces"),
+            (tga, "a.TGA", None, "image/x-tga"),
+            (b"II*\0", "a.tif", None, "image/tiff"),
+            (b"#?RADIANCE\n", "a.hdr", None, "image/vnd.radiance"),
+            (b"DDS ", "a.dds", Some("image/vnd-ms.dds"), "image/vnd-ms.dds"),
+            (b"\0\0\0\x20ftypavif", "data:image/avif;base64,AAAAIGZ0eXBhdmlm", None, "image/avif"),
+            (b"DDS ", "data:,DDS ", Some(""), "application/octet-stream"),
+        ] {
+            assert_eq!(mime_type(bytes, uri, declared), expected, "{uri}");
+        }
+    }
 }

@@ -13,6 +13,7 @@ use crate::material::GridError;
 /// Why an asset or a standalone map cannot be baked. Messages name the material and the texture; the caller adds the
 /// file.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum BakeError {
     /// The document, or its GLB container.
     #[error(transparent)]
@@ -55,6 +56,7 @@ pub enum BakeError {
 /// Why the document cannot be put into its container.
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs)]
+#[non_exhaustive]
 pub enum ContainerError {
     #[error(transparent)]
     Document(#[from] DocumentError),

@@ -83,6 +83,7 @@ struct LobeKey {
 /// A material whose layers cannot be grouped.
 #[derive(Debug, thiserror::Error)]
 #[error("material {material}, {part}: {error}")]
+#[non_exhaustive]
 pub struct GroupError {
     /// The material's name.
     pub material: String,

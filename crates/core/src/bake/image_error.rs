@@ -6,6 +6,7 @@ use crate::image::MapError;
 
 /// Why an image of a material cannot be baked.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ImageError {
     /// The bytes of the image cannot be read.
     #[error("material {material}, texture {texture}: {error}")]

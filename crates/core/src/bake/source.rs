@@ -68,6 +68,7 @@ pub struct Source<'a> {
 
 /// Why the bytes of a file, an image or a buffer cannot be read.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum SourceError {
     /// The URI has a form that is not read.
     #[error(transparent)]

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 /// A lobe of a material that has bumps of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum LayerKind {
     /// The metallic-roughness lobe.
     Base,
@@ -94,6 +95,14 @@ const CLEARCOAT: LayerRow = LayerRow {
 };
 
 impl LayerKind {
+    /// Returns the name, as reports have it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Base => "base",
+            Self::Clearcoat => "clearcoat",
+        }
+    }
+
     /// Returns the row of the layer.
     pub fn row(self) -> &'static LayerRow {
         match self {

@@ -160,6 +160,7 @@ pub fn materials(root: &Value) -> Vec<Result<Material, MaterialError>> {
     "material {index} ({name}): expected a glTF 2.0 material, found one whose {part} cannot be read: {reason}; \
      fix it in the file"
 )]
+#[non_exhaustive]
 pub struct MaterialError {
     /// Index into `materials`.
     pub index: usize,

@@ -15,6 +15,7 @@ const SOURCE_EXTENSIONS: [&str; 2] = ["EXT_texture_webp", "KHR_texture_basisu"];
 
 /// A reference between objects of a document that cannot be followed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum TextureError {
     /// An index beyond the end of its array.
     #[error("expected an index below {count}, found {array}[{index}]; fix the reference or add the object")]

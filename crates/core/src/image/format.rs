@@ -44,6 +44,21 @@ impl Format {
         let is_tga = || extension.is_some_and(|e| e.eq_ignore_ascii_case("tga"));
         signed.or(is_webp.then_some(Format::WebP)).or_else(|| is_tga().then_some(Format::Tga))
     }
+
+    /// Returns the MIME type. IANA has not registered types of TGA and OpenEXR; theirs are those of the freedesktop.org
+    /// database.
+    pub fn mime_type(self) -> &'static str {
+        match self {
+            Format::Png => "image/png",
+            Format::Jpeg => "image/jpeg",
+            Format::Tiff => "image/tiff",
+            Format::Tga => "image/x-tga",
+            Format::WebP => "image/webp",
+            Format::Hdr => "image/vnd.radiance",
+            Format::Exr => "image/x-exr",
+            Format::Ktx2 => "image/ktx2",
+        }
+    }
 }
 
 impl fmt::Display for Format {

@@ -39,7 +39,8 @@ pub struct SourceDigest {
 impl Provenance {
     /// Returns the keys to write: the writer's name, which KTX asks for, and the provenance.
     pub fn keys(&self) -> Vec<Key> {
-        let value = serde_json::to_string(self).expect("strings and JSON values serialise");
+        // JSON refuses maps whose keys are no strings, and values that refuse to be serialised; there are neither here.
+        let value = serde_json::to_string(self).expect("strings, numbers and JSON values");
         vec![
             Key { key: "KTXwriter".to_owned(), value: format!("roughcast {}", self.version) },
             Key { key: PROVENANCE_KEY.to_owned(), value },

@@ -82,6 +82,7 @@ impl Encoding {
 
 /// Why maps have no common grid.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum GridError {
     /// The grid would be larger than an image may be.
     #[error(

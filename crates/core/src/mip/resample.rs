@@ -3,21 +3,36 @@
 use crate::mip::merge::Merge;
 use crate::mip::{TexelRows, Wrap};
 
+/// Texels of `source`, resampled to another size.
+#[derive(Clone, Copy)]
+pub struct Resampled<R, F> {
+    source: R,
+    width: u32,
+    height: u32,
+    filter: F,
+}
+
 /// Texels resampled by area: each new texel merges the old texels under it, weighted by overlap.
 ///
 /// Resampling by area conserves the moments of the whole map exactly. Where a new texel straddles old texels, the
 /// variation that its mean loses is added to its covariance.
-#[derive(Clone, Copy)]
-pub struct AreaResampled<R> {
-    source: R,
-    width: u32,
-    height: u32,
+pub type AreaResampled<R> = Resampled<R, Area>;
+
+/// Texels magnified to a finer grid as samplers do: linear between texel centres, and wrapped at the border.
+///
+/// Used for maps whose variance is not needed (roughness, metallic, occlusion).
+pub type LinearResampled<R> = Resampled<R, Linear>;
+
+/// How new texels are made of old ones.
+pub trait Filter: Sync {
+    /// Writes row `y` of `source`, resampled to `size` (columns, rows), to `out`.
+    fn row<R: TexelRows>(&self, source: &R, size: [u32; 2], y: u32, out: &mut [R::Texel]);
 }
 
-impl<R: TexelRows> AreaResampled<R> {
-    /// Resamples `source` to `width` x `height` texels. If the size is that of `source`, the texels do not change.
-    pub fn new(source: R, width: u32, height: u32) -> Self {
-        Self { source, width, height }
+impl<R: TexelRows, F> Resampled<R, F> {
+    /// Returns the source.
+    pub fn source(&self) -> &R {
+        &self.source
     }
 
     /// Returns the source if its size does not change.
@@ -26,7 +41,7 @@ impl<R: TexelRows> AreaResampled<R> {
     }
 }
 
-impl<R: TexelRows> TexelRows for AreaResampled<R> {
+impl<R: TexelRows, F: Filter> TexelRows for Resampled<R, F> {
     type Texel = R::Texel;
 
     fn width(&self) -> u32 {
@@ -38,20 +53,37 @@ impl<R: TexelRows> TexelRows for AreaResampled<R> {
     }
 
     fn row(&self, y: u32, out: &mut [R::Texel]) {
-        if let Some(source) = self.unchanged() {
-            return source.row(y, out);
+        match self.unchanged() {
+            Some(source) => source.row(y, out),
+            None => self.filter.row(&self.source, [self.width, self.height], y, out),
         }
-        let fine_width = self.source.width() as usize;
-        let down = overlaps(self.source.height(), self.height, y);
+    }
+}
+
+/// The filter of [`AreaResampled`].
+#[derive(Clone, Copy)]
+pub struct Area;
+
+impl<R: TexelRows> AreaResampled<R> {
+    /// Resamples `source` to `width` x `height` texels. If the size is that of `source`, the texels do not change.
+    pub fn new(source: R, width: u32, height: u32) -> Self {
+        Self { source, width, height, filter: Area }
+    }
+}
+
+impl Filter for Area {
+    fn row<R: TexelRows>(&self, source: &R, [width, height]: [u32; 2], y: u32, out: &mut [R::Texel]) {
+        let fine_width = source.width() as usize;
+        let down = overlaps(source.height(), height, y);
         let mut rows = vec![R::Texel::default(); fine_width * down.len()];
         for (&(source_y, _), row) in down.iter().zip(rows.chunks_exact_mut(fine_width)) {
-            self.source.row(source_y, row);
+            source.row(source_y, row);
         }
         let (mut weights, mut parts) = (Vec::new(), Vec::new());
         for (x, texel) in out.iter_mut().enumerate() {
             weights.clear();
             parts.clear();
-            let across = overlaps(self.source.width(), self.width, x as u32);
+            let across = overlaps(source.width(), width, x as u32);
             for (&(_, weight_y), row) in down.iter().zip(rows.chunks_exact(fine_width)) {
                 for &(source_x, weight_x) in &across {
                     weights.push(weight_x * weight_y);
@@ -76,57 +108,29 @@ fn overlaps(old: u32, new: u32, i: u32) -> Vec<(u32, f32)> {
         .collect()
 }
 
-/// Texels magnified to a finer grid as samplers do: linear between texel centres, and wrapped at the border.
-///
-/// Used for maps whose variance is not needed (roughness, metallic, occlusion).
+/// The filter of [`LinearResampled`].
 #[derive(Clone, Copy)]
-pub struct LinearResampled<R> {
-    source: R,
-    width: u32,
-    height: u32,
+pub struct Linear {
     wrap: [Wrap; 2],
 }
 
 impl<R: TexelRows> LinearResampled<R> {
     /// Magnifies `source` to `width` x `height` texels. `wrap` is the sampler's mode across and down.
     pub fn new(source: R, width: u32, height: u32, wrap: [Wrap; 2]) -> Self {
-        Self { source, width, height, wrap }
-    }
-
-    /// Returns the source.
-    pub fn source(&self) -> &R {
-        &self.source
-    }
-
-    /// Returns the source if its size does not change.
-    pub fn unchanged(&self) -> Option<&R> {
-        ((self.width, self.height) == (self.source.width(), self.source.height())).then_some(&self.source)
+        Self { source, width, height, filter: Linear { wrap } }
     }
 }
 
-impl<R: TexelRows> TexelRows for LinearResampled<R> {
-    type Texel = R::Texel;
-
-    fn width(&self) -> u32 {
-        self.width
-    }
-
-    fn height(&self) -> u32 {
-        self.height
-    }
-
-    fn row(&self, y: u32, out: &mut [R::Texel]) {
-        if let Some(source) = self.unchanged() {
-            return source.row(y, out);
-        }
-        let fine_width = self.source.width() as usize;
-        let down = neighbours(self.source.height(), self.height, y, self.wrap[1]);
+impl Filter for Linear {
+    fn row<R: TexelRows>(&self, source: &R, [width, height]: [u32; 2], y: u32, out: &mut [R::Texel]) {
+        let fine_width = source.width() as usize;
+        let down = neighbours(source.height(), height, y, self.wrap[1]);
         let mut rows = vec![R::Texel::default(); fine_width * 2];
         let (upper, lower) = rows.split_at_mut(fine_width);
-        self.source.row(down[0].0, upper);
-        self.source.row(down[1].0, lower);
+        source.row(down[0].0, upper);
+        source.row(down[1].0, lower);
         for (x, texel) in out.iter_mut().enumerate() {
-            let [left, right] = neighbours(self.source.width(), self.width, x as u32, self.wrap[0]);
+            let [left, right] = neighbours(source.width(), width, x as u32, self.wrap[0]);
             let weights = [down[0].1 * left.1, down[0].1 * right.1, down[1].1 * left.1, down[1].1 * right.1];
             let (l, r) = (left.0 as usize, right.0 as usize);
             *texel = R::Texel::merge(&weights, &[upper[l], upper[r], lower[l], lower[r]]);

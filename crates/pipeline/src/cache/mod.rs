@@ -19,6 +19,8 @@ mod object_store;
 mod object_store;
 mod relative;
 mod store;
+#[cfg(test)]
+mod test_assets;
 
 pub use disk::DiskCache;
 pub use entry::{ENTRY_FORMAT, Entry, Fits, Stored, Unusable};

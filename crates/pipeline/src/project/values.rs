@@ -1,7 +1,7 @@
 //! What a layer of settings may set: every setting, by the name that its flag has too.
 
-use serde::{Deserialize, Serialize};
-use serde_json::{Map, Value};
+use serde::ser::SerializeMap;
+use serde::{Deserialize, Serialize, Serializer};
 
 use crate::bump::Frame;
 use crate::codec::Target;
@@ -14,14 +14,11 @@ use crate::settings::{Form, Model, Profile, Settings, SettingsError, View, limit
 macro_rules! values {
     ($($field:ident: $type:ty,)*) => {
         /// Settings, as far as a layer sets them. Names are those of the flags of `bake`; see `roughcast bake --help`.
-        #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+        #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
         #[serde(rename_all = "kebab-case", deny_unknown_fields)]
         #[allow(missing_docs)]
         pub struct Values {
-            $(
-                #[serde(skip_serializing_if = "Option::is_none")]
-                pub $field: Option<$type>,
-            )*
+            $(pub $field: Option<$type>,)*
         }
 
         /// Where each value came from, for a person; `None` for defaults.
@@ -30,10 +27,38 @@ macro_rules! values {
             $($field: Option<String>,)*
         }
 
+        /// Serialises the values that are set, in the order of plans: first those that have a default, then the others.
+        /// The ids of jobs depend on this order.
+        impl Serialize for Values {
+            fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                let defaults = Self::defaults();
+                let mut members = serializer.serialize_map(None)?;
+                for has_default in [true, false] {
+                    $(
+                        if let Some(value) = self.$field && defaults.$field.is_some() == has_default {
+                            members.serialize_entry(&name(stringify!($field)), &value)?;
+                        }
+                    )*
+                }
+                members.end()
+            }
+        }
+
         impl Values {
             /// Returns every name, in the order of the help.
             pub fn names() -> Vec<String> {
-                vec![$(stringify!($field).replace('_', "-")),*]
+                vec![$(name(stringify!($field))),*]
+            }
+
+            /// Returns the name of each value that is set and its text as JSON, in the order of plans.
+            pub fn texts(&self) -> Vec<(String, String)> {
+                let defaults = Self::defaults();
+                let texts = [$(
+                    self.$field.map(|value| (defaults.$field.is_none(), (name(stringify!($field)), text(&value)))),
+                )*];
+                let mut texts: Vec<_> = texts.into_iter().flatten().collect();
+                texts.sort_by_key(|(is_last, _)| *is_last);
+                texts.into_iter().map(|(_, text)| text).collect()
             }
 
             /// Returns whether no value is set.
@@ -50,11 +75,7 @@ macro_rules! values {
             /// Returns the name of each value that is set, its text as JSON, which is TOML too, and its origin.
             pub(super) fn lines<'o>(&self, origins: &'o Origins) -> Vec<(String, String, Option<&'o str>)> {
                 let lines = [$(
-                    self.$field.map(|value| {
-                        let name = stringify!($field).replace('_', "-");
-                        let text = serde_json::to_string(&value).unwrap_or_default();
-                        (name, text, origins.$field.as_deref())
-                    }),
+                    self.$field.map(|value| (name(stringify!($field)), text(&value), origins.$field.as_deref())),
                 )*];
                 lines.into_iter().flatten().collect()
             }
@@ -97,6 +118,16 @@ values! {
     trim: bool,
 }
 
+/// Returns the name of the setting that `field` holds.
+fn name(field: &str) -> String {
+    field.replace('_', "-")
+}
+
+/// Returns a value as JSON.
+fn text(value: &impl Serialize) -> String {
+    serde_json::to_string(value).unwrap_or_default()
+}
+
 /// A frame by its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "kebab-case")]
@@ -133,21 +164,6 @@ impl Values {
             trim: Some(false),
             ..Self::default()
         }
-    }
-
-    /// Returns the values that are set as the members of a JSON object, for plans and for the identity of jobs: first
-    /// those that have a default, then the others.
-    pub fn to_members(&self) -> Map<String, Value> {
-        let members = |values: &Self| match serde_json::to_value(values) {
-            Ok(Value::Object(members)) => members,
-            // A struct of plain values is an object.
-            _ => Map::new(),
-        };
-        let mut own = members(self);
-        let order = members(&Self::defaults()).into_iter().map(|(name, _)| name);
-        let mut ordered: Map<String, Value> = order.filter_map(|name| own.shift_remove_entry(&name)).collect();
-        ordered.extend(own);
-        ordered
     }
 
     /// Returns the settings, with defaults for values that are not set.

@@ -14,8 +14,8 @@ pub enum Remote {}
 pub struct RemoteError;
 
 impl RemoteError {
-    /// Tells whether another attempt may succeed.
-    pub fn is_passing(&self) -> bool {
+    /// Returns whether the error is transient, so that another attempt may succeed.
+    pub fn is_transient(&self) -> bool {
         false
     }
 }

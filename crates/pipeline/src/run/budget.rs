@@ -85,7 +85,7 @@ fn memory(job: &Job) -> u64 {
     };
     // A wrong header may claim any number.
     let largest = job.inputs.iter().map(texels).max().unwrap_or(0).min(1 << 40);
-    kept_bytes(largest, job.settings.contains_key("rdo")) + 5 * largest
+    kept_bytes(largest, job.settings.rdo.is_some()) + 5 * largest
 }
 
 /// Returns the size of an image from its header; `None` for every other file.

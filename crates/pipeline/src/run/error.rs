@@ -11,7 +11,7 @@ use crate::gltf::document::DocumentError;
 use crate::material::GridError;
 use crate::memory::OutOfMemory;
 use crate::output::PublishError;
-use crate::run::passing::{is_passing, is_passing_write};
+use crate::run::transient::{is_transient, is_transient_write};
 use crate::settings::SettingsError;
 
 /// Why a job fails. The caller adds the asset's name.
@@ -35,9 +35,6 @@ pub enum RunError {
     /// Settings of a plan with values out of range, or that contradict each other.
     #[error(transparent)]
     Value(#[from] SettingsError),
-    /// Settings of a plan that cannot be read.
-    #[error("expected the settings of a plan, found: {0}; plan again")]
-    Settings(String),
     /// The files make another job than the planned one.
     #[error("expected the job {planned}, found {found} from the same source: {reason}; plan again")]
     NotAsPlanned {
@@ -102,12 +99,13 @@ pub enum RunError {
 }
 
 impl RunError {
-    /// Returns whether another try may succeed: something was busy, full or away, not missing or wrong.
-    pub fn is_passing(&self) -> bool {
+    /// Returns whether the error is transient, so that another try may succeed: something was busy, full or away, not
+    /// missing or wrong.
+    pub fn is_transient(&self) -> bool {
         match self {
             Self::Changed { .. } | Self::NoOutput { was_written: true, .. } => true,
-            Self::Publish(PublishError::Write { error, .. }) => is_passing_write(error),
-            other => other.is_out_of_memory() || other.io().is_some_and(is_passing),
+            Self::Publish(PublishError::Write { error, .. }) => is_transient_write(error),
+            other => other.is_out_of_memory() || other.io().is_some_and(is_transient),
         }
     }
 

@@ -8,13 +8,13 @@ use crate::run::error::RunError;
 pub struct JobFailure {
     /// The message for the user.
     pub message: String,
-    /// Whether another try may succeed.
-    pub is_passing: bool,
+    /// Whether the error is transient, so that another try may succeed.
+    pub is_transient: bool,
 }
 
 impl From<&RunError> for JobFailure {
     fn from(error: &RunError) -> Self {
-        Self { message: error.to_string(), is_passing: error.is_passing() }
+        Self { message: error.to_string(), is_transient: error.is_transient() }
     }
 }
 

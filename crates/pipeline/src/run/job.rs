@@ -6,7 +6,7 @@ use std::path::{Component, Path, PathBuf};
 use rayon::prelude::*;
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize};
-use serde_json::{Map, Value, json};
+use serde_json::json;
 
 use crate::bake::{Survey, output_stem_of, portable_stem, survey};
 use crate::digest::{Digest, digest};
@@ -30,8 +30,8 @@ pub struct Job {
     /// Folder of the outputs. The id does not cover it; [`crate::run::confine`] checks that of a plan.
     #[serde(deserialize_with = "relative")]
     pub output: PathBuf,
-    /// Every setting, by its name in `roughcast.toml`.
-    pub settings: Map<String, Value>,
+    /// Every setting that has a value.
+    pub settings: Values,
     /// The files that the job reads, the source first.
     pub inputs: Vec<JobInput>,
     /// The outputs that must exist afterwards.
@@ -89,7 +89,7 @@ impl Job {
     ///
     /// # Errors
     /// [`RunError`] where the document cannot be read or understood.
-    pub fn new(source: &Path, output: &Path, settings: &Map<String, Value>) -> Result<Self, RunError> {
+    pub fn new(source: &Path, output: &Path, settings: &Values) -> Result<Self, RunError> {
         let bytes = read_file(source).map_err(RunError::Read)?;
         let document = parsed(&bytes)?;
         let survey = survey(&document)?;
@@ -111,10 +111,9 @@ impl Job {
             .zip(inputs.iter().map(|input| input.blake3))
             .collect();
         let identity = json!({ "version": env!("CARGO_PKG_VERSION"), "settings": settings, "files": files });
-        let typed = typed(settings)?;
         Ok(Self {
             id: digest(identity.to_string().as_bytes()),
-            outputs: outputs(&survey, &typed, &stem, output),
+            outputs: outputs(&survey, &settings.settings()?, &stem, output),
             cost: if survey.has_bumps { inputs.iter().map(|input| input.bytes).sum() } else { 0 },
             command: command(source, output, settings),
             source: source.to_owned(),
@@ -122,14 +121,6 @@ impl Job {
             settings: settings.clone(),
             inputs,
         })
-    }
-
-    /// Returns the typed settings.
-    ///
-    /// # Errors
-    /// [`RunError`] where the settings of a plan cannot be read.
-    pub fn typed_settings(&self) -> Result<Settings, RunError> {
-        typed(&self.settings)
     }
 
     /// Plans the job again and checks that the result is equal.
@@ -207,12 +198,6 @@ fn relative<'de, D: Deserializer<'de>>(deserializer: D) -> Result<PathBuf, D::Er
     Ok(path)
 }
 
-fn typed(settings: &Map<String, Value>) -> Result<Settings, RunError> {
-    let values: Values =
-        serde_json::from_value(Value::Object(settings.clone())).map_err(|e| RunError::Settings(e.to_string()))?;
-    Ok(values.settings()?)
-}
-
 fn outputs(survey: &Survey, settings: &Settings, stem: &str, folder: &Path) -> Vec<JobOutput> {
     let file = |path: PathBuf| JobOutput { path, kind: OutputKind::File };
     let is_glb = if survey.has_bumps { settings.glb } else { survey.container == Container::Glb };
@@ -229,23 +214,17 @@ fn outputs(survey: &Survey, settings: &Settings, stem: &str, folder: &Path) -> V
 
 /// Returns the command line of the job. Flags have the names of the settings, and settings without a value have no
 /// flag.
-fn command(source: &Path, output: &Path, settings: &Map<String, Value>) -> Vec<String> {
+fn command(source: &Path, output: &Path, settings: &Values) -> Vec<String> {
     let path = |path: &Path| path.to_string_lossy().into_owned();
     let mut words = vec!["roughcast".to_owned(), "bake".to_owned(), path(source), "-o".to_owned(), path(output)];
     words.push("--no-config".to_owned());
-    let has_view = settings.contains_key("nearest");
-    for (name, value) in settings {
-        match (name.as_str(), value) {
-            ("provenance", Value::Bool(true)) | ("glb" | "trim", Value::Bool(false)) => {}
+    for (name, text) in settings.texts() {
+        match (name.as_str(), text.as_str()) {
+            ("provenance", "true") | ("glb" | "trim", "false") => {}
             ("provenance", _) => words.push("--no-provenance".to_owned()),
-            ("fov" | "aspect", _) if !has_view => {}
-            (_, Value::Bool(truth)) => words.push(format!("--{name}={truth}")),
-            (_, Value::String(text)) => words.push(format!("--{name}={text}")),
-            (_, Value::Array(list)) => {
-                let list: Vec<String> = list.iter().map(Value::to_string).collect();
-                words.push(format!("--{name}={}", list.join(",")));
-            }
-            (_, number) => words.push(format!("--{name}={number}")),
+            ("fov" | "aspect", _) if settings.nearest.is_none() => {}
+            // Flags take names and lists without the quotes and brackets of JSON.
+            (_, text) => words.push(format!("--{name}={}", text.trim_matches(['"', '[', ']']))),
         }
     }
     words
@@ -273,3 +252,6 @@ pub fn normal_path(path: &Path) -> PathBuf {
     }
     normal
 }
+
+#[cfg(test)]
+mod tests;

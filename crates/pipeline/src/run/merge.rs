@@ -45,7 +45,7 @@ pub struct OpenJob {
 /// What several reports record of one job; the greatest variant wins.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Recorded<'t> {
-    Passing(&'t str),
+    Transient(&'t str),
     Failed(&'t str),
     Done,
 }
@@ -54,7 +54,7 @@ impl Recorded<'_> {
     fn of(asset: &PartAsset) -> Recorded<'_> {
         match &asset.error {
             None => Recorded::Done,
-            Some(error) if asset.retry => Recorded::Passing(error),
+            Some(error) if asset.retry => Recorded::Transient(error),
             Some(error) => Recorded::Failed(error),
         }
     }
@@ -90,7 +90,7 @@ impl Merged {
             let source = job.source.display().to_string();
             let ended = match records.get(&(Some(job.id), source.as_str())) {
                 Some(Recorded::Failed(error)) => Ended::Failed((*error).to_owned()),
-                Some(Recorded::Passing(error)) => Ended::Missing((*error).to_owned()),
+                Some(Recorded::Transient(error)) => Ended::Missing((*error).to_owned()),
                 None if !reports.is_empty() => Ended::Missing("no report names the job".to_owned()),
                 Some(Recorded::Done) | None => by_outputs(job, looks),
             };

@@ -15,7 +15,6 @@ mod job;
 mod merge;
 mod moved;
 mod part;
-mod passing;
 mod plan;
 mod planned;
 mod previous;
@@ -23,6 +22,7 @@ mod restore;
 mod run_job;
 mod schedule;
 mod shard;
+mod transient;
 mod write_outputs;
 
 pub use budget::{MemoryBudget, Permit};

@@ -24,6 +24,12 @@ pub struct Plan {
     pub jobs: Vec<Job>,
 }
 
+/// The member of a plan that is read before the others.
+#[derive(Deserialize)]
+struct Head {
+    version: String,
+}
+
 /// Why a plan cannot be read.
 #[derive(Debug, thiserror::Error)]
 pub enum PlanError {
@@ -79,12 +85,13 @@ impl Plan {
         let bytes = read_file(path).map_err(|error| PlanError::Read { path: owned(), error })?;
         check_format(&bytes, "plan", PLAN_FORMAT, "plan again with this version of Roughcast")
             .map_err(|error| PlanError::Format { path: owned(), error })?;
-        let plan: Self = serde_json::from_slice(&bytes)
-            .map_err(|error| PlanError::Malformed { path: owned(), reason: error.to_string() })?;
-        if plan.version != env!("CARGO_PKG_VERSION") {
-            return Err(PlanError::OtherVersion { path: owned(), version: plan.version });
+        let malformed = |error: serde_json::Error| PlanError::Malformed { path: owned(), reason: error.to_string() };
+        // The version comes first: a plan of another version may have settings that this version does not know.
+        let Head { version } = serde_json::from_slice(&bytes).map_err(malformed)?;
+        if version != env!("CARGO_PKG_VERSION") {
+            return Err(PlanError::OtherVersion { path: owned(), version });
         }
-        Ok(plan)
+        serde_json::from_slice(&bytes).map_err(malformed)
     }
 }
 

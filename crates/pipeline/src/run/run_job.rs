@@ -144,7 +144,7 @@ fn baked_outputs<'b>(name: &'b Path, baked: &'b BakedAsset) -> Outputs<'b> {
 }
 
 fn baked(job: &Job, budget: &MemoryBudget, advance: &dyn Fn(f32)) -> Result<BakedAsset, RunError> {
-    let settings = job.typed_settings()?;
+    let settings = job.settings.settings()?;
     let permit = budget.acquire(job);
     match attempt(job, &settings, advance) {
         // The memory that other jobs took meanwhile may be enough.

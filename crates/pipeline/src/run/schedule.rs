@@ -127,7 +127,7 @@ impl Scheduler<'_> {
         };
         let result = prepared.and_then(|PreparedJob { job, origin, prepared }| {
             let done = finish(job, prepared, guard, &mut warn);
-            let done = done.and_then(|done| Ok((job.typed_settings()?, done)));
+            let done = done.and_then(|done| Ok((job.settings.settings()?, done)));
             let (settings, done) = done.map_err(|error| JobFailure::from(&error))?;
             Ok((job, origin, settings, done))
         });
@@ -138,9 +138,9 @@ impl Scheduler<'_> {
                 settings: (settings != *self.settings).then(|| settings.to_json(settings.model)),
                 ..done.outcome(name.clone(), origin, seconds)
             },
-            Err(JobFailure { message, is_passing }) => {
+            Err(JobFailure { message, is_transient }) => {
                 let job = asset.job.as_ref().ok().map(|job| job.id);
-                AssetOutcome::failed(name.clone(), job, seconds, message, is_passing)
+                AssetOutcome::failed(name.clone(), job, seconds, message, is_transient)
             }
         }
     }

@@ -58,7 +58,7 @@ pub fn write(job: &Job, outputs: &Outputs<'_>, guard: &mut Guard) -> Result<Vec<
     let document = document.bytes.map(|bytes| reserved.document.stage(bytes)).transpose()?;
     reserved.publish(staged, document)?;
     match previous {
-        Some(previous) if job.typed_settings()?.provenance => Ok(previous.remove_stale(job, guard)),
+        Some(previous) if job.settings.settings()?.provenance => Ok(previous.remove_stale(job, guard)),
         _ => Ok(Vec::new()),
     }
 }

@@ -120,7 +120,7 @@ fn a_job_whose_plan_was_edited_fails_for_good_and_the_others_do_not() {
 }
 
 #[test]
-fn plans_and_reports_with_invalid_ids_and_digests_are_rejected() {
+fn plans_and_reports_with_invalid_members_are_rejected() {
     for (member, value) in [
         ("/id", "../../victim"),
         ("/id", "ABCDEF"),
@@ -128,6 +128,7 @@ fn plans_and_reports_with_invalid_ids_and_digests_are_rejected() {
         ("/inputs/0/path", "/etc/hostname"),
         ("/source", "/etc/hostname"),
         ("/outputs/0/path", "/tmp/roughcast-escape"),
+        ("/settings/quality", "better"),
     ] {
         let scene = scene();
         let here = scene.path().join("here");

@@ -1,24 +1,5 @@
 use super::*;
-use crate::bake::{BakedAsset, NewFile};
-use crate::gltf::document::Container;
-use crate::report::AssetReport;
-
-fn baked(content: &[u8]) -> BakedAsset {
-    BakedAsset {
-        document: b"{}".to_vec(),
-        container: Container::Gltf,
-        files: vec![NewFile { path: PathBuf::from("a.roughcast/a.ktx2"), bytes: content.to_vec() }],
-        copies: vec![PathBuf::from("a.bin")],
-        report: AssetReport::default(),
-    }
-}
-
-/// Returns the id of a job.
-fn id(number: u8) -> Digest {
-    digest(&[number])
-}
-
-const ANY: Fits<'_> = &|_| Ok(());
+use crate::cache::test_assets::{ANY, baked, damaged, id};
 
 fn put(cache: &DiskCache, id: Digest, document: &str, content: &[u8]) {
     let baked = baked(content);
@@ -62,14 +43,10 @@ fn damaged_files_are_reported_and_removed() {
         assert_eq!(cache.blob(&entry.files[0]).expect("no blob"), None);
     }
     let whole = fs::read(&job).expect("a file");
-    for at in 0..whole.len() {
-        let mut bytes = whole.clone();
-        bytes[at] ^= 1;
-        for bytes in [&bytes[..], &whole[..at]] {
-            fs::write(&job, bytes).expect("a file");
-            assert!(matches!(cache.entry(id(0), ANY), Err(CacheError::Damaged { .. })), "{at}");
-            assert!(cache.entry(id(0), ANY).expect("no entry").is_none());
-        }
+    for bytes in damaged(&whole) {
+        fs::write(&job, &bytes).expect("a file");
+        assert!(matches!(cache.entry(id(0), ANY), Err(CacheError::Damaged { .. })), "{}", bytes.escape_ascii());
+        assert!(cache.entry(id(0), ANY).expect("no entry").is_none());
     }
 }
 

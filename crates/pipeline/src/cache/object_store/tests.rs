@@ -2,31 +2,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::*;
-use crate::bake::{BakedAsset, NewFile};
 use crate::cache::Cache;
-use crate::gltf::document::Container;
-use crate::report::AssetReport;
-
-fn baked(content: &[u8]) -> BakedAsset {
-    BakedAsset {
-        document: b"{}".to_vec(),
-        container: Container::Gltf,
-        files: vec![NewFile { path: PathBuf::from("a.roughcast/a.ktx2"), bytes: content.to_vec() }],
-        copies: Vec::new(),
-        report: AssetReport::default(),
-    }
-}
+use crate::cache::test_assets::{ANY, baked, damaged, id};
 
 fn store_at(folder: &Path) -> ObjectStoreCache {
     ObjectStoreCache::open(url::Url::from_file_path(folder).expect("an absolute path").as_ref()).expect("a folder")
 }
-
-/// Returns the id of a job.
-fn id(number: u8) -> Digest {
-    digest(&[number])
-}
-
-const ANY: Fits<'_> = &|_| Ok(());
 
 fn put(store: &ObjectStoreCache, id: Digest, content: &[u8]) -> Entry {
     let baked = baked(content);
@@ -76,14 +57,10 @@ fn damaged_objects_are_reported_and_deleted() {
         assert!(matches!(store.blobs(&[stored])[..], [Ok(None)]));
     }
     let whole = fs::read(&job).expect("a file");
-    for at in 0..whole.len() {
-        let mut bytes = whole.clone();
-        bytes[at] ^= 1;
-        for bytes in [&bytes[..], &whole[..at]] {
-            fs::write(&job, bytes).expect("a file");
-            assert!(matches!(store.entry(id(0), ANY), Err(CacheError::DamagedObject { .. })), "{at}");
-            assert!(!job.exists());
-        }
+    for bytes in damaged(&whole) {
+        fs::write(&job, &bytes).expect("a file");
+        assert!(matches!(store.entry(id(0), ANY), Err(CacheError::DamagedObject { .. })), "{}", bytes.escape_ascii());
+        assert!(!job.exists());
     }
     put(&store, id(0), b"texels");
     assert!(matches!(&store.blobs(&[stored])[..], [Ok(Some(bytes))] if bytes == b"texels"));

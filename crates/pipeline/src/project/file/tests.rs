@@ -14,7 +14,12 @@ fn message(text: &str) -> String {
 /// Returns the value of the setting `name` that `text` gives to `asset`.
 fn value(text: &str, asset: &str, name: &str) -> serde_json::Value {
     let layers = parse(text).expect(text).layers(Path::new(asset));
-    resolve(&layers).expect(text).values.to_members().get(name).cloned().unwrap_or_default()
+    members(&resolve(&layers).expect(text).values).remove(name).unwrap_or_default()
+}
+
+fn members(values: &Values) -> serde_json::Map<String, serde_json::Value> {
+    let json = serde_json::to_string(values).expect("JSON");
+    serde_json::from_str(&json).expect("an object")
 }
 
 #[test]
@@ -23,10 +28,10 @@ fn the_template_names_every_setting_with_its_default() {
     // A comment that is a setting has no space after its sign.
     let lines = TEMPLATE.lines().filter_map(|l| l.strip_prefix('#').filter(|l| !l.starts_with(' ')));
     let config = parse(&lines.collect::<Vec<_>>().join("\n")).expect("settings");
-    let written = config.defaults.to_members();
+    let written = members(&config.defaults);
     let names: std::collections::BTreeSet<String> = written.keys().cloned().collect();
     assert_eq!(names, Values::names().into_iter().collect());
-    for (name, default) in Values::defaults().to_members() {
+    for (name, default) in members(&Values::defaults()) {
         assert_eq!(written[&name], default, "{name}");
     }
     assert_eq!((config.overrides.len(), config.output), (1, Some(PathBuf::from("../baked"))));
@@ -140,9 +145,9 @@ fn no_prefix_of_a_file_panics() {
 #[test]
 fn members_with_defaults_come_first() {
     let layers = parse("rdo = 1\nnearest = 2\nscreen-height = 3\n").expect("settings").layers(Path::new("a.gltf"));
-    let members = resolve(&layers).expect("settings").values.to_members();
-    let names: Vec<&str> = members.keys().map(String::as_str).collect();
-    let defaults = Values::defaults().to_members();
+    let set = members(&resolve(&layers).expect("settings").values);
+    let names: Vec<&str> = set.keys().map(String::as_str).collect();
+    let defaults = members(&Values::defaults());
     assert!(names.iter().copied().take(defaults.len()).eq(defaults.keys().map(String::as_str)), "{names:?}");
     assert_eq!(names[defaults.len()..], ["rdo", "nearest", "screen-height"]);
 }

@@ -84,7 +84,7 @@ impl Remote {
         let mut skip_cache = false;
         if let Some(result) = client.attempts().at(|| cached_result(action.digest, client)).await? {
             match collect(&result, sent, request.disk_cache, client).await {
-                Ok(failures) if !failures.iter().flatten().any(|failure| failure.is_passing) => {
+                Ok(failures) if !failures.iter().flatten().any(|failure| failure.is_transient) => {
                     client.count(|counts| counts.cached += 1);
                     return Ok((Origin::Cached, failures));
                 }
@@ -143,6 +143,6 @@ fn outcomes_of(results: Result<Results, RemoteError>, jobs: usize) -> Vec<Outcom
 
 impl From<&RemoteError> for JobFailure {
     fn from(error: &RemoteError) -> Self {
-        Self { message: error.to_string(), is_passing: error.is_passing() }
+        Self { message: error.to_string(), is_transient: error.is_transient() }
     }
 }

@@ -102,8 +102,8 @@ pub enum RemoteError {
 }
 
 impl RemoteError {
-    /// Tells whether another attempt may succeed.
-    pub fn is_passing(&self) -> bool {
+    /// Returns whether the error is transient, so that another attempt may succeed.
+    pub fn is_transient(&self) -> bool {
         match self {
             Self::Status { code, .. } => !matches!(
                 code,

@@ -65,7 +65,7 @@ pub async fn collect(
             (Some(_), _) => None,
             (None, None) => return Err(RemoteError::NoOutputs),
             (None, Some(reason)) => {
-                Some(JobFailure { message: with_local_paths(&reason.message, sent), is_passing: reason.is_passing })
+                Some(JobFailure { message: with_local_paths(&reason.message, sent), is_transient: reason.is_transient })
             }
         });
     }
@@ -143,7 +143,8 @@ async fn entries(outputs: &Outputs, jobs: &[Sent<'_>], client: &Client) -> Resul
 fn reasons(report: &[u8]) -> Result<HashMap<String, JobFailure>, RemoteError> {
     let report = PartReport::parse(report)
         .map_err(|error| RemoteError::Malformed { expected: "the report of the tool", found: error.to_string() })?;
-    let reason = |asset: PartAsset| Some((asset.input, JobFailure { message: asset.error?, is_passing: asset.retry }));
+    let reason =
+        |asset: PartAsset| Some((asset.input, JobFailure { message: asset.error?, is_transient: asset.retry }));
     Ok(report.assets.into_iter().filter_map(reason).collect())
 }
 

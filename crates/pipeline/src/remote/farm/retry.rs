@@ -31,9 +31,9 @@ impl<'c> Attempts<'c> {
     /// Waits until the next attempt after `error`.
     ///
     /// # Errors
-    /// `error` itself, if it will not pass or no attempt is left.
+    /// `error` itself, if it is not transient or no attempt is left.
     pub async fn after(&mut self, error: RemoteError) -> Result<(), RemoteError> {
-        if !error.is_passing() {
+        if !error.is_transient() {
             return Err(error);
         }
         let Some(wait) = self.waits.next() else { return Err(error) };

@@ -2,8 +2,6 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread;
 
-use serde_json::Map;
-
 use super::*;
 
 #[test]
@@ -40,7 +38,7 @@ fn the_largest_image_decides_on_the_memory_of_a_job() {
         id: crate::digest::digest(b""),
         source: path("a.gltf"),
         output: PathBuf::new(),
-        settings: Map::new(),
+        settings: crate::project::Values::default(),
         inputs,
         outputs: Vec::new(),
         cost: 0,

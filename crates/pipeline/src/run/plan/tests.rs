@@ -17,6 +17,8 @@ fn rejects_plans_of_another_format_and_of_another_version() {
     assert!(error.contains("expected a plan of formatVersion 1, found 2; plan again"), "{error}");
     let other = Plan { version: "0.0.0".to_owned(), ..plan };
     assert!(matches!(read(&serde_json::to_string(&other).expect("JSON")), Err(PlanError::OtherVersion { .. })));
+    let other = r#"{ "formatVersion": 1, "version": "0.0.0", "jobs": [{ "a-later-member": 1 }] }"#;
+    assert!(matches!(read(other), Err(PlanError::OtherVersion { .. })));
     assert!(matches!(read("{}"), Err(PlanError::Format { .. })));
     assert!(matches!(read("no JSON"), Err(PlanError::Malformed { .. })));
 }

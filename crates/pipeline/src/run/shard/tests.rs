@@ -1,7 +1,5 @@
 use std::path::PathBuf;
 
-use serde_json::Map;
-
 use super::*;
 
 fn job(name: usize, cost: u64) -> Job {
@@ -9,7 +7,7 @@ fn job(name: usize, cost: u64) -> Job {
         id: crate::digest::digest(&name.to_le_bytes()),
         source: PathBuf::from(format!("{name}.gltf")),
         output: PathBuf::new(),
-        settings: Map::new(),
+        settings: crate::project::Values::default(),
         inputs: Vec::new(),
         outputs: Vec::new(),
         cost,

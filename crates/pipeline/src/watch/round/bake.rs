@@ -173,7 +173,7 @@ impl Round {
 fn retry_after(error: &RunError, took: Duration) -> Option<Duration> {
     match error {
         RunError::Changed { .. } => Some(Duration::ZERO),
-        _ => error.is_passing().then_some(RETRY.max(took.saturating_mul(RETRY_SHARE))),
+        _ => error.is_transient().then_some(RETRY.max(took.saturating_mul(RETRY_SHARE))),
     }
 }
 
@@ -190,5 +190,5 @@ fn keeps_outputs(error: &RunError) -> bool {
 /// Returns whether the failure depends on more than the files of the asset.
 fn depends_on_more(error: &RunError) -> bool {
     let is_of_output = matches!(error, RunError::Publish(_) | RunError::NoOutput { .. } | RunError::OtherSource { .. });
-    error.is_passing() || is_of_output
+    error.is_transient() || is_of_output
 }

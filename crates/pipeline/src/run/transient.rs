@@ -1,12 +1,12 @@
-//! Which errors of the system may not occur at the next try.
+//! The transient errors of the system: the next try may succeed.
 
 use std::io;
 
-/// Returns whether an error of reading or writing may not occur at the next try: something was busy, full, broken or
-/// away, and nothing was missing, forbidden or wrong.
-pub fn is_passing(error: &io::Error) -> bool {
+/// Returns whether an error of reading or writing is transient: something was busy, full, broken or away, and nothing
+/// was missing, forbidden or wrong.
+pub fn is_transient(error: &io::Error) -> bool {
     use io::ErrorKind as Kind;
-    let is_passing_kind = matches!(
+    let is_transient_kind = matches!(
         error.kind(),
         // Busy.
         Kind::WouldBlock
@@ -33,13 +33,12 @@ pub fn is_passing(error: &io::Error) -> bool {
             | Kind::ConnectionAborted
             | Kind::BrokenPipe
     );
-    is_passing_kind || error.raw_os_error().is_some_and(|code| CODES.contains(&code))
+    is_transient_kind || error.raw_os_error().is_some_and(|code| CODES.contains(&code))
 }
 
-/// Returns whether an error of writing may not occur at the next try. An output folder that was removed can be made
-/// again.
-pub fn is_passing_write(error: &io::Error) -> bool {
-    is_passing(error) || error.kind() == io::ErrorKind::NotFound
+/// Returns whether an error of writing is transient. An output folder that was removed can be made again.
+pub fn is_transient_write(error: &io::Error) -> bool {
+    is_transient(error) || error.kind() == io::ErrorKind::NotFound
 }
 
 /// Errors of the system that [`io::ErrorKind`] has no name for: EIO, ENXIO, ENODEV, ENFILE and EMFILE, whose numbers

@@ -3,8 +3,8 @@ use super::*;
 /// Uses the error numbers of Linux, so that no disk has to fail.
 #[cfg(target_os = "linux")]
 #[test]
-fn separates_errors_that_pass_from_errors_that_last() {
-    let passing = [
+fn separates_transient_from_permanent_errors() {
+    let transient = [
         ("EINTR", 4),
         ("EIO", 5),
         ("ENXIO", 6),
@@ -30,11 +30,11 @@ fn separates_errors_that_pass_from_errors_that_last() {
         ("ESTALE", 116),
         ("EDQUOT", 122),
     ];
-    for (name, code) in passing {
+    for (name, code) in transient {
         let error = io::Error::from_raw_os_error(code);
-        assert!(is_passing(&error) && is_passing_write(&error), "{name}: {error:?}");
+        assert!(is_transient(&error) && is_transient_write(&error), "{name}: {error:?}");
     }
-    let lasting = [
+    let permanent = [
         ("EPERM", 1),
         ("EACCES", 13),
         ("EEXIST", 17),
@@ -45,20 +45,20 @@ fn separates_errors_that_pass_from_errors_that_last() {
         ("ENAMETOOLONG", 36),
         ("ELOOP", 40),
     ];
-    for (name, code) in lasting {
+    for (name, code) in permanent {
         let error = io::Error::from_raw_os_error(code);
-        assert!(!is_passing(&error) && !is_passing_write(&error), "{name}: {error:?}");
+        assert!(!is_transient(&error) && !is_transient_write(&error), "{name}: {error:?}");
     }
     // A source that is missing stays missing; an output folder is made again.
     let missing = io::Error::from_raw_os_error(2);
-    assert!(!is_passing(&missing) && is_passing_write(&missing));
+    assert!(!is_transient(&missing) && is_transient_write(&missing));
 }
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_full_device_may_have_space_at_the_next_try() {
+fn a_full_device_is_a_transient_error() {
     use std::io::Write;
     let mut full = std::fs::File::options().write(true).open("/dev/full").expect("Linux has it");
     let error = full.write_all(b"bytes").expect_err("the device is always full");
-    assert!(is_passing(&error), "{error:?}");
+    assert!(is_transient(&error), "{error:?}");
 }
