@@ -22,6 +22,6 @@ pub mod watch;
 
 // Modules of the core are named `crate::` here as they are there.
 use roughcast_core::{
-    api, bake, bump, codec, decode, digest, gltf, image, ktx2, lobe, material, math, memory, metric, mip, report,
+    api, bake, bump, codec, decode, digest, gltf, image, ktx2, lobe, material, math, memory, metric, mip, note, report,
     settings,
 };
