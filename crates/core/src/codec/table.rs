@@ -7,17 +7,18 @@ use ktx2::dfd::{Basic, ChannelTypeQualifiers, DataFormatFlags, SampleInformation
 use ktx2::{ColorModel, TransferFunction};
 
 use crate::codec::encode::{bc, half, uastc_blocks};
-use crate::codec::format::{Format, Target};
-use crate::codec::texels::{EncodeError, Texels};
+use crate::codec::error::EncodeError;
+use crate::codec::format::{PayloadFormat, Target};
+use crate::codec::quantise::Texels;
 use crate::codec::uastc::{Effort, Metric};
 
 /// Encodes one level.
-type Encode = fn(&Texels<'_>, Format, Metric, Effort) -> Result<Vec<u8>, EncodeError>;
+type Encode = fn(&Texels<'_>, PayloadFormat, Metric, Effort) -> Result<Vec<u8>, EncodeError>;
 
 /// The facts of a format.
 pub struct Codec {
     /// The format.
-    pub format: Format,
+    pub format: PayloadFormat,
     /// The target that it belongs to.
     pub target: Target,
     /// Most channels of texels that the target stores in it.
@@ -62,7 +63,7 @@ pub enum Rounding {
 /// All formats. Those of a target are in the order of their channels.
 static TABLE: [Codec; 7] = [
     Codec {
-        format: Format::UastcRgb,
+        format: PayloadFormat::UastcRgb,
         target: Target::Basis,
         channels: 3,
         identity: Identity::Transcodable(uastc_rgb),
@@ -73,16 +74,22 @@ static TABLE: [Codec; 7] = [
         rounding: Rounding::Uastc,
         encode: uastc_blocks,
     },
-    bc_row(Format::Bc4, 1, ktx2::Format::BC4_UNORM_BLOCK, 8, Rounding::SeparateChannels),
-    bc_row(Format::Bc5, 2, ktx2::Format::BC5_UNORM_BLOCK, 16, Rounding::SeparateChannels),
-    bc_row(Format::Bc7, 3, ktx2::Format::BC7_UNORM_BLOCK, 16, Rounding::Bc7),
-    float_row(Format::R16Float, 1, ktx2::Format::R16_SFLOAT, 2, half::<1>),
-    float_row(Format::Rg16Float, 2, ktx2::Format::R16G16_SFLOAT, 4, half::<2>),
-    float_row(Format::Rgba16Float, 3, ktx2::Format::R16G16B16A16_SFLOAT, 8, half::<4>),
+    bc_row(PayloadFormat::Bc4, 1, ktx2::Format::BC4_UNORM_BLOCK, 8, Rounding::SeparateChannels),
+    bc_row(PayloadFormat::Bc5, 2, ktx2::Format::BC5_UNORM_BLOCK, 16, Rounding::SeparateChannels),
+    bc_row(PayloadFormat::Bc7, 3, ktx2::Format::BC7_UNORM_BLOCK, 16, Rounding::Bc7),
+    float_row(PayloadFormat::R16Float, 1, ktx2::Format::R16_SFLOAT, 2, half::<1>),
+    float_row(PayloadFormat::Rg16Float, 2, ktx2::Format::R16G16_SFLOAT, 4, half::<2>),
+    float_row(PayloadFormat::Rgba16Float, 3, ktx2::Format::R16G16B16A16_SFLOAT, 8, half::<4>),
 ];
 
 /// Returns the row of a format of [`Target::Bc`].
-const fn bc_row(format: Format, channels: u32, vulkan: ktx2::Format, block_bytes: usize, rounding: Rounding) -> Codec {
+const fn bc_row(
+    format: PayloadFormat,
+    channels: u32,
+    vulkan: ktx2::Format,
+    block_bytes: usize,
+    rounding: Rounding,
+) -> Codec {
     Codec {
         format,
         target: Target::Bc,
@@ -98,7 +105,13 @@ const fn bc_row(format: Format, channels: u32, vulkan: ktx2::Format, block_bytes
 }
 
 /// Returns the row of a format of [`Target::Float`].
-const fn float_row(format: Format, channels: u32, vulkan: ktx2::Format, block_bytes: usize, encode: Encode) -> Codec {
+const fn float_row(
+    format: PayloadFormat,
+    channels: u32,
+    vulkan: ktx2::Format,
+    block_bytes: usize,
+    encode: Encode,
+) -> Codec {
     Codec {
         format,
         target: Target::Float,
@@ -138,10 +151,10 @@ fn uastc_rgb() -> Basic {
 
 impl Target {
     /// Returns the format for texels of `channels` (1 to 3) channels.
-    pub fn format(self, channels: u32) -> Format {
+    pub fn format(self, channels: u32) -> PayloadFormat {
         let mut rows = TABLE.iter().filter(|codec| codec.target == self);
         // A test holds that every target has a format for 1 to 3 channels.
-        rows.find(|codec| codec.channels >= channels).map_or(Format::UastcRgb, |codec| codec.format)
+        rows.find(|codec| codec.channels >= channels).map_or(PayloadFormat::UastcRgb, |codec| codec.format)
     }
 
     /// Checks that this build can encode the target.
@@ -164,7 +177,7 @@ impl Codec {
     }
 }
 
-impl Format {
+impl PayloadFormat {
     /// Returns the facts of the format.
     pub fn codec(self) -> &'static Codec {
         // A test holds that every format has a row.
@@ -208,7 +221,12 @@ impl Format {
 ///
 /// [`EncodeError`] for block formats whose encoder is missing or fails, and for values that half floats cannot
 /// represent.
-pub fn encode(texels: &Texels<'_>, format: Format, metric: Metric, effort: Effort) -> Result<Vec<u8>, EncodeError> {
+pub fn encode(
+    texels: &Texels<'_>,
+    format: PayloadFormat,
+    metric: Metric,
+    effort: Effort,
+) -> Result<Vec<u8>, EncodeError> {
     (format.codec().encode)(texels, format, metric, effort)
 }
 

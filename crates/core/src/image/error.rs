@@ -1,7 +1,7 @@
 //! Why an image could not be decoded.
 
 use crate::foreign::Foreign;
-use crate::image::format::Format;
+use crate::image::format::FileFormat;
 use crate::memory::OutOfMemory;
 
 /// Why an image could not be decoded. The caller adds the file's name.
@@ -27,7 +27,7 @@ pub enum DecodeError {
     #[error("the {format} file is cut off ({what}): copy or export it again")]
     Truncated {
         /// The file's format.
-        format: Format,
+        format: FileFormat,
         /// What was missing, in the decoder's words.
         what: String,
     },
@@ -35,7 +35,7 @@ pub enum DecodeError {
     #[error("the {format} file is damaged ({what}): export it again")]
     Malformed {
         /// The file's format.
-        format: Format,
+        format: FileFormat,
         /// Which rule, in the decoder's words.
         what: String,
     },
@@ -63,7 +63,7 @@ pub enum DecodeError {
     #[error("this {format} file is of a kind that is not read ({what}): save it differently")]
     Unsupported {
         /// The file's format.
-        format: Format,
+        format: FileFormat,
         /// The variant.
         what: String,
     },
@@ -73,11 +73,11 @@ pub enum DecodeError {
 }
 
 impl DecodeError {
-    pub(super) fn malformed(format: Format, what: impl ToString) -> DecodeError {
+    pub(super) fn malformed(format: FileFormat, what: impl ToString) -> DecodeError {
         DecodeError::Malformed { format, what: brief(&what.to_string()) }
     }
 
-    pub(super) fn unsupported(format: Format, what: impl ToString) -> DecodeError {
+    pub(super) fn unsupported(format: FileFormat, what: impl ToString) -> DecodeError {
         DecodeError::Unsupported { format, what: brief(&what.to_string()) }
     }
 
@@ -87,7 +87,7 @@ impl DecodeError {
     }
 
     /// Converts a reader's error on a file in memory. An unexpected end is the only error that means a truncated file.
-    pub(super) fn from_io(format: Format, error: &std::io::Error) -> DecodeError {
+    pub(super) fn from_io(format: FileFormat, error: &std::io::Error) -> DecodeError {
         let what = brief(&error.to_string());
         match error.kind() {
             std::io::ErrorKind::UnexpectedEof => DecodeError::Truncated { format, what },

@@ -3,7 +3,7 @@
 use std::mem;
 
 use crate::codec::uastc::{Effort, Metric};
-use crate::codec::{EncodeError, Format, ORM, Target, Texels, encode, fallback, lower_rate};
+use crate::codec::{EncodeError, ORM, PayloadFormat, Target, Texels, encode, fallback, lower_rate};
 use crate::ktx2::{Key, Ktx2Writer, LevelWriter, StoredLevel};
 use crate::memory::{self, OutOfMemory};
 use crate::mip::level_sizes;
@@ -13,7 +13,7 @@ use crate::settings::{Form, Settings};
 #[derive(Clone)]
 pub struct MipChain {
     /// How texels are stored.
-    pub format: Format,
+    pub format: PayloadFormat,
     /// Levels finer than level 0 that were left out.
     pub trimmed: usize,
     /// Columns of level 0.
@@ -30,7 +30,7 @@ pub struct MipChain {
 #[derive(Clone, Copy)]
 pub struct Encoding {
     /// How texels are stored.
-    pub format: Format,
+    pub format: PayloadFormat,
     /// The metric of the UASTC encoder.
     pub metric: Metric,
     /// Search effort of block encoders and of compression.
@@ -126,7 +126,7 @@ pub fn kept_bytes(texels: u64, has_rdo: bool) -> u64 {
 }
 
 /// Returns whether level 0 may have the size.
-fn is_whole(format: Format, width: u32, height: u32) -> bool {
+fn is_whole(format: PayloadFormat, width: u32, height: u32) -> bool {
     !format.is_block() || (width.is_multiple_of(4) && height.is_multiple_of(4))
 }
 
@@ -195,7 +195,7 @@ pub(crate) const EDGE: u32 = 4;
 fn encode_band(texels: &Texels<'_>, encoding: Encoding) -> Result<Vec<u8>, EncodeError> {
     let Encoding { format, metric, effort, .. } = encoding;
     let mut blocks = encode(texels, format, metric, effort)?;
-    if let (Format::UastcRgb, Some(loss)) = (format, encoding.rdo) {
+    if let (PayloadFormat::UastcRgb, Some(loss)) = (format, encoding.rdo) {
         lower_rate(&mut blocks, texels, metric, loss)?;
     }
     Ok(blocks)

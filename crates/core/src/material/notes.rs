@@ -1,7 +1,7 @@
 //! Notes to the user about a bump map and its bake. docs/stability.md explains each of them.
 
 use crate::bump::{MAX_SLOPE, Outliers};
-use crate::image::Format;
+use crate::image::FileFormat;
 use crate::material::bump_map::BumpMap;
 use crate::material::roughening::Roughening;
 use crate::math::symmetric::Symmetric2;
@@ -10,7 +10,7 @@ use crate::settings::Model;
 
 /// Returns whether a file is a JPEG.
 pub fn is_jpeg(file: &[u8]) -> bool {
-    Format::detect(file, None) == Some(Format::Jpeg)
+    FileFormat::detect(file, None) == Some(FileFormat::Jpeg)
 }
 
 /// The note of a bump map that is a JPEG.

@@ -12,7 +12,7 @@ use crate::gltf::document::{DocumentError, check_version};
 use crate::gltf::rewrite::references;
 use crate::gltf::roughness_pyramid::{EXTENSION, RoughnessPyramid};
 use crate::gltf::texture::ImageLocation;
-use crate::image::{DecodeOptions, Format};
+use crate::image::{DecodeOptions, FileFormat};
 
 /// A glTF document.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -237,7 +237,7 @@ fn image_facts(image: usize, root: &Value, referenced: &ReferencedFiles<'_>) -> 
         return facts;
     }
     let bytes = partial.start();
-    let format = Format::detect(bytes, options.extension.as_deref());
+    let format = FileFormat::detect(bytes, options.extension.as_deref());
     match decode(bytes, &options) {
         Ok(image) => {
             facts.picture = Some(PictureFacts {
