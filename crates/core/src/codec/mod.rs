@@ -8,6 +8,7 @@ mod error;
 mod format;
 mod png;
 mod quantise;
+mod rounding;
 mod table;
 
 pub use png::{encode_png, fallback};
@@ -16,6 +17,7 @@ pub use encode::{ORM, lower_rate};
 pub use error::EncodeError;
 pub use format::{PayloadFormat, Target};
 pub use quantise::Texels;
-pub use table::{Codec, Identity, Rounding, encode};
+pub use rounding::{Endpoints, Rounding, Weights};
+pub use table::{Codec, Identity, encode};
 /// The encoder and decoder of UASTC blocks, a crate of its own.
 pub use uastc_encoder as uastc;

@@ -275,7 +275,7 @@ pub fn decode_payload(payload: &[u8], format: crate::codec::PayloadFormat, size:
 fn decode(payload: Cow<'_, [u8]>, coding: &Coding, size: (u32, u32)) -> Option<Samples> {
     match coding {
         Coding::Uastc(channels) => basis::uastc(&payload, size, channels),
-        Coding::Blocks(kind) => Some(blocks::decode(&payload, size, *kind)),
+        Coding::Blocks(format) => Some(blocks::decode(&payload, size, format)),
         Coding::Texels(texel) => Some(uncompressed::decode(payload, texel)),
         Coding::Etc1s(_) => None,
     }

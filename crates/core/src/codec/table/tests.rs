@@ -24,6 +24,8 @@ fn every_format_has_a_row() {
         };
         assert_eq!(Codec::of_file(format.vulkan(), model).map(|codec| codec.format), Some(format));
     }
+    let srgb = Codec::of_file(Some(ktx2::Format::BC7_SRGB_BLOCK), None);
+    assert_eq!(srgb.map(|codec| codec.format), Some(PayloadFormat::Bc7));
     assert!(Codec::of_file(Some(ktx2::Format::BC1_RGB_UNORM_BLOCK), None).is_none());
 }
 
@@ -33,6 +35,16 @@ fn every_target_has_a_format_for_each_number_of_channels() {
     assert_eq!(formats(Target::Basis), [PayloadFormat::UastcRgb; 3]);
     assert_eq!(formats(Target::Bc), [PayloadFormat::Bc4, PayloadFormat::Bc5, PayloadFormat::Bc7]);
     assert_eq!(formats(Target::Float), [PayloadFormat::R16Float, PayloadFormat::Rg16Float, PayloadFormat::Rgba16Float]);
+}
+
+#[test]
+fn every_target_has_one_format_for_normals() {
+    for target in [Target::Basis, Target::Bc, Target::Float] {
+        assert_eq!(TABLE.iter().filter(|codec| codec.target == target && codec.holds_normals).count(), 1, "{target:?}");
+    }
+    assert_eq!(Target::Bc.normal_format(), PayloadFormat::Bc5);
+    assert!(!PayloadFormat::Bc5.has_z());
+    assert!(Target::Basis.normal_format().has_z() && Target::Float.normal_format().has_z());
 }
 
 #[test]
