@@ -33,8 +33,8 @@ fn layer_line(layer: &LayerReport) -> String {
     let model = layer.model.map_or_else(|| "unchanged".to_owned(), |model| model.name().to_owned());
     let choice = layer.choice.as_ref().map(Choice::summary).unwrap_or_default();
     let kind = match layer.layer {
-        LayerKind::Base => "",
-        LayerKind::Clearcoat => ", clearcoat",
+        LayerKind::Base => String::new(),
+        kind => format!(", {}", kind.row().name),
     };
     let finest = layer.finest.map_or_else(String::new, |finest| {
         format!(", sampled from level {} on, typically {}", finest.level, finest.typical_level)

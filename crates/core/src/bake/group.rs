@@ -8,7 +8,7 @@ use serde_json::Value;
 use super::geometry::Geometry;
 use crate::bump::Frame;
 use crate::gltf::geometry::Layout;
-use crate::gltf::layers::{LayerKind, LayerRow};
+use crate::gltf::layers::{LayerKind, LayerRow, member};
 use crate::gltf::material::{BumpSource, Layer, Material, TextureUse};
 use crate::gltf::rewrite::Slot;
 use crate::gltf::texture::{ImageLocation, TextureError, TextureSource, Textures};
@@ -194,10 +194,12 @@ fn base_textures(
     bumps: &TextureSource,
 ) -> Result<Result<BaseTextures, String>, TextureError> {
     let mapping = &layer.bumps.texture().mapping;
-    let mut reason = layer.has_other_workflow.then(|| {
-        "the material has KHR_materials_pbrSpecularGlossiness, and engines that know it read glossiness: \
-         the roughness was left unchanged"
-            .to_owned()
+    let other_workflow = layer.kind.row().other_workflow.filter(|_| layer.has_other_workflow);
+    let mut reason = other_workflow.map(|extension| {
+        format!(
+            "the material has {}, and engines that know it read glossiness: the roughness was left unchanged",
+            member(extension)
+        )
     });
     let mut read = |what: &str, texture: Option<&TextureUse>| {
         let Some(texture) = texture else { return Ok(None) };

@@ -189,9 +189,8 @@ impl LayerPlacement<'_> {
             notes.push("the material's anisotropy was dropped because `--model isotropic` was requested".to_owned());
         }
         if settings.profile.has_pyramid() && in_pyramid.is_none() {
-            notes.push(
-                "the extension describes the base lobe only: no pyramid was written for the clearcoat".to_owned(),
-            );
+            let name = layer.row().name;
+            notes.push(format!("the extension describes the base lobe only: no pyramid was written for the {name}"));
         }
         notes.extend(in_pyramid.iter().flat_map(|in_pyramid| in_pyramid.notes.iter().cloned()));
         let report = LayerReport {

@@ -4,7 +4,7 @@ use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
-use super::layers::{AnisotropyRow, LAYERS, LayerRow};
+use super::layers::{AnisotropyRow, LAYERS, LayerRow, member, split};
 
 pub use super::layers::LayerKind;
 
@@ -238,11 +238,6 @@ impl<'a> RawMaterial<'a> {
     }
 }
 
-/// Splits a pointer into the pointer of the object and the name of the member.
-fn split(pointer: &'static str) -> (&'static str, &'static str) {
-    pointer.rsplit_once('/').unwrap_or(("", pointer))
-}
-
 /// A part of a material that may be absent.
 struct Part<'a> {
     index: usize,
@@ -290,7 +285,7 @@ impl<'a> Part<'a> {
     fn failed(&self, reason: String) -> MaterialError {
         let part = match self.pointer.starts_with("extras/") {
             true => self.pointer.replace('/', "."),
-            false => split(self.pointer).1.to_owned(),
+            false => member(self.pointer).to_owned(),
         };
         MaterialError { index: self.index, name: self.name.unwrap_or_default().to_owned(), part, reason }
     }
@@ -303,8 +298,8 @@ impl ObjectPart<'_> {
 
     /// Reads the member that is at `pointer` in the material; `null` counts as absent.
     fn read<T: DeserializeOwned>(&self, pointer: &'static str) -> Result<Option<T>, MaterialError> {
-        let member = self.0.value.and_then(|object| object.get(split(pointer).1));
-        let read = member.map(Option::<T>::deserialize).transpose();
+        let value = self.0.value.and_then(|object| object.get(member(pointer)));
+        let read = value.map(Option::<T>::deserialize).transpose();
         read.map(Option::flatten).map_err(|reason| self.0.failed(reason.to_string()))
     }
 }

@@ -1,9 +1,10 @@
 use super::*;
 
 #[test]
-fn every_layer_has_the_row_of_its_kind() {
+fn every_layer_has_a_row_with_its_name() {
     for row in &LAYERS {
         assert_eq!(row.kind.row().kind, row.kind);
+        assert_eq!(serde_json::to_value(row.kind).unwrap(), row.name);
     }
 }
 
