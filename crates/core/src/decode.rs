@@ -44,6 +44,6 @@ pub fn decode(bytes: &[u8], options: &DecodeOptions) -> Result<Image, DecodeErro
 /// Those of [`decode`].
 pub fn decode_colours(bytes: &[u8], options: &DecodeOptions) -> Result<Image, DecodeError> {
     let image = decode(bytes, options)?;
-    let has_red_and_green = matches!(FileFormat::detect(bytes, None), Some(FileFormat::Ktx2 | FileFormat::Exr));
+    let has_red_and_green = FileFormat::detect(bytes, None).is_some_and(FileFormat::has_red_and_green);
     Ok(if has_red_and_green { image } else { image.with_grey_as_colour() })
 }

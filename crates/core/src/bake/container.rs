@@ -15,6 +15,7 @@ use super::source::Source;
 use crate::gltf::document::{Container, Document, DocumentError};
 use crate::gltf::json::{Json, JsonError};
 use crate::gltf::uri::{Uri, encode_path};
+use crate::image::FileFormat;
 
 /// Returns the document as a .gltf. If buffer 0 is the BIN chunk of a .glb, it becomes a file, which is returned with
 /// its path.
@@ -107,17 +108,11 @@ pub fn embed_images(document: &mut Document, source: &Source<'_>) -> Result<(), 
     for (index, uri) in image_uris(document.json())?.into_iter().enumerate() {
         let Some(uri) = uri else { continue };
         let bytes = source.uri(&uri)?;
-        let mime = match bytes.as_slice() {
-            [0x89, b'P', b'N', b'G', ..] => "image/png",
-            [0xAB, b'K', b'T', b'X', ..] => "image/ktx2",
-            [b'R', b'I', b'F', b'F', ..] => "image/webp",
-            _ => "image/jpeg",
-        };
         let view = embed(document, &bytes)?;
         let json = document.json_mut();
         json.remove(&format!("/images/{index}/uri"))?;
         json.set(&format!("/images/{index}/bufferView"), &view)?;
-        json.set(&format!("/images/{index}/mimeType"), mime)?;
+        json.set(&format!("/images/{index}/mimeType"), FileFormat::mime_type(&bytes))?;
     }
     Ok(())
 }

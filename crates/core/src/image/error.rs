@@ -1,7 +1,7 @@
 //! Why an image could not be decoded.
 
 use crate::foreign::Foreign;
-use crate::image::format::FileFormat;
+use crate::image::format::{FileFormat, signed_formats, unsigned_formats};
 use crate::memory::OutOfMemory;
 
 /// Why an image could not be decoded. The caller adds the file's name.
@@ -9,15 +9,16 @@ use crate::memory::OutOfMemory;
 #[non_exhaustive]
 pub enum DecodeError {
     /// The file is of another kind than an image.
-    #[error("expected PNG, JPEG, TIFF, WebP, HDR, EXR or KTX2, found {found}")]
+    #[error("expected {}, found {found}", signed_formats())]
     Foreign {
         /// The kind of the file.
         found: Foreign,
     },
     /// The first bytes are not those of a known format.
     #[error(
-        "unknown image format (the first bytes are {start:02x?}): expected PNG, JPEG, TIFF, WebP, \
-         HDR, EXR or KTX2, or a TGA with the extension .tga"
+        "unknown image format (the first bytes are {start:02x?}): expected {}{}",
+        signed_formats(),
+        unsigned_formats()
     )]
     UnknownFormat {
         /// The first bytes, 8 at most.
