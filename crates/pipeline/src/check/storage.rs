@@ -2,8 +2,8 @@
 //!
 //! Values are shares of the range between texels of 0 and 1. An error has two parts.
 //!
-//! *Rounding*: block encoders read channels of 8 bits (half a step is 1/510), and the endpoints of a block have a number
-//! of levels (half of the distance between two levels).
+//! *Rounding*: block encoders read channels of 8 bits (half a step is 1/510), and the endpoints of a block have a
+//! number of levels (half of the distance between two levels).
 //!
 //! *Residual*: a texel takes the nearest of the colours between the endpoints; there are as many colours as weights
 //! have values. Rounding to steps of s has a root mean square error of s / sqrt 12. Channels that share a weight lie on
@@ -12,7 +12,7 @@
 //! apart, their variance is d^2 / 12. An encoder takes the best mode of a format, which is at least as good as the mode
 //! assumed here:
 //!
-//! - Two planes of weights with k steps (UASTC): with one or two channels each channel has its own plane, and s = d / k.
+//! - Two planes of weights with k steps (UASTC): with one or two channels each channel has its own plane: s = d / k.
 //!   With three channels, the channel that varies most has a plane, and the other two share the second plane.
 //! - Weights with k steps for every channel (BC4 and BC5): s = d / k.
 //! - One weight for all channels (BC7): the bound above for n channels.
