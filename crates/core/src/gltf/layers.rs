@@ -25,6 +25,8 @@ pub struct LayerRow {
     pub kind: LayerKind,
     /// The name of the layer in reports, in notes and on the command line.
     pub name: &'static str,
+    /// The extension without which a material does not have the layer; none for the base layer.
+    pub extension: Option<&'static str>,
     /// The normal texture. The scale of its bumps is its member `scale`.
     pub normal_texture: Pointer,
     /// The height texture, which is read where there is no normal texture. Its scale is its member `scale`.
@@ -66,6 +68,7 @@ pub static LAYERS: [LayerRow; 2] = [BASE, CLEARCOAT];
 const BASE: LayerRow = LayerRow {
     kind: LayerKind::Base,
     name: "base",
+    extension: None,
     normal_texture: "normalTexture",
     height_texture: Some("extras/roughcast/heightTexture"),
     roughness_texture: "pbrMetallicRoughness/metallicRoughnessTexture",
@@ -86,6 +89,7 @@ const BASE: LayerRow = LayerRow {
 const CLEARCOAT: LayerRow = LayerRow {
     kind: LayerKind::Clearcoat,
     name: "clearcoat",
+    extension: Some("KHR_materials_clearcoat"),
     normal_texture: "extensions/KHR_materials_clearcoat/clearcoatNormalTexture",
     height_texture: None,
     roughness_texture: "extensions/KHR_materials_clearcoat/clearcoatRoughnessTexture",
@@ -119,10 +123,8 @@ pub fn member(pointer: Pointer) -> &'static str {
 impl LayerKind {
     /// Returns the row of the layer.
     pub fn row(self) -> &'static LayerRow {
-        match self {
-            Self::Base => &LAYERS[0],
-            Self::Clearcoat => &LAYERS[1],
-        }
+        // Layers are made from rows, so every layer has one.
+        LAYERS.iter().find(|row| row.kind == self).unwrap_or(&LAYERS[0])
     }
 }
 

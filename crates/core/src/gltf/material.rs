@@ -189,8 +189,13 @@ struct RawMaterial<'a> {
 }
 
 impl<'a> RawMaterial<'a> {
-    /// Reads a layer; none if the layer has no bumps. A layer without bumps is checked nevertheless.
+    /// Reads a layer; none if the material does not have the layer, or if the layer has no bumps. A layer without bumps
+    /// is checked nevertheless.
     fn layer(&self, row: &LayerRow) -> Result<Option<Layer>, MaterialError> {
+        let extensions = self.value.get("extensions");
+        if row.extension.is_some_and(|name| extensions.and_then(|extensions| extensions.get(name)).is_none()) {
+            return Ok(None);
+        }
         let bumps = self.bumps(row)?;
         let occlusion = row.occlusion_texture.map(|pointer| self.part(pointer).read::<RawTexture>());
         let occlusion = occlusion.transpose()?.flatten();
