@@ -8,7 +8,7 @@ use divan::{Bencher, black_box};
 use rayon::prelude::*;
 use roughcast::bump::{Moments, NormalLayout, NormalMap, NormalOffsets, Shaped, ShapedMoments};
 use roughcast::codec::uastc::{Effort, Encoder, Metric};
-use roughcast::codec::{Format, uastc};
+use roughcast::codec::{PayloadFormat, uastc};
 use roughcast::decode::decode;
 use roughcast::image::{DecodeOptions, Image, Samples};
 use roughcast::ktx2::StoredLevel;
@@ -107,5 +107,5 @@ fn zstd(bencher: Bencher) {
     bencher
         .counter(BytesCount::new(level.len()))
         .with_inputs(|| level.clone())
-        .bench_values(|level| StoredLevel::new(level, Format::UastcRgb, Effort::Fast));
+        .bench_values(|level| StoredLevel::new(level, PayloadFormat::UastcRgb, Effort::Fast));
 }

@@ -9,7 +9,7 @@ use std::path::Path;
 use roughcast::bake::{BaseRoughness, bake_map};
 use roughcast::bump::{NormalLayout, NormalMap};
 use roughcast::codec::uastc::{Effort, Metric};
-use roughcast::codec::{Format, Target, Texels, encode};
+use roughcast::codec::{PayloadFormat, Target, Texels, encode};
 use roughcast::decode::decode;
 use roughcast::image::{DecodeOptions, Image};
 use roughcast::ktx2::{Ktx2, Ktx2Writer, StoredLevel};
@@ -25,12 +25,12 @@ const FIXTURES: [&str; 2] = ["two_channel_normal.png", "vgroove_normal.png"];
 const ALPHAS: [f32; 2] = [0.05, 0.2];
 const LEVELS: std::ops::RangeInclusive<u32> = 1..=5;
 /// UASTC by squared differences of channels, UASTC by direction as `bake` encodes it, and BC5.
-const ENCODINGS: [(Format, Metric, Effort); 5] = [
-    (Format::UastcRgb, Metric::Rgb, Effort::Fast),
-    (Format::UastcRgb, Metric::Rgb, Effort::Best),
-    (Format::UastcRgb, Metric::Direction, Effort::Fast),
-    (Format::UastcRgb, Metric::Direction, Effort::Best),
-    (Format::Bc5, Metric::Direction, Effort::Fast),
+const ENCODINGS: [(PayloadFormat, Metric, Effort); 5] = [
+    (PayloadFormat::UastcRgb, Metric::Rgb, Effort::Fast),
+    (PayloadFormat::UastcRgb, Metric::Rgb, Effort::Best),
+    (PayloadFormat::UastcRgb, Metric::Direction, Effort::Fast),
+    (PayloadFormat::UastcRgb, Metric::Direction, Effort::Best),
+    (PayloadFormat::Bc5, Metric::Direction, Effort::Fast),
 ];
 /// Columns: half floats and [`ENCODINGS`].
 const COLUMNS: usize = 1 + ENCODINGS.len();
@@ -115,7 +115,7 @@ fn errors_by_level(image: &Image, alpha: f32, texels: usize) -> Result<Vec<Row>,
 }
 
 /// Encodes and decodes `normals`.
-fn encoded(normals: &Image, format: Format, metric: Metric, effort: Effort) -> Result<Image, Box<dyn Error>> {
+fn encoded(normals: &Image, format: PayloadFormat, metric: Metric, effort: Effort) -> Result<Image, Box<dyn Error>> {
     let &Image { width, height, .. } = normals;
     let row = |y: u32, out: &mut [[f32; 4]]| {
         for (x, texel) in out.iter_mut().enumerate() {

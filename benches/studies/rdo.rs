@@ -8,7 +8,7 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use roughcast::codec::uastc::{Effort, Metric};
-use roughcast::codec::{Format, ORM, Texels, encode, lower_rate};
+use roughcast::codec::{ORM, PayloadFormat, Texels, encode, lower_rate};
 use roughcast::decode::decode;
 use roughcast::image::DecodeOptions;
 use roughcast::ktx2::{Ktx2, Ktx2Writer, StoredLevel};
@@ -42,7 +42,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             }
         };
         let texels = Texels { width: image.width, height: image.height, row: &row };
-        let before = encode(&texels, Format::UastcRgb, metric, effort)?;
+        let before = encode(&texels, PayloadFormat::UastcRgb, metric, effort)?;
         let mut after = before.clone();
         lower_rate(&mut after, &texels, metric, loss)?;
         let [(bytes, error), (fewer, more)] = [measured(before, &texels, effort)?, measured(after, &texels, effort)?];
@@ -74,7 +74,7 @@ fn saved(before: usize, after: usize) -> f64 {
 /// Returns the bytes of the file with the level, and the sum of squared errors of its decoded red, green and blue.
 fn measured(blocks: Vec<u8>, texels: &Texels<'_>, effort: Effort) -> Result<(usize, f64), Box<dyn Error>> {
     let &Texels { width, height, .. } = texels;
-    let format = Format::UastcRgb;
+    let format = PayloadFormat::UastcRgb;
     let levels = vec![StoredLevel::new(blocks, format, effort)?];
     let file = Ktx2Writer { format, width, height, levels, keys: &[] }.into_bytes()?;
     let decoded = Ktx2::parse(&file)?.decode_level(0)?;

@@ -146,3 +146,19 @@ fn wrap_modes(text: &str) -> Result<[Wrap; 2], String> {
         Some((across, down)) => Ok([mode(across)?, mode(down)?]),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::image::FileFormat;
+
+    #[test]
+    fn the_help_names_every_image_format() {
+        let command = <Args as clap::Args>::augment_args(clap::Command::new("map"));
+        let image = command.get_arguments().find(|argument| argument.get_id() == "image").expect("the argument IMAGE");
+        let help = image.get_help().expect("a help text").to_string();
+        for name in FileFormat::short_names() {
+            assert!(help.contains(name), "{name} is missing in: {help}");
+        }
+    }
+}

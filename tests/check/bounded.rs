@@ -10,7 +10,7 @@ use roughcast::check::{
     Code, Files, Findings, MAX_LISTED, ReferencedFiles, Report, Scope, Severity, Usage, check_document, check_texture,
     sarif, text,
 };
-use roughcast::codec::Format;
+use roughcast::codec::PayloadFormat;
 use roughcast::codec::uastc::Effort;
 use roughcast::gltf::document::Document;
 use roughcast::inspect::{document_text, inspect_document, inspect_texture, texture_text};
@@ -66,8 +66,8 @@ fn reads_an_image_of_many_materials_once() {
 
 fn texture_with_keys(count: usize) -> Vec<u8> {
     let keys: Vec<Key> = (0..count).map(|n| Key { key: format!("k{n}"), value: String::new() }).collect();
-    let levels = vec![StoredLevel::new(vec![0; 8], Format::Rgba16Float, Effort::Fast).unwrap()];
-    Ktx2Writer { format: Format::Rgba16Float, width: 1, height: 1, levels, keys: &keys }.into_bytes().unwrap()
+    let levels = vec![StoredLevel::new(vec![0; 8], PayloadFormat::Rgba16Float, Effort::Fast).unwrap()];
+    Ktx2Writer { format: PayloadFormat::Rgba16Float, width: 1, height: 1, levels, keys: &keys }.into_bytes().unwrap()
 }
 
 fn check(file: &[u8]) -> Vec<roughcast::check::Finding> {

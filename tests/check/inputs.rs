@@ -8,7 +8,7 @@ use std::path::Path;
 use base64::Engine;
 use image::{DynamicImage, ImageFormat, RgbImage};
 use roughcast::codec::uastc::{Effort, Metric};
-use roughcast::codec::{Format, Texels, encode};
+use roughcast::codec::{PayloadFormat, Texels, encode};
 use roughcast::gltf::document::Document;
 use roughcast::gltf::json::Json;
 use roughcast::ktx2::{Key, Ktx2Writer, StoredLevel};
@@ -382,7 +382,7 @@ fn ktx2(image: &RgbImage) -> Vec<u8> {
         }
     };
     let (width, height) = image.dimensions();
-    let format = Format::UastcRgb;
+    let format = PayloadFormat::UastcRgb;
     let level = encode(&Texels { width, height, row: &row }, format, Metric::Rgb, Effort::Fast).unwrap();
     let keys = [Key { key: "KTXwriter".into(), value: "toktx v4.3".into() }];
     let levels = vec![StoredLevel::new(level, format, Effort::Fast).unwrap()];

@@ -5,6 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use roughcast::cli::Outcome;
+use roughcast::project::Engine;
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -126,7 +127,7 @@ fn every_input_is_clean_for_engines_and_with_other_models_and_encoders() {
             rows.push((options, intended(target, "fallback")));
         }
     }
-    for engine in ["three", "babylon", "playcanvas", "filament", "bevy", "godot"] {
+    for engine in Engine::names() {
         // Presets choose forms and targets.
         rows.push((vec!["--engine", engine, "--profile", "both"], vec!["RC1101", "RC1205"]));
     }

@@ -5,7 +5,7 @@ use std::fs;
 use roughcast::check::{Code, Finding, Findings, Scope, Usage, check_texture};
 use roughcast::cli::Outcome;
 use roughcast::codec::uastc::{Effort, Metric};
-use roughcast::codec::{Format, Texels, encode};
+use roughcast::codec::{PayloadFormat, Texels, encode};
 use roughcast::ktx2::{Key, Ktx2, Ktx2Writer, StoredLevel, provenance};
 use serde_json::Value;
 
@@ -14,14 +14,19 @@ use crate::fixture::{Bake, bake, roughcast};
 const EXTENSION: &str = "/materials/0/extensions/ROUGHCAST_materials_roughness_pyramid";
 
 /// Returns the formats of offset textures that this build writes.
-fn formats() -> Vec<Format> {
-    let mut formats = vec![Format::UastcRgb, Format::Rg16Float];
-    formats.extend(cfg!(feature = "bc").then_some(Format::Bc5));
+fn formats() -> Vec<PayloadFormat> {
+    let mut formats = vec![PayloadFormat::UastcRgb, PayloadFormat::Rg16Float];
+    formats.extend(cfg!(feature = "bc").then_some(PayloadFormat::Bc5));
     formats
 }
 
 /// Encodes a texture of 16 x 16. `texel` gives texels in [0, 1] by level, column and row.
-fn texture(format: Format, metric: Metric, keys: &[Key], texel: impl Fn(u32, u32, u32) -> [f64; 3] + Sync) -> Vec<u8> {
+fn texture(
+    format: PayloadFormat,
+    metric: Metric,
+    keys: &[Key],
+    texel: impl Fn(u32, u32, u32) -> [f64; 3] + Sync,
+) -> Vec<u8> {
     let level = |level: u32| {
         let row = |y: u32, out: &mut [[f32; 4]]| {
             for (x, out) in out.iter_mut().enumerate() {
@@ -54,7 +59,7 @@ fn number(message: &str, label: &str) -> f64 {
     rest[..end].trim_end_matches('.').parse().unwrap()
 }
 
-fn check_normals(format: Format, normal: impl Fn(u32, u32, u32) -> [f64; 3] + Sync) -> Vec<Finding> {
+fn check_normals(format: PayloadFormat, normal: impl Fn(u32, u32, u32) -> [f64; 3] + Sync) -> Vec<Finding> {
     let keys = keys(&fs::read(bake(&[]).texture("bumps.normal.ktx2")).unwrap());
     let texel = |level, x, y| normal(level, x, y).map(|c| 0.5 * c + 0.5);
     let file = texture(format, Metric::Direction, &keys, texel);
@@ -92,7 +97,7 @@ fn mean<const N: usize>(level: u32, x: u32, y: u32, value: impl Fn(u32, u32) -> 
 /// levels, that storage explains the defect.
 #[test]
 fn finds_averaged_normals_but_no_unit_normals() {
-    for (format, expected) in [(Format::UastcRgb, vec![4]), (Format::Rgba16Float, vec![1, 2, 3, 4])] {
+    for (format, expected) in [(PayloadFormat::UastcRgb, vec![4]), (PayloadFormat::Rgba16Float, vec![1, 2, 3, 4])] {
         let normalised = |level, x, y| unit(mean(level, x, y, slope));
         assert_eq!(levels(&check_normals(format, normalised), Code::NormalLength), [] as [u32; 0], "{format:?}");
         let averaged = |level, x, y| mean(level, x, y, |x, y| unit(slope(x, y)));
@@ -104,7 +109,7 @@ fn finds_averaged_normals_but_no_unit_normals() {
 /// Equal normals are found as soon as they are shorter than rounding explains.
 #[test]
 fn finds_lengths_just_outside_the_bound() {
-    for (format, step) in [(Format::UastcRgb, 2.0 / 255.0), (Format::Rgba16Float, 0.002)] {
+    for (format, step) in [(PayloadFormat::UastcRgb, 2.0 / 255.0), (PayloadFormat::Rgba16Float, 0.002)] {
         let check = |length: f64| check_normals(format, |_, _, _| unit([0.5, -0.3]).map(|c| c * length));
         let lengths = (0..40).map(|n| 1.0 - 0.25 * step * f64::from(n));
         let found = lengths.map(check).find(|findings| !levels(findings, Code::NormalLength).is_empty()).unwrap();
@@ -116,7 +121,7 @@ fn finds_lengths_just_outside_the_bound() {
 }
 
 /// Bakes a pyramid and replaces its offset texture by one of `texel`, encoded as `format`.
-fn with_offsets(format: Format, texel: impl Fn(u32, u32, u32) -> [f64; 3] + Sync) -> Bake {
+fn with_offsets(format: PayloadFormat, texel: impl Fn(u32, u32, u32) -> [f64; 3] + Sync) -> Bake {
     let bake = bake(&["--profile", "pyramid", "--model", "none", "--gltf", "strict"]);
     let path = bake.texture("bumps.offset.ktx2");
     let keys = keys(&fs::read(&path).unwrap());
@@ -144,7 +149,7 @@ fn finds_means_just_outside_the_bound() {
             [0.25 * u + 0.5, 0.25 * v + 0.5, 0.0]
         });
         assert_eq!(variance_messages(&rough), [] as [String; 0], "{format:?}");
-        let step = if format == Format::Rg16Float { 0.0005 } else { 1.0 / 255.0 };
+        let step = if format == PayloadFormat::Rg16Float { 0.0005 } else { 1.0 / 255.0 };
         let shifted =
             |shift: f64| with_offsets(format, move |level, _, _| [0.6 + shift * f64::from(level.min(1)), 0.4, 0.0]);
         let found =
@@ -190,8 +195,9 @@ fn a_bake_fixes_variance_and_lengths() {
     for name in ["bumps.offset.ktx2", "bumps.normal.ktx2"] {
         let path = bake.texture(name);
         let keys = keys(&fs::read(&path).unwrap());
-        let short =
-            texture(Format::UastcRgb, Metric::Rgb, &keys, |level, _, _| [0.5, 0.3 + 0.1 * f64::from(level), 0.6]);
+        let short = texture(PayloadFormat::UastcRgb, Metric::Rgb, &keys, |level, _, _| {
+            [0.5, 0.3 + 0.1 * f64::from(level), 0.6]
+        });
         fs::write(path, short).unwrap();
     }
     let codes = |report: &Value| {

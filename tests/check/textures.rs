@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 
 use roughcast::check::{Code, Findings, Scope, Usage, check_texture};
 use roughcast::codec::uastc::{Effort, Metric};
-use roughcast::codec::{Format, Texels, encode};
+use roughcast::codec::{PayloadFormat, Texels, encode};
 use roughcast::ktx2::{Key, Ktx2, Ktx2Writer, PROVENANCE_KEY, Provenance, StoredLevel};
 use semver::Version;
 use serde_json::json;
@@ -53,13 +53,13 @@ fn level_0(file: &[u8]) -> (usize, usize) {
     (word(file, INDEX), word(file, INDEX + 8))
 }
 
-fn write(format: Format, size: u32, levels: &[Vec<u8>], keys: &[Key]) -> Vec<u8> {
+fn write(format: PayloadFormat, size: u32, levels: &[Vec<u8>], keys: &[Key]) -> Vec<u8> {
     let levels: Vec<_> =
         levels.iter().map(|level| StoredLevel::new(level.clone(), format, Effort::Fast).unwrap()).collect();
     Ktx2Writer { format, width: size, height: size, levels, keys }.into_bytes().unwrap()
 }
 
-fn normals(texel: [f32; 4], format: Format) -> Vec<u8> {
+fn normals(texel: [f32; 4], format: PayloadFormat) -> Vec<u8> {
     let level = |size| {
         let row = |_: u32, out: &mut [[f32; 4]]| out.fill(texel);
         encode(&Texels { width: size, height: size, row: &row }, format, Metric::Rgb, Effort::Fast).unwrap()
@@ -80,14 +80,14 @@ fn provenance() -> Provenance {
 /// Returns normals in half floats whose first component is NaN. Our writer would refuse to encode them.
 fn not_finite() -> Vec<u8> {
     let level = |size: usize| [0x7e00_u16, 0x3800, 0x3c00, 0x3c00].map(u16::to_le_bytes).concat().repeat(size * size);
-    let (format, keys) = (Format::Rgba16Float, provenance().keys());
+    let (format, keys) = (PayloadFormat::Rgba16Float, provenance().keys());
     write(format, 4, &[level(4), level(2), level(1)], &keys)
 }
 
 fn with_key(file: &[u8], key: &str, value: &str) -> Vec<u8> {
     let parsed = Ktx2::parse(file).unwrap();
     let levels: Vec<Vec<u8>> = (0..parsed.level_count()).map(|l| parsed.level_bytes(l).unwrap().into_owned()).collect();
-    write(Format::UastcRgb, 16, &levels, &[Key { key: key.into(), value: value.into() }])
+    write(PayloadFormat::UastcRgb, 16, &levels, &[Key { key: key.into(), value: value.into() }])
 }
 
 /// Returns the provenance of a roughness texture with `maxError` 0.1.
@@ -153,7 +153,7 @@ pub const FIXTURES: &[(Code, &str, Damage)] = &[
         })
     }),
     // The normal is (0, 0, 1/2).
-    (Code::NormalLength, "level 1", || normals([0.5, 0.5, 0.75, 1.0], Format::UastcRgb)),
+    (Code::NormalLength, "level 1", || normals([0.5, 0.5, 0.75, 1.0], PayloadFormat::UastcRgb)),
     (Code::NotFinite, "level 0", not_finite),
     (Code::NoProvenance, "key roughcast", || with_key(&UASTC, "KTXwriter", "roughcast 0.1.0")),
     (Code::BadProvenance, "key roughcast", || uastc(|f| replace(f, b"{\"version\"", b"[\"version\""))),
@@ -181,7 +181,7 @@ fn check_to(is_deep: bool, file: &[u8]) -> Vec<(Code, String)> {
 #[test]
 fn whole_textures_are_clean() {
     assert_eq!(check(&UASTC), []);
-    assert_eq!(check(&normals([0.5, 0.5, 1.0, 1.0], Format::UastcRgb)), []);
+    assert_eq!(check(&normals([0.5, 0.5, 1.0, 1.0], PayloadFormat::UastcRgb)), []);
 }
 
 #[test]

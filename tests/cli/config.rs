@@ -2,6 +2,10 @@
 
 use std::fs;
 
+use clap::ValueEnum;
+use roughcast::codec::Target;
+use roughcast::gltf::layers::LAYERS;
+use roughcast::project::{Engine, TEMPLATE};
 use serde_json::Value;
 use tempfile::{TempDir, tempdir};
 
@@ -117,9 +121,38 @@ fn init_writes_a_file_that_changes_nothing_and_never_overwrites() {
     assert!(files(&folder.join("after")).len() > 5);
 }
 
+/// Returns the schemas of configurations and of reports.
+fn schemas() -> [Value; 2] {
+    let configuration = include_str!("../../schemas/roughcast.schema.json");
+    let report = include_str!("../../schemas/report.schema.json");
+    [configuration, report].map(|text| serde_json::from_str(text).expect("JSON"))
+}
+
+#[test]
+fn schemas_template_and_readme_name_every_engine_target_and_layer() {
+    let engines: Vec<String> = Engine::names().map(str::to_owned).collect();
+    let name = |target: &Target| target.to_possible_value().expect("a name").get_name().to_owned();
+    let targets: Vec<String> = Target::value_variants().iter().map(name).collect();
+    let layers: Vec<String> = LAYERS.iter().map(|row| row.name.to_owned()).collect();
+    let [configuration, report] = schemas();
+    for (schema, pointer, names) in [
+        (&configuration, "/$defs/settings/properties/engine/enum", &engines),
+        (&configuration, "/$defs/settings/properties/target/enum", &targets),
+        (&report, "/$defs/settings/properties/target/enum", &targets),
+        (&report, "/$defs/layer/properties/layer/enum", &layers),
+    ] {
+        assert_eq!(schema.pointer(pointer), Some(&serde_json::json!(names)), "{pointer}");
+    }
+    for name in engines.iter().chain(&targets) {
+        assert!(TEMPLATE.contains(&format!("\"{name}\"")), "{name} is missing in template.toml");
+    }
+    let readme = include_str!("../../README.md");
+    assert!(readme.contains(&format!("--engine {}", engines.join("|"))), "README.md lists other engines");
+}
+
 #[test]
 fn the_schema_has_every_setting_and_its_default() {
-    let schema: Value = serde_json::from_str(include_str!("../../schemas/roughcast.schema.json")).expect("JSON");
+    let [schema, _] = schemas();
     let validator = jsonschema::validator_for(&schema).expect("a schema");
     let settings = schema["$defs"]["settings"]["properties"].as_object().expect("properties");
     let defaults = serde_json::to_value(roughcast::project::Values::defaults()).expect("JSON");

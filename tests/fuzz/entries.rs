@@ -58,7 +58,7 @@ pub fn texture(bytes: &[u8]) {
 pub fn configuration(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
     if let Ok(config) = Config::parse(text, Path::new("assets/roughcast.toml")) {
-        let _ = resolve(&config.layers(Path::new("props/helmet.gltf")));
+        let _ = resolve(&config.sources(Path::new("props/helmet.gltf")));
     }
 }
 

@@ -4,7 +4,7 @@ use std::hint::black_box;
 use std::path::Path;
 
 use roughcast::codec::uastc::{Effort, Metric};
-use roughcast::codec::{Format, ORM, uastc};
+use roughcast::codec::{PayloadFormat, ORM, uastc};
 use roughcast::decode::decode;
 use roughcast::image::{DecodeOptions, Image, Samples};
 use roughcast::ktx2::{Ktx2, decode_payload};
@@ -67,7 +67,7 @@ impl Encoder {
     /// As [`Encoder::blocks`].
     pub fn decoded(self, rgba: &[u8], width: u32, height: u32) -> Result<Image, Failure> {
         let blocks = self.blocks(rgba, width, height)?;
-        Ok(decode_payload(&blocks, Format::UastcRgb, (width, height)).ok_or("blocks that decode")?)
+        Ok(decode_payload(&blocks, PayloadFormat::UastcRgb, (width, height)).ok_or("blocks that decode")?)
     }
 }
 

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use rayon::prelude::*;
-use roughcast::codec::Format;
+use roughcast::codec::PayloadFormat;
 use roughcast::codec::uastc::Effort;
 use roughcast::ktx2::{Ktx2Writer, StoredLevel};
 use roughcast::mip::level_sizes;
@@ -28,9 +28,9 @@ pub fn measure(image: &Path, out: &Path) -> Result<Value, Failure> {
             texels = halved(&texels, sizes[finer], (width, height));
         }
         let blocks = Encoder::Basisu(0, Interface::Plain).blocks(&texels, width, height)?;
-        levels.push(StoredLevel::new(blocks, Format::UastcRgb, Effort::Fast).unwrap());
+        levels.push(StoredLevel::new(blocks, PayloadFormat::UastcRgb, Effort::Fast).unwrap());
     }
-    let file = Ktx2Writer { format: Format::UastcRgb, width, height, levels, keys: &[] }.into_bytes().unwrap();
+    let file = Ktx2Writer { format: PayloadFormat::UastcRgb, width, height, levels, keys: &[] }.into_bytes().unwrap();
     std::fs::write(out, &file)?;
     Ok(json!({ "bytes": file.len() }))
 }

@@ -1,6 +1,6 @@
 //! Decoding of image files: raster formats by [`crate::image`], KTX2 by [`crate::ktx2`].
 
-use crate::image::{self, DecodeOptions, Format, Image};
+use crate::image::{self, DecodeOptions, FileFormat, Image};
 use crate::ktx2::{Ktx2, ReadError};
 
 /// Why an image could not be decoded. The caller adds the name of the file.
@@ -31,7 +31,7 @@ impl DecodeError {
 /// # Errors
 /// [`DecodeError`]. A truncated file is an error, not a half-filled image.
 pub fn decode(bytes: &[u8], options: &DecodeOptions) -> Result<Image, DecodeError> {
-    if Format::detect(bytes, options.extension.as_deref()) == Some(Format::Ktx2) {
+    if FileFormat::detect(bytes, options.extension.as_deref()) == Some(FileFormat::Ktx2) {
         return Ok(Ktx2::parse(bytes)?.with_max_texels(options.max_pixels).decode_level(0)?);
     }
     Ok(image::decode_raster(bytes, options)?)
@@ -44,6 +44,6 @@ pub fn decode(bytes: &[u8], options: &DecodeOptions) -> Result<Image, DecodeErro
 /// Those of [`decode`].
 pub fn decode_colours(bytes: &[u8], options: &DecodeOptions) -> Result<Image, DecodeError> {
     let image = decode(bytes, options)?;
-    let has_red_and_green = matches!(Format::detect(bytes, None), Some(Format::Ktx2 | Format::Exr));
+    let has_red_and_green = FileFormat::detect(bytes, None).is_some_and(FileFormat::has_red_and_green);
     Ok(if has_red_and_green { image } else { image.with_grey_as_colour() })
 }

@@ -64,8 +64,8 @@ pub enum NoteKind {
     SpecularGlossiness,
     /// The material's anisotropy was dropped.
     AnisotropyDropped,
-    /// The pyramid profile does not describe the clearcoat.
-    ClearcoatWithoutPyramid,
+    /// The pyramid profile describes no layer but the base layer.
+    LayerWithoutPyramid,
 }
 
 impl NoteKind {
@@ -89,7 +89,7 @@ impl NoteKind {
             | Self::OtherWrapMode
             | Self::SpecularGlossiness
             | Self::AnisotropyDropped
-            | Self::ClearcoatWithoutPyramid => false,
+            | Self::LayerWithoutPyramid => false,
         }
     }
 }
@@ -256,10 +256,10 @@ pub fn anisotropy_dropped() -> Note {
     note(NoteKind::AnisotropyDropped, text)
 }
 
-/// Returns the note on a clearcoat, which the extension of the pyramid profile does not describe.
-pub fn clearcoat_without_pyramid() -> Note {
-    let text = "the extension describes the base lobe only: no pyramid was written for the clearcoat";
-    note(NoteKind::ClearcoatWithoutPyramid, text)
+/// Returns the note on a layer of a material that the extension of the pyramid profile does not describe.
+pub fn layer_without_pyramid(layer: &str) -> Note {
+    let text = format!("the extension describes the base lobe only: no pyramid was written for the {layer}");
+    note(NoteKind::LayerWithoutPyramid, text)
 }
 
 #[cfg(test)]
@@ -297,7 +297,7 @@ mod tests {
             other_wrap_mode("anisotropy"),
             specular_glossiness(),
             anisotropy_dropped(),
-            clearcoat_without_pyramid(),
+            layer_without_pyramid("clearcoat"),
             missed_bound("level 2 misses --max-error 0.1".to_owned(), false),
         ];
         explaining.iter().for_each(|note| assert!(!note.asks_for_action, "{note:?}"));

@@ -6,6 +6,7 @@ use std::fs;
 use std::path::Path;
 
 use rayon::prelude::*;
+use roughcast::project::Engine;
 use tempfile::tempdir;
 
 use super::super::process::{done, files, fixtures};
@@ -19,7 +20,6 @@ const FRAMES: [(&str, &str); 3] = [
     ("natural", "--frame natural"),
     ("main-direction", "--frame main-direction --main-direction 1,2,0"),
 ];
-const ENGINES: [&str; 6] = ["three", "babylon", "playcanvas", "filament", "bevy", "godot"];
 
 /// Returns whether the output at `path` was baked for the target bc.
 pub fn is_bc(path: &str) -> bool {
@@ -69,7 +69,7 @@ fn cases() -> Vec<Case> {
             add(name, format!("{heights} {settings}"));
         }
     }
-    for engine in ENGINES {
+    for engine in Engine::names() {
         add(format!("engine/{engine}"), format!("bake tiny -o OUT --engine {engine} --profile both"));
     }
     for form in FORMS {

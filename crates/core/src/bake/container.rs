@@ -16,7 +16,7 @@ use super::source::Source;
 use crate::gltf::document::{Container, Document, DocumentError};
 use crate::gltf::json::{Json, JsonError};
 use crate::gltf::uri::{Uri, encode_path};
-use crate::image::Format;
+use crate::image::FileFormat;
 
 /// Returns the document as a .gltf. If buffer 0 is the BIN chunk of a .glb, it becomes a file, which is returned with
 /// its path.
@@ -129,10 +129,10 @@ fn mime_type<'a>(bytes: &[u8], uri: &'a str, declared: Option<&'a str>) -> &'a s
         Some(Uri::Data(data)) => (None, Some(data.mime())),
         None => (None, None),
     };
-    let detected = Format::detect(bytes, extension);
-    let is_known = matches!(detected, Some(Format::Png | Format::Jpeg | Format::WebP | Format::Ktx2));
+    let detected = FileFormat::detect(bytes, extension);
+    let is_known = detected.is_some_and(FileFormat::is_in_gltf);
     let declared = declared.or(in_uri).filter(|declared| !is_known && !declared.is_empty());
-    declared.or(detected.map(Format::mime_type)).unwrap_or("application/octet-stream")
+    declared.or(detected.map(FileFormat::mime_type)).unwrap_or("application/octet-stream")
 }
 
 /// Returns the files that images and buffers of `json` name, without repetition, relative to the document.

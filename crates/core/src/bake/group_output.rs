@@ -190,7 +190,7 @@ impl LayerPlacement<'_> {
             notes.push(note::anisotropy_dropped());
         }
         if settings.profile.has_pyramid() && in_pyramid.is_none() {
-            notes.push(note::clearcoat_without_pyramid());
+            notes.push(note::layer_without_pyramid(layer.row().name));
         }
         notes.extend(in_pyramid.iter().flat_map(|in_pyramid| in_pyramid.notes.iter().cloned()));
         let report = LayerReport {

@@ -6,12 +6,13 @@ use ctt::{
     TargetFormat, TextureKind,
 };
 
-use crate::codec::format::Format;
-use crate::codec::texels::{EncodeError, Texels};
+use crate::codec::error::EncodeError;
+use crate::codec::format::PayloadFormat;
+use crate::codec::quantise::Texels;
 use crate::codec::uastc::Effort;
 
 /// Encodes one level. `format` is one of the BC formats.
-pub fn encode(texels: &Texels<'_>, format: Format, effort: Effort) -> Result<Vec<u8>, EncodeError> {
+pub fn encode(texels: &Texels<'_>, format: PayloadFormat, effort: Effort) -> Result<Vec<u8>, EncodeError> {
     let (width, height) = (texels.width, texels.height);
     let failed = |reason: String| EncodeError::Encoder { format, width, height, reason };
     let vulkan = format.vulkan().ok_or_else(|| failed("not a BC format".into()))?;

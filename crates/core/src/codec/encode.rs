@@ -3,8 +3,9 @@
 use fearless_simd::Level;
 use rayon::prelude::*;
 
-use crate::codec::format::Format;
-use crate::codec::texels::{EncodeError, Texels, unorm8_row};
+use crate::codec::error::EncodeError;
+use crate::codec::format::PayloadFormat;
+use crate::codec::quantise::{Texels, unorm8_row};
 use crate::codec::uastc;
 use crate::codec::uastc::{BLOCK_BYTES, Effort, Encoder, Image, Metric, SizeError, Weight};
 use crate::simd::dispatch;
@@ -21,7 +22,7 @@ pub const ORM: Metric = Metric::Weighted([Weight::Quarter, Weight::Full, Weight:
 /// [`EncodeError::Encoder`].
 pub(super) fn uastc_blocks(
     texels: &Texels<'_>,
-    _: Format,
+    _: PayloadFormat,
     metric: Metric,
     effort: Effort,
 ) -> Result<Vec<u8>, EncodeError> {
@@ -43,8 +44,14 @@ pub(super) fn uastc_blocks(
         || (vec![[0.0; 4]; width], vec![[0; 4]; 4 * width]),
         |(values, rgba), (block_row, blocks)| encode_row(values, rgba, block_row, blocks),
     );
-    encoded.map_err(|e| texels.refused(&e))?;
+    encoded.map_err(|e| refused(texels, &e))?;
     Ok(blocks.into_flattened())
+}
+
+/// Returns the error for a level whose size the encoder of UASTC refuses.
+fn refused(texels: &Texels<'_>, error: &SizeError) -> EncodeError {
+    let &Texels { width, height, .. } = texels;
+    EncodeError::Encoder { format: PayloadFormat::UastcRgb, width, height, reason: error.to_string() }
 }
 
 /// Returns the first `N` channels of the texels as half floats.
@@ -53,7 +60,7 @@ pub(super) fn uastc_blocks(
 /// [`EncodeError::NotFinite`].
 pub(super) fn half<const N: usize>(
     texels: &Texels<'_>,
-    _: Format,
+    _: PayloadFormat,
     _: Metric,
     _: Effort,
 ) -> Result<Vec<u8>, EncodeError> {
@@ -65,7 +72,12 @@ pub(super) fn half<const N: usize>(
 /// # Errors
 /// [`EncodeError::Encoder`] if the encoder fails.
 #[cfg(feature = "bc")]
-pub(super) fn bc(texels: &Texels<'_>, format: Format, _: Metric, effort: Effort) -> Result<Vec<u8>, EncodeError> {
+pub(super) fn bc(
+    texels: &Texels<'_>,
+    format: PayloadFormat,
+    _: Metric,
+    effort: Effort,
+) -> Result<Vec<u8>, EncodeError> {
     crate::codec::bc::encode(texels, format, effort)
 }
 
@@ -74,7 +86,7 @@ pub(super) fn bc(texels: &Texels<'_>, format: Format, _: Metric, effort: Effort)
 /// # Errors
 /// [`EncodeError::WithoutBc`].
 #[cfg(not(feature = "bc"))]
-pub(super) fn bc(_: &Texels<'_>, _: Format, _: Metric, _: Effort) -> Result<Vec<u8>, EncodeError> {
+pub(super) fn bc(_: &Texels<'_>, _: PayloadFormat, _: Metric, _: Effort) -> Result<Vec<u8>, EncodeError> {
     Err(EncodeError::WithoutBc)
 }
 
@@ -85,7 +97,7 @@ pub(super) fn bc(_: &Texels<'_>, _: Format, _: Metric, _: Effort) -> Result<Vec<
 /// [`EncodeError::Encoder`] if `blocks` are not those of a level of that size.
 pub fn lower_rate(blocks: &mut [u8], texels: &Texels<'_>, metric: Metric, loss: f64) -> Result<(), EncodeError> {
     let rgba = texels.to_rgba8();
-    let image = Image::new(&rgba, texels.width, texels.height).map_err(|e| texels.refused(&e))?;
+    let image = Image::new(&rgba, texels.width, texels.height).map_err(|e| refused(texels, &e))?;
     let blocks = blocks.as_chunks_mut::<BLOCK_BYTES>().0;
-    uastc::lower_rate(blocks, &image, metric, loss).map_err(|e| texels.refused(&e))
+    uastc::lower_rate(blocks, &image, metric, loss).map_err(|e| refused(texels, &e))
 }

@@ -21,7 +21,7 @@ pub enum Target {
 /// How texels are stored. All formats hold linear data, never sRGB.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
-pub enum Format {
+pub enum PayloadFormat {
     /// UASTC LDR 4x4, opaque RGB.
     UastcRgb,
     /// One channel, 8 bytes per 4x4 block.

@@ -4,16 +4,20 @@
 #[cfg(feature = "bc")]
 mod bc;
 mod encode;
+mod error;
 mod format;
 mod png;
+mod quantise;
+mod rounding;
 mod table;
-mod texels;
 
 pub use png::{encode_png, fallback};
 
 pub use encode::{ORM, lower_rate};
-pub use format::{Format, Target};
-pub use table::{Codec, Identity, Rounding, encode};
-pub use texels::{EncodeError, Texels};
+pub use error::EncodeError;
+pub use format::{PayloadFormat, Target};
+pub use quantise::Texels;
+pub use rounding::{Endpoints, Rounding, Weights};
+pub use table::{Codec, Identity, encode};
 /// The encoder and decoder of UASTC blocks, a crate of its own.
 pub use uastc_encoder as uastc;

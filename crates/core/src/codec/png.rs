@@ -4,7 +4,8 @@ use std::io::Write;
 
 use png::{BitDepth, ColorType, Compression, Encoder, EncodingError, Filter};
 
-use crate::codec::texels::{EncodeError, Texels};
+use crate::codec::error::EncodeError;
+use crate::codec::quantise::Texels;
 use crate::codec::uastc::Effort;
 
 /// Number of rows that are made at a time, in parallel. For a map of 16384^2 texels they take 50 MB, with the values

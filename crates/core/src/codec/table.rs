@@ -1,29 +1,38 @@
-//! The table of payloads, which other modules ask. Two facts are elsewhere: which formats leave out z
-//! (`material/mip_chain.rs`, `select/shown.rs`), and how `check` bounds each rounding (`check/storage.rs`).
+//! The table of payloads: one row has all facts of a format but its decoder, which is in `ktx2/blocks.rs`.
 
 use std::num::NonZeroU8;
 
 use ktx2::dfd::{Basic, ChannelTypeQualifiers, DataFormatFlags, SampleInformation};
 use ktx2::{ColorModel, TransferFunction};
 
-use crate::codec::encode::{bc, half, uastc_blocks};
-use crate::codec::format::{Format, Target};
-use crate::codec::texels::{EncodeError, Texels};
+use crate::codec::encode::{bc, half, lower_rate, uastc_blocks};
+use crate::codec::error::EncodeError;
+use crate::codec::format::{PayloadFormat, Target};
+use crate::codec::quantise::Texels;
+use crate::codec::rounding::Rounding;
 use crate::codec::uastc::{Effort, Metric};
 
 /// Encodes one level.
-type Encode = fn(&Texels<'_>, Format, Metric, Effort) -> Result<Vec<u8>, EncodeError>;
+type Encode = fn(&Texels<'_>, PayloadFormat, Metric, Effort) -> Result<Vec<u8>, EncodeError>;
+
+/// Rewrites encoded blocks so that zstd makes them smaller. The last argument is the loss that is allowed, in dB.
+type LowerRate = fn(&mut [u8], &Texels<'_>, Metric, f64) -> Result<(), EncodeError>;
 
 /// The facts of a format.
 pub struct Codec {
     /// The format.
-    pub format: Format,
+    pub format: PayloadFormat,
     /// The target that it belongs to.
     pub target: Target,
     /// Most channels of texels that the target stores in it.
     pub channels: u32,
+    /// Whether the target stores normals in it: x, y and z or, in a format of two channels, x and y. Readers rebuild z
+    /// from x and y.
+    pub holds_normals: bool,
     /// How a KTX2 file names it.
     pub identity: Identity,
+    /// The Vulkan format of the same blocks with sRGB colours, which other writers use.
+    pub srgb: Option<ktx2::Format>,
     /// Columns and rows of a texel block; 1 if there are no blocks.
     pub block_edge: u32,
     /// Bytes of a block, or of a texel if there are no blocks.
@@ -34,6 +43,8 @@ pub struct Codec {
     pub is_supercompressed: bool,
     /// How far decoded values may lie from the encoded ones.
     pub rounding: Rounding,
+    /// Rewrites blocks for `--rdo`; `None` if `--rdo` does not change the format.
+    pub lower_rate: Option<LowerRate>,
     encode: Encode,
 }
 
@@ -46,72 +57,96 @@ pub enum Identity {
     Transcodable(fn() -> Basic),
 }
 
-/// Which rounding a format has; `check` has the numbers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Rounding {
-    /// Endpoints and weights by the mode of each UASTC block.
-    Uastc,
-    /// Endpoints by the mode of each BC7 block; all channels share one weight.
-    Bc7,
-    /// Eight weights for every channel of a block: BC4 and BC5.
-    SeparateChannels,
-    /// Half floats: a share of the value.
-    Float,
-}
-
 /// All formats. Those of a target are in the order of their channels.
 static TABLE: [Codec; 7] = [
     Codec {
-        format: Format::UastcRgb,
+        format: PayloadFormat::UastcRgb,
         target: Target::Basis,
         channels: 3,
+        holds_normals: true,
         identity: Identity::Transcodable(uastc_rgb),
+        srgb: None,
         block_edge: 4,
         block_bytes: 16,
         is_normalised: true,
         is_supercompressed: true,
-        rounding: Rounding::Uastc,
+        rounding: Rounding::UASTC,
+        lower_rate: Some(lower_rate),
         encode: uastc_blocks,
     },
-    bc_row(Format::Bc4, 1, ktx2::Format::BC4_UNORM_BLOCK, 8, Rounding::SeparateChannels),
-    bc_row(Format::Bc5, 2, ktx2::Format::BC5_UNORM_BLOCK, 16, Rounding::SeparateChannels),
-    bc_row(Format::Bc7, 3, ktx2::Format::BC7_UNORM_BLOCK, 16, Rounding::Bc7),
-    float_row(Format::R16Float, 1, ktx2::Format::R16_SFLOAT, 2, half::<1>),
-    float_row(Format::Rg16Float, 2, ktx2::Format::R16G16_SFLOAT, 4, half::<2>),
-    float_row(Format::Rgba16Float, 3, ktx2::Format::R16G16B16A16_SFLOAT, 8, half::<4>),
+    Codec {
+        format: PayloadFormat::Bc4,
+        channels: 1,
+        identity: Identity::Vulkan(ktx2::Format::BC4_UNORM_BLOCK),
+        srgb: None,
+        block_bytes: 8,
+        rounding: Rounding::BC4,
+        ..BC
+    },
+    Codec {
+        format: PayloadFormat::Bc5,
+        channels: 2,
+        holds_normals: true,
+        identity: Identity::Vulkan(ktx2::Format::BC5_UNORM_BLOCK),
+        srgb: None,
+        rounding: Rounding::BC4,
+        ..BC
+    },
+    BC,
+    Codec {
+        format: PayloadFormat::R16Float,
+        channels: 1,
+        holds_normals: false,
+        identity: Identity::Vulkan(ktx2::Format::R16_SFLOAT),
+        block_bytes: 2,
+        encode: half::<1>,
+        ..FLOAT
+    },
+    Codec {
+        format: PayloadFormat::Rg16Float,
+        channels: 2,
+        holds_normals: false,
+        identity: Identity::Vulkan(ktx2::Format::R16G16_SFLOAT),
+        block_bytes: 4,
+        encode: half::<2>,
+        ..FLOAT
+    },
+    FLOAT,
 ];
 
-/// Returns the row of a format of [`Target::Bc`].
-const fn bc_row(format: Format, channels: u32, vulkan: ktx2::Format, block_bytes: usize, rounding: Rounding) -> Codec {
-    Codec {
-        format,
-        target: Target::Bc,
-        channels,
-        identity: Identity::Vulkan(vulkan),
-        block_edge: 4,
-        block_bytes,
-        is_normalised: true,
-        is_supercompressed: false,
-        rounding,
-        encode: bc,
-    }
-}
+/// BC7, with the facts that all formats of [`Target::Bc`] share.
+const BC: Codec = Codec {
+    format: PayloadFormat::Bc7,
+    target: Target::Bc,
+    channels: 3,
+    holds_normals: false,
+    identity: Identity::Vulkan(ktx2::Format::BC7_UNORM_BLOCK),
+    srgb: Some(ktx2::Format::BC7_SRGB_BLOCK),
+    block_edge: 4,
+    block_bytes: 16,
+    is_normalised: true,
+    is_supercompressed: false,
+    rounding: Rounding::BC7,
+    lower_rate: None,
+    encode: bc,
+};
 
-/// Returns the row of a format of [`Target::Float`].
-const fn float_row(format: Format, channels: u32, vulkan: ktx2::Format, block_bytes: usize, encode: Encode) -> Codec {
-    Codec {
-        format,
-        target: Target::Float,
-        channels,
-        identity: Identity::Vulkan(vulkan),
-        block_edge: 1,
-        block_bytes,
-        is_normalised: false,
-        is_supercompressed: false,
-        rounding: Rounding::Float,
-        encode,
-    }
-}
+/// Four half floats, with the facts that all formats of [`Target::Float`] share.
+const FLOAT: Codec = Codec {
+    format: PayloadFormat::Rgba16Float,
+    target: Target::Float,
+    channels: 3,
+    holds_normals: true,
+    identity: Identity::Vulkan(ktx2::Format::R16G16B16A16_SFLOAT),
+    srgb: None,
+    block_edge: 1,
+    block_bytes: 8,
+    is_normalised: false,
+    is_supercompressed: false,
+    rounding: Rounding::Floats,
+    lower_rate: None,
+    encode: half::<4>,
+};
 
 /// Returns the data format descriptor of opaque UASTC (Khronos Data Format Specification 1.3, UASTC): one sample of 128
 /// bits, of which channel 0 is RGB. The plane keeps its size under supercompression since KTX 2.0.4.
@@ -138,10 +173,17 @@ fn uastc_rgb() -> Basic {
 
 impl Target {
     /// Returns the format for texels of `channels` (1 to 3) channels.
-    pub fn format(self, channels: u32) -> Format {
+    pub fn format(self, channels: u32) -> PayloadFormat {
         let mut rows = TABLE.iter().filter(|codec| codec.target == self);
         // A test holds that every target has a format for 1 to 3 channels.
-        rows.find(|codec| codec.channels >= channels).map_or(Format::UastcRgb, |codec| codec.format)
+        rows.find(|codec| codec.channels >= channels).map_or(PayloadFormat::UastcRgb, |codec| codec.format)
+    }
+
+    /// Returns the format for normals.
+    pub fn normal_format(self) -> PayloadFormat {
+        let row = TABLE.iter().find(|codec| codec.target == self && codec.holds_normals);
+        // A test holds that every target has a format for normals.
+        row.map_or(PayloadFormat::UastcRgb, |codec| codec.format)
     }
 
     /// Checks that this build can encode the target.
@@ -154,17 +196,22 @@ impl Target {
 }
 
 impl Codec {
-    /// Returns the facts of the format that a KTX2 file names, if it is one that Roughcast writes. `format` is the
-    /// Vulkan format of the header, and `model` the colour model of the descriptor.
+    /// Returns the facts of all formats.
+    pub fn all() -> &'static [Self] {
+        &TABLE
+    }
+
+    /// Returns the facts of the format that a KTX2 file names, if it is one that Roughcast writes, or its sRGB form.
+    /// `format` is the Vulkan format of the header, and `model` the colour model of the descriptor.
     pub fn of_file(format: Option<ktx2::Format>, model: Option<ColorModel>) -> Option<&'static Self> {
         TABLE.iter().find(|codec| match codec.identity {
-            Identity::Vulkan(vulkan) => format == Some(vulkan),
+            Identity::Vulkan(vulkan) => format.is_some() && (format == Some(vulkan) || format == codec.srgb),
             Identity::Transcodable(descriptor) => format.is_none() && model == descriptor().color_model,
         })
     }
 }
 
-impl Format {
+impl PayloadFormat {
     /// Returns the facts of the format.
     pub fn codec(self) -> &'static Codec {
         // A test holds that every format has a row.
@@ -184,9 +231,9 @@ impl Format {
         self.codec().block_bytes
     }
 
-    /// Returns whether texels are stored in blocks of 4x4.
-    pub fn is_block(self) -> bool {
-        self.codec().block_edge > 1
+    /// Returns whether normals in this format have a z. Readers of formats with two channels rebuild z.
+    pub fn has_z(self) -> bool {
+        self.codec().channels > 2
     }
 
     /// Returns whether values are quantised to [0, 1] before encoding.
@@ -208,7 +255,12 @@ impl Format {
 ///
 /// [`EncodeError`] for block formats whose encoder is missing or fails, and for values that half floats cannot
 /// represent.
-pub fn encode(texels: &Texels<'_>, format: Format, metric: Metric, effort: Effort) -> Result<Vec<u8>, EncodeError> {
+pub fn encode(
+    texels: &Texels<'_>,
+    format: PayloadFormat,
+    metric: Metric,
+    effort: Effort,
+) -> Result<Vec<u8>, EncodeError> {
     (format.codec().encode)(texels, format, metric, effort)
 }
 

@@ -1,7 +1,7 @@
 //! The table of material layers: where a material keeps the bumps, roughness and anisotropy of each of its lobes.
 //!
-//! [`crate::gltf::material`] reads materials by this table, and the bake writes them by it. A new layer is
-//! a new [`LayerKind`] with a new row.
+//! [`crate::gltf::material`] reads materials by this table, the bake writes them by it, and the checker and `inspect`
+//! find textures by it. A new layer is a new [`LayerKind`] with a new row.
 
 use serde::{Deserialize, Serialize};
 
@@ -24,6 +24,10 @@ pub type Pointer = &'static str;
 pub struct LayerRow {
     /// The layer.
     pub kind: LayerKind,
+    /// The name of the layer in reports, in notes and on the command line.
+    pub name: &'static str,
+    /// The extension without which a material does not have the layer; none for the base layer.
+    pub extension: Option<&'static str>,
     /// The normal texture. The scale of its bumps is its member `scale`.
     pub normal_texture: Pointer,
     /// The height texture, which is read where there is no normal texture. Its scale is its member `scale`.
@@ -64,6 +68,8 @@ pub static LAYERS: [LayerRow; 2] = [BASE, CLEARCOAT];
 
 const BASE: LayerRow = LayerRow {
     kind: LayerKind::Base,
+    name: "base",
+    extension: None,
     normal_texture: "normalTexture",
     height_texture: Some("extras/roughcast/heightTexture"),
     roughness_texture: "pbrMetallicRoughness/metallicRoughnessTexture",
@@ -83,6 +89,8 @@ const BASE: LayerRow = LayerRow {
 
 const CLEARCOAT: LayerRow = LayerRow {
     kind: LayerKind::Clearcoat,
+    name: "clearcoat",
+    extension: Some("KHR_materials_clearcoat"),
     normal_texture: "extensions/KHR_materials_clearcoat/clearcoatNormalTexture",
     height_texture: None,
     roughness_texture: "extensions/KHR_materials_clearcoat/clearcoatRoughnessTexture",
@@ -94,21 +102,35 @@ const CLEARCOAT: LayerRow = LayerRow {
     is_in_pyramid: false,
 };
 
+impl LayerRow {
+    /// Returns the textures of bumps, roughness and anisotropy. A height texture is not among them, since glTF does not
+    /// know it.
+    pub fn textures(&self) -> impl Iterator<Item = Pointer> {
+        let anisotropy = self.anisotropy.as_ref().map(|row| row.texture);
+        [self.normal_texture, self.roughness_texture].into_iter().chain(anisotropy)
+    }
+}
+
+/// Splits a pointer into the pointer of the object and the name of the member.
+pub(super) fn split(pointer: Pointer) -> (Pointer, &'static str) {
+    pointer.rsplit_once('/').unwrap_or(("", pointer))
+}
+
+/// Returns the name of the member that a pointer leads to.
+pub fn member(pointer: Pointer) -> &'static str {
+    split(pointer).1
+}
+
 impl LayerKind {
     /// Returns the name, as reports have it.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Base => "base",
-            Self::Clearcoat => "clearcoat",
-        }
+        self.row().name
     }
 
     /// Returns the row of the layer.
     pub fn row(self) -> &'static LayerRow {
-        match self {
-            Self::Base => &LAYERS[0],
-            Self::Clearcoat => &LAYERS[1],
-        }
+        // Layers are made from rows, so every layer has one.
+        LAYERS.iter().find(|row| row.kind == self).unwrap_or(&LAYERS[0])
     }
 }
 

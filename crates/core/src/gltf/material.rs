@@ -4,7 +4,7 @@ use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
-use super::layers::{AnisotropyRow, LAYERS, LayerRow};
+use super::layers::{AnisotropyRow, LAYERS, LayerRow, member, split};
 
 pub use super::layers::LayerKind;
 
@@ -190,8 +190,13 @@ struct RawMaterial<'a> {
 }
 
 impl<'a> RawMaterial<'a> {
-    /// Reads a layer; none if the layer has no bumps. A layer without bumps is checked nevertheless.
+    /// Reads a layer; none if the material does not have the layer, or if the layer has no bumps. A layer without bumps
+    /// is checked nevertheless.
     fn layer(&self, row: &LayerRow) -> Result<Option<Layer>, MaterialError> {
+        let extensions = self.value.get("extensions");
+        if row.extension.is_some_and(|name| extensions.and_then(|extensions| extensions.get(name)).is_none()) {
+            return Ok(None);
+        }
         let bumps = self.bumps(row)?;
         let occlusion = row.occlusion_texture.map(|pointer| self.part(pointer).read::<RawTexture>());
         let occlusion = occlusion.transpose()?.flatten();
@@ -237,11 +242,6 @@ impl<'a> RawMaterial<'a> {
         let value = self.value.pointer(&format!("/{pointer}"));
         Part { index: self.index, name: self.name, pointer, value }
     }
-}
-
-/// Splits a pointer into the pointer of the object and the name of the member.
-fn split(pointer: &'static str) -> (&'static str, &'static str) {
-    pointer.rsplit_once('/').unwrap_or(("", pointer))
 }
 
 /// A part of a material that may be absent.
@@ -291,7 +291,7 @@ impl<'a> Part<'a> {
     fn failed(&self, reason: String) -> MaterialError {
         let part = match self.pointer.starts_with("extras/") {
             true => self.pointer.replace('/', "."),
-            false => split(self.pointer).1.to_owned(),
+            false => member(self.pointer).to_owned(),
         };
         MaterialError { index: self.index, name: self.name.unwrap_or_default().to_owned(), part, reason }
     }
@@ -304,8 +304,8 @@ impl ObjectPart<'_> {
 
     /// Reads the member that is at `pointer` in the material; `null` counts as absent.
     fn read<T: DeserializeOwned>(&self, pointer: &'static str) -> Result<Option<T>, MaterialError> {
-        let member = self.0.value.and_then(|object| object.get(split(pointer).1));
-        let read = member.map(Option::<T>::deserialize).transpose();
+        let value = self.0.value.and_then(|object| object.get(member(pointer)));
+        let read = value.map(Option::<T>::deserialize).transpose();
         read.map(Option::flatten).map_err(|reason| self.0.failed(reason.to_string()))
     }
 }

@@ -14,6 +14,9 @@ pub const EXTENSION: &str = "ROUGHCAST_materials_roughness_pyramid";
 /// know of increases it.
 pub const FORMAT_VERSION: u32 = 1;
 
+/// The members that refer to textures: offsets, and D or lambda_1.
+pub const TEXTURES: [&str; 2] = ["offsetTexture", "roughnessTexture"];
+
 /// The extension object of a material. Numbers are written as `f32`, as short as they can be, and read as `f64`.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
@@ -205,13 +208,14 @@ impl RoughnessPyramid {
 
     /// Returns the textures, each with its member and the content that its provenance should name.
     pub fn textures(&self) -> Vec<(&'static str, usize, &'static str)> {
-        let mut textures = vec![("offsetTexture", self.offset_texture.index, "offset")];
+        let [offset, roughness] = TEXTURES;
+        let mut textures = vec![(offset, self.offset_texture.index, "offset")];
         if let (Some(texture), Some(model)) = (&self.roughness_texture, self.roughness_model) {
             let content = match model {
                 RoughnessModel::CovarianceFactor => "factor",
                 RoughnessModel::StandardDeviation => "lambda1",
             };
-            textures.push(("roughnessTexture", texture.index, content));
+            textures.push((roughness, texture.index, content));
         }
         textures
     }

@@ -8,6 +8,7 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use super::uri::relative_path;
+use crate::image::FileFormat;
 use crate::mip::Wrap;
 
 /// Extensions with which a texture names an image besides its core `source`, most faithful first.
@@ -93,10 +94,10 @@ impl TextureSource {
 
 /// Returns an image's name without the extension of an image file, which some exporters leave in names.
 fn without_extension(name: &str) -> &str {
-    const EXTENSIONS: [&str; 10] = ["png", "jpg", "jpeg", "webp", "ktx2", "tga", "tif", "tiff", "exr", "hdr"];
     let extension = Path::new(name).extension().and_then(|e| e.to_str());
-    let is_image = |extension: &&str| EXTENSIONS.iter().any(|e| extension.eq_ignore_ascii_case(e));
-    extension.filter(is_image).map_or(name, |extension| &name[..name.len() - extension.len() - 1])
+    extension
+        .filter(|extension| FileFormat::is_extension(extension))
+        .map_or(name, |extension| &name[..name.len() - extension.len() - 1])
 }
 
 /// The textures of a document. Each texture is read once and shared by all users, together with the URI of its image,

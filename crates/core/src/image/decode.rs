@@ -12,7 +12,7 @@ use image::{DynamicImage, ImageDecoder, ImageError, Limits};
 use crate::foreign::Foreign;
 use crate::image::decoded::{Image, Samples};
 use crate::image::error::DecodeError;
-use crate::image::format::Format;
+use crate::image::format::FileFormat;
 use crate::image::size::texels;
 use crate::image::{exr, jpeg, tiff};
 use crate::memory;
@@ -53,18 +53,18 @@ pub fn decode_raster(bytes: &[u8], options: &DecodeOptions) -> Result<Image, Dec
     if let Some(found) = Foreign::detect(bytes) {
         return Err(DecodeError::Foreign { found });
     }
-    let format = Format::detect(bytes, options.extension.as_deref())
+    let format = FileFormat::detect(bytes, options.extension.as_deref())
         .ok_or_else(|| DecodeError::UnknownFormat { start: bytes.iter().take(8).copied().collect() })?;
     // `exr` 1.74 panics on some hostile B44 blocks; no other decoder did in 10^7 changed files.
     let decoded = panic::catch_unwind(|| decode_as(format, bytes, options));
     decoded.unwrap_or_else(|_| Err(DecodeError::malformed(format, "its decoder panicked")))
 }
 
-fn decode_as(format: Format, bytes: &[u8], options: &DecodeOptions) -> Result<Image, DecodeError> {
+fn decode_as(format: FileFormat, bytes: &[u8], options: &DecodeOptions) -> Result<Image, DecodeError> {
     let limit = options.max_pixels;
     let failed = |error| from_image(format, limit, error);
     match format {
-        Format::Png => {
+        FileFormat::Png => {
             // The decoder allocates rows while it reads the header, so the header is checked first.
             if let Some(header) = PngHeader::read(bytes) {
                 texels(format, header.width, header.height, limit)?;
@@ -74,22 +74,22 @@ fn decode_as(format: Format, bytes: &[u8], options: &DecodeOptions) -> Result<Im
             let decoder = PngDecoder::with_limits(Cursor::new(bytes), limits).map_err(failed)?;
             raster(format, decoder, limit)
         }
-        Format::Tga => {
+        FileFormat::Tga => {
             let decoder = TgaDecoder::new(Cursor::new(bytes)).map_err(failed)?;
             raster(format, decoder, limit)
         }
-        Format::WebP => {
+        FileFormat::WebP => {
             let decoder = WebPDecoder::new(Cursor::new(bytes)).map_err(failed)?;
             raster(format, decoder, limit)
         }
-        Format::Hdr => {
+        FileFormat::Hdr => {
             let decoder = HdrDecoder::new(Cursor::new(bytes)).map_err(failed)?;
             raster(format, decoder, limit)
         }
-        Format::Jpeg => jpeg::decode(bytes, limit),
-        Format::Tiff => tiff::decode(bytes, limit),
-        Format::Exr => exr::decode(bytes, limit, options.layer.as_deref()),
-        Format::Ktx2 => Err(DecodeError::unsupported(format, "a texture container")),
+        FileFormat::Jpeg => jpeg::decode(bytes, limit),
+        FileFormat::Tiff => tiff::decode(bytes, limit),
+        FileFormat::Exr => exr::decode(bytes, limit, options.layer.as_deref()),
+        FileFormat::Ktx2 => Err(DecodeError::unsupported(format, "a texture container")),
     }
 }
 
@@ -122,7 +122,7 @@ impl PngHeader {
             return Ok(());
         }
         let what = format!("{length} bytes cannot hold {} x {} texels", self.width, self.height);
-        Err(DecodeError::Truncated { format: Format::Png, what })
+        Err(DecodeError::Truncated { format: FileFormat::Png, what })
     }
 }
 
@@ -132,7 +132,7 @@ fn side_limits() -> Limits {
     limits
 }
 
-fn raster(format: Format, mut decoder: impl ImageDecoder, limit: u64) -> Result<Image, DecodeError> {
+fn raster(format: FileFormat, mut decoder: impl ImageDecoder, limit: u64) -> Result<Image, DecodeError> {
     let failed = |error| from_image(format, limit, error);
     let (width, height) = decoder.dimensions();
     texels(format, width.into(), height.into(), limit)?;
@@ -140,7 +140,7 @@ fn raster(format: Format, mut decoder: impl ImageDecoder, limit: u64) -> Result<
     limits.max_alloc = Some(decoder.total_bytes().saturating_add(SIDE_MEMORY));
     decoder.set_limits(limits).map_err(failed)?;
     // The WebP decoder holds planes or colour codes beside the texels.
-    let copies = if format == Format::WebP { 3 } else { 1 };
+    let copies = if format == FileFormat::WebP { 3 } else { 1 };
     memory::check(decoder.total_bytes().saturating_mul(copies))?;
     let decoded = DynamicImage::from_decoder(decoder).map_err(failed)?;
     let channels = decoded.color().channel_count().into();
@@ -163,7 +163,7 @@ fn raster(format: Format, mut decoder: impl ImageDecoder, limit: u64) -> Result<
     Ok(Image { width, height, channels, samples })
 }
 
-fn from_image(format: Format, limit: u64, error: ImageError) -> DecodeError {
+fn from_image(format: FileFormat, limit: u64, error: ImageError) -> DecodeError {
     match error {
         ImageError::IoError(error) => DecodeError::from_io(format, &error),
         ImageError::Unsupported(error) => DecodeError::unsupported(format, error),

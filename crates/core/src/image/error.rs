@@ -1,7 +1,7 @@
 //! Why an image could not be decoded.
 
 use crate::foreign::Foreign;
-use crate::image::format::Format;
+use crate::image::format::{FileFormat, signed_formats, unsigned_formats};
 use crate::memory::OutOfMemory;
 
 /// Why an image could not be decoded. The caller adds the file's name.
@@ -9,15 +9,16 @@ use crate::memory::OutOfMemory;
 #[non_exhaustive]
 pub enum DecodeError {
     /// The file is of another kind than an image.
-    #[error("expected PNG, JPEG, TIFF, WebP, HDR, EXR or KTX2, found {found}")]
+    #[error("expected {}, found {found}", signed_formats())]
     Foreign {
         /// The kind of the file.
         found: Foreign,
     },
     /// The first bytes are not those of a known format.
     #[error(
-        "unknown image format (the first bytes are {start:02x?}): expected PNG, JPEG, TIFF, WebP, \
-         HDR, EXR or KTX2, or a TGA with the extension .tga"
+        "unknown image format (the first bytes are {start:02x?}): expected {}{}",
+        signed_formats(),
+        unsigned_formats()
     )]
     UnknownFormat {
         /// The first bytes, 8 at most.
@@ -27,7 +28,7 @@ pub enum DecodeError {
     #[error("the {format} file is cut off ({what}): copy or export it again")]
     Truncated {
         /// The file's format.
-        format: Format,
+        format: FileFormat,
         /// What was missing, in the decoder's words.
         what: String,
     },
@@ -35,7 +36,7 @@ pub enum DecodeError {
     #[error("the {format} file is damaged ({what}): export it again")]
     Malformed {
         /// The file's format.
-        format: Format,
+        format: FileFormat,
         /// Which rule, in the decoder's words.
         what: String,
     },
@@ -63,7 +64,7 @@ pub enum DecodeError {
     #[error("this {format} file is of a kind that is not read ({what}): save it differently")]
     Unsupported {
         /// The file's format.
-        format: Format,
+        format: FileFormat,
         /// The variant.
         what: String,
     },
@@ -73,11 +74,11 @@ pub enum DecodeError {
 }
 
 impl DecodeError {
-    pub(super) fn malformed(format: Format, what: impl ToString) -> DecodeError {
+    pub(super) fn malformed(format: FileFormat, what: impl ToString) -> DecodeError {
         DecodeError::Malformed { format, what: brief(&what.to_string()) }
     }
 
-    pub(super) fn unsupported(format: Format, what: impl ToString) -> DecodeError {
+    pub(super) fn unsupported(format: FileFormat, what: impl ToString) -> DecodeError {
         DecodeError::Unsupported { format, what: brief(&what.to_string()) }
     }
 
@@ -87,7 +88,7 @@ impl DecodeError {
     }
 
     /// Converts a reader's error on a file in memory. An unexpected end is the only error that means a truncated file.
-    pub(super) fn from_io(format: Format, error: &std::io::Error) -> DecodeError {
+    pub(super) fn from_io(format: FileFormat, error: &std::io::Error) -> DecodeError {
         let what = brief(&error.to_string());
         match error.kind() {
             std::io::ErrorKind::UnexpectedEof => DecodeError::Truncated { format, what },

@@ -16,11 +16,11 @@ use ::exr::prelude::f16;
 
 use crate::image::decoded::{Image, Samples};
 use crate::image::error::{DecodeError, listed};
-use crate::image::format::Format;
+use crate::image::format::FileFormat;
 use crate::image::size::texels;
 use crate::memory;
 
-const FORMAT: Format = Format::Exr;
+const FORMAT: FileFormat = FileFormat::Exr;
 
 /// The channels that make an image, in the order in which they are interleaved.
 struct Choice {

@@ -6,17 +6,17 @@ mod error;
 mod exr;
 mod format;
 mod jpeg;
+mod rgba;
 mod size;
-mod texels;
 mod tiff;
 
 pub use decode::{DecodeOptions, decode_raster};
 pub use error::DecodeError;
-pub use format::Format;
+pub use format::FileFormat;
 
 pub use decoded::{Image, Samples};
 
-pub use texels::Rgba;
+pub use rgba::Rgba;
 
 /// Why an image cannot be used as a map.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -51,4 +51,4 @@ mod test_files;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use texels::each;
+pub(crate) use rgba::each;

@@ -7,7 +7,7 @@ use ::tiff::encoder::colortype;
 use crate::image::decode::DecodeOptions;
 use crate::image::decode::decode_raster as decode;
 use crate::image::error::DecodeError;
-use crate::image::format::Format;
+use crate::image::format::FileFormat;
 use crate::image::test_files;
 use crate::image::test_files::{Png, exr, halves, value, values};
 
@@ -166,7 +166,7 @@ fn no_texels_are_refused() {
 fn a_cut_png_is_called_truncated() {
     let file = test_files::png(5, 4);
     let found = decode(&file[..60], &DecodeOptions::default());
-    assert!(matches!(found, Err(DecodeError::Truncated { format: Format::Png, .. })), "{found:?}");
+    assert!(matches!(found, Err(DecodeError::Truncated { format: FileFormat::Png, .. })), "{found:?}");
 }
 
 #[test]

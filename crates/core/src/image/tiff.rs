@@ -7,11 +7,11 @@ use ::tiff::{ColorType, TiffError};
 
 use crate::image::decoded::{Image, Samples};
 use crate::image::error::DecodeError;
-use crate::image::format::Format;
+use crate::image::format::FileFormat;
 use crate::image::size::texels;
 use crate::memory;
 
-const FORMAT: Format = Format::Tiff;
+const FORMAT: FileFormat = FileFormat::Tiff;
 
 pub(super) fn decode(bytes: &[u8], limit: u64) -> Result<Image, DecodeError> {
     let mut decoder = Decoder::new(Cursor::new(bytes)).map_err(failed)?;

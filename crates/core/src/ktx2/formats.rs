@@ -2,6 +2,8 @@
 
 use ktx2::{ColorModel, Format, dfd};
 
+use crate::ktx2::blocks::{self, BlockFormat};
+
 /// A texel block: its size in texels and in bytes.
 pub(super) struct Block {
     pub width: u32,
@@ -14,7 +16,7 @@ pub(super) enum Coding {
     /// Each texel by itself.
     Texels(Texel),
     /// Blocks of 4 x 4.
-    Blocks(BlockFormat),
+    Blocks(&'static BlockFormat),
     /// Basis Universal UASTC LDR, with the channels to keep.
     Uastc(&'static [usize]),
     /// Basis Universal ETC1S, with the channels to keep.
@@ -44,36 +46,6 @@ pub(super) enum Values {
     PackedFloat,
 }
 
-/// The BC formats.
-#[derive(Clone, Copy)]
-pub(super) enum BlockFormat {
-    Bc1 { alpha: bool },
-    Bc2,
-    Bc3,
-    Bc4 { signed: bool },
-    Bc5 { signed: bool },
-    Bc6h { signed: bool },
-    Bc7,
-}
-
-impl BlockFormat {
-    pub(super) fn bytes(self) -> usize {
-        match self {
-            BlockFormat::Bc1 { .. } | BlockFormat::Bc4 { .. } => 8,
-            _ => 16,
-        }
-    }
-
-    pub(super) fn channels(self) -> usize {
-        match self {
-            BlockFormat::Bc4 { .. } => 1,
-            BlockFormat::Bc5 { .. } => 2,
-            BlockFormat::Bc1 { alpha: false } | BlockFormat::Bc6h { .. } => 3,
-            _ => 4,
-        }
-    }
-}
-
 impl Texel {
     fn bytes(&self) -> u64 {
         let channels = u64::from(self.channels);
@@ -101,10 +73,7 @@ impl Coding {
             Coding::Texels(Texel { channels, values: Values::Unorm8, .. }) => u64::from(*channels),
             Coding::Texels(Texel { channels, values: Values::Unorm16, .. }) => 2 * u64::from(*channels),
             Coding::Texels(texel) => 4 * u64::from(texel.channels),
-            // Unsigned values are decoded to floats of 4 bytes and then rounded to 2 bytes.
-            Coding::Blocks(kind @ (BlockFormat::Bc4 { .. } | BlockFormat::Bc5 { .. })) => 6 * kind.channels() as u64,
-            Coding::Blocks(kind @ BlockFormat::Bc6h { .. }) => 4 * kind.channels() as u64,
-            Coding::Blocks(kind) => kind.channels() as u64,
+            Coding::Blocks(format) => format.channel_bytes * format.channels as u64,
             Coding::Uastc(channels) => channels.len() as u64,
             // The transcoder's four channels and the kept channels.
             Coding::Etc1s(channels) => 4 + channels.len() as u64,
@@ -115,7 +84,7 @@ impl Coding {
     pub(super) fn channels(&self) -> u32 {
         match self {
             Coding::Texels(texel) => texel.channels,
-            Coding::Blocks(kind) => kind.channels() as u32,
+            Coding::Blocks(format) => format.channels as u32,
             Coding::Uastc(channels) | Coding::Etc1s(channels) => channels.len() as u32,
         }
     }
@@ -127,7 +96,7 @@ pub(super) fn block_of(format: Option<Format>, basic: Option<&dfd::Basic>) -> Op
     let block = |edge: u32, bytes: u64| Block { width: edge, height: edge, bytes };
     match Coding::of(format, basic) {
         Some(Coding::Texels(texel)) => Some(block(1, texel.bytes())),
-        Some(Coding::Blocks(kind)) => Some(block(4, kind.bytes() as u64)),
+        Some(Coding::Blocks(format)) => Some(block(4, format.bytes as u64)),
         Some(Coding::Uastc(_)) => Some(block(4, 16)),
         Some(Coding::Etc1s(_)) | None => {
             let basic = basic?;
@@ -164,7 +133,7 @@ fn of_vulkan(format: Format) -> Option<Coding> {
     use Values::{Float, Half, PackedFloat, SharedExponent, Snorm8, Snorm16, Unorm8, Unorm16};
     let texel = |channels, values| Some(Coding::Texels(Texel { channels, values, blue_first: false }));
     let blue_first = |channels| Some(Coding::Texels(Texel { channels, values: Unorm8, blue_first: true }));
-    let blocks = |kind| Some(Coding::Blocks(kind));
+    let blocks = |format| Some(Coding::Blocks(format));
     match format {
         Format::R8_UNORM | Format::R8_SRGB => texel(1, Unorm8),
         Format::R8G8_UNORM | Format::R8G8_SRGB => texel(2, Unorm8),
@@ -194,17 +163,17 @@ fn of_vulkan(format: Format) -> Option<Coding> {
         Format::R32G32B32A32_SFLOAT => texel(4, Float),
         Format::E5B9G9R9_UFLOAT_PACK32 => texel(3, SharedExponent),
         Format::B10G11R11_UFLOAT_PACK32 => texel(3, PackedFloat),
-        Format::BC1_RGB_UNORM_BLOCK | Format::BC1_RGB_SRGB_BLOCK => blocks(BlockFormat::Bc1 { alpha: false }),
-        Format::BC1_RGBA_UNORM_BLOCK | Format::BC1_RGBA_SRGB_BLOCK => blocks(BlockFormat::Bc1 { alpha: true }),
-        Format::BC2_UNORM_BLOCK | Format::BC2_SRGB_BLOCK => blocks(BlockFormat::Bc2),
-        Format::BC3_UNORM_BLOCK | Format::BC3_SRGB_BLOCK => blocks(BlockFormat::Bc3),
-        Format::BC4_UNORM_BLOCK => blocks(BlockFormat::Bc4 { signed: false }),
-        Format::BC4_SNORM_BLOCK => blocks(BlockFormat::Bc4 { signed: true }),
-        Format::BC5_UNORM_BLOCK => blocks(BlockFormat::Bc5 { signed: false }),
-        Format::BC5_SNORM_BLOCK => blocks(BlockFormat::Bc5 { signed: true }),
-        Format::BC6H_UFLOAT_BLOCK => blocks(BlockFormat::Bc6h { signed: false }),
-        Format::BC6H_SFLOAT_BLOCK => blocks(BlockFormat::Bc6h { signed: true }),
-        Format::BC7_UNORM_BLOCK | Format::BC7_SRGB_BLOCK => blocks(BlockFormat::Bc7),
+        Format::BC1_RGB_UNORM_BLOCK | Format::BC1_RGB_SRGB_BLOCK => blocks(&blocks::BC1_RGB),
+        Format::BC1_RGBA_UNORM_BLOCK | Format::BC1_RGBA_SRGB_BLOCK => blocks(&blocks::BC1_RGBA),
+        Format::BC2_UNORM_BLOCK | Format::BC2_SRGB_BLOCK => blocks(&blocks::BC2),
+        Format::BC3_UNORM_BLOCK | Format::BC3_SRGB_BLOCK => blocks(&blocks::BC3),
+        Format::BC4_UNORM_BLOCK => blocks(&blocks::BC4_UNORM),
+        Format::BC4_SNORM_BLOCK => blocks(&blocks::BC4_SNORM),
+        Format::BC5_UNORM_BLOCK => blocks(&blocks::BC5_UNORM),
+        Format::BC5_SNORM_BLOCK => blocks(&blocks::BC5_SNORM),
+        Format::BC6H_UFLOAT_BLOCK => blocks(&blocks::BC6H_UFLOAT),
+        Format::BC6H_SFLOAT_BLOCK => blocks(&blocks::BC6H_SFLOAT),
+        Format::BC7_UNORM_BLOCK | Format::BC7_SRGB_BLOCK => blocks(&blocks::BC7),
         _ => None,
     }
 }

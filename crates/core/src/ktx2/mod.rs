@@ -7,7 +7,7 @@ mod formats;
 mod inflate;
 mod provenance;
 mod read;
-mod texels;
+mod uncompressed;
 mod write;
 
 pub use error::ReadError;

@@ -11,7 +11,7 @@ use crate::codec::Identity;
 use crate::image::{Image, Samples};
 use crate::ktx2::error::ReadError;
 use crate::ktx2::formats::{Coding, block_of};
-use crate::ktx2::{basis, blocks, inflate, texels};
+use crate::ktx2::{basis, blocks, inflate, uncompressed};
 use crate::memory::{self, OutOfMemory};
 
 /// A parsed KTX2 file. Parsing allocates nothing that a hostile header could make large.
@@ -259,7 +259,7 @@ impl<'a> Ktx2<'a> {
 
 /// Decodes a level of `size` texels as [`crate::codec::encode`] returns it. Returns `None` if the payload has another
 /// length than the size needs.
-pub fn decode_payload(payload: &[u8], format: crate::codec::Format, size: (u32, u32)) -> Option<Image> {
+pub fn decode_payload(payload: &[u8], format: crate::codec::PayloadFormat, size: (u32, u32)) -> Option<Image> {
     let coding = match format.codec().identity {
         Identity::Vulkan(vulkan) => Coding::of(Some(vulkan), None)?,
         Identity::Transcodable(descriptor) => Coding::of(None, Some(&descriptor()))?,
@@ -275,8 +275,8 @@ pub fn decode_payload(payload: &[u8], format: crate::codec::Format, size: (u32, 
 fn decode(payload: Cow<'_, [u8]>, coding: &Coding, size: (u32, u32)) -> Option<Samples> {
     match coding {
         Coding::Uastc(channels) => basis::uastc(&payload, size, channels),
-        Coding::Blocks(kind) => Some(blocks::decode(&payload, size, *kind)),
-        Coding::Texels(texel) => Some(texels::decode(payload, texel)),
+        Coding::Blocks(format) => Some(blocks::decode(&payload, size, format)),
+        Coding::Texels(texel) => Some(uncompressed::decode(payload, texel)),
         Coding::Etc1s(_) => None,
     }
 }

@@ -9,7 +9,7 @@ use zstd::stream::write::Encoder;
 use zstd::zstd_safe::{CParameter, Strategy};
 
 use crate::codec::uastc::Effort;
-use crate::codec::{Format, Identity};
+use crate::codec::{Identity, PayloadFormat};
 use crate::memory::{self, OutOfMemory};
 
 /// An entry of the key/value data whose value is text.
@@ -34,7 +34,7 @@ impl StoredLevel {
     ///
     /// # Errors
     /// [`OutOfMemory`].
-    pub fn new(level: Vec<u8>, format: Format, effort: Effort) -> Result<Self, OutOfMemory> {
+    pub fn new(level: Vec<u8>, format: PayloadFormat, effort: Effort) -> Result<Self, OutOfMemory> {
         let mut writer = LevelWriter::new(level.len(), format, effort)?;
         writer.push(&level)?;
         writer.finish()
@@ -58,7 +58,7 @@ impl LevelWriter {
     ///
     /// # Errors
     /// [`OutOfMemory`].
-    pub fn new(uncompressed: usize, format: Format, effort: Effort) -> Result<Self, OutOfMemory> {
+    pub fn new(uncompressed: usize, format: PayloadFormat, effort: Effort) -> Result<Self, OutOfMemory> {
         // The whole length is reserved: pages that are not written take no memory, while a buffer that grows is copied.
         let buffer = memory::with_capacity(uncompressed)?;
         let zstd = |buffer| {
@@ -111,7 +111,7 @@ fn out_of_memory(uncompressed: usize) -> impl Fn(io::Error) -> OutOfMemory {
 #[derive(Clone, Debug)]
 pub struct Ktx2Writer<'a> {
     /// The format of the texels.
-    pub format: Format,
+    pub format: PayloadFormat,
     /// Columns of level 0.
     pub width: u32,
     /// Rows of level 0.
@@ -224,7 +224,7 @@ impl Ktx2Writer<'_> {
 }
 
 /// Returns the "Data Format Descriptor", total size and one basic block, and the `typeSize` of the header.
-fn data_format_descriptor(format: Format) -> (Vec<u8>, u32) {
+fn data_format_descriptor(format: PayloadFormat) -> (Vec<u8>, u32) {
     let (mut basic, type_size) = match format.codec().identity {
         // Only formats of the table in `codec` get here, and a test writes a file of each of them.
         Identity::Vulkan(vulkan) => {

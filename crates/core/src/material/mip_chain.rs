@@ -3,7 +3,7 @@
 use std::mem;
 
 use crate::codec::uastc::{Effort, Metric};
-use crate::codec::{EncodeError, Format, ORM, Target, Texels, encode, fallback, lower_rate};
+use crate::codec::{EncodeError, ORM, PayloadFormat, Texels, encode, fallback};
 use crate::ktx2::{Key, Ktx2Writer, LevelWriter, StoredLevel};
 use crate::memory::{self, OutOfMemory};
 use crate::mip::level_sizes;
@@ -13,7 +13,7 @@ use crate::settings::{Form, Settings};
 #[derive(Clone)]
 pub struct MipChain {
     /// How texels are stored.
-    pub format: Format,
+    pub format: PayloadFormat,
     /// Levels finer than level 0 that were left out.
     pub trimmed: usize,
     /// Columns of level 0.
@@ -30,7 +30,7 @@ pub struct MipChain {
 #[derive(Clone, Copy)]
 pub struct Encoding {
     /// How texels are stored.
-    pub format: Format,
+    pub format: PayloadFormat,
     /// The metric of the UASTC encoder.
     pub metric: Metric,
     /// Search effort of block encoders and of compression.
@@ -62,10 +62,9 @@ impl Encoding {
         Self { metric: ORM, ..self }
     }
 
-    /// Returns the encoding of normals: two channels for BC5, whose readers rebuild z, else three.
+    /// Returns the encoding of normals.
     pub fn of_normals(settings: &Settings) -> Self {
-        let channels = if settings.target == Target::Bc { 2 } else { 3 };
-        Self { metric: Metric::Direction, ..Self::of(settings, channels) }
+        Self { format: settings.target.normal_format(), metric: Metric::Direction, ..Self::of(settings, 3) }
     }
 
     /// Leaves out levels finer than `finest`.
@@ -114,8 +113,8 @@ pub fn grid(settings: &Settings, sizes: impl IntoIterator<Item = (u32, u32)>) ->
         return Err(GridError::TooLarge { width, height, limit });
     }
     memory::check(kept_bytes(u64::from(width) * u64::from(height), settings.rdo.is_some()))?;
-    let is_whole = is_whole(settings.target.format(3), width, height);
-    Ok(if !is_whole { (width.next_multiple_of(4), height.next_multiple_of(4)) } else { (width, height) })
+    let edge = settings.target.format(3).codec().block_edge;
+    Ok((width.next_multiple_of(edge), height.next_multiple_of(edge)))
 }
 
 /// Returns about how many bytes a bake of the default quality keeps in memory for the levels over a grid of `texels`,
@@ -127,8 +126,9 @@ pub fn kept_bytes(texels: u64, has_rdo: bool) -> u64 {
 }
 
 /// Returns whether level 0 may have the size.
-fn is_whole(format: Format, width: u32, height: u32) -> bool {
-    !format.is_block() || (width.is_multiple_of(4) && height.is_multiple_of(4))
+fn is_whole(format: PayloadFormat, width: u32, height: u32) -> bool {
+    let edge = format.codec().block_edge;
+    width.is_multiple_of(edge) && height.is_multiple_of(edge)
 }
 
 /// Writes row y of a level to a slice of values: `(level, y, out)`.
@@ -196,7 +196,7 @@ pub(crate) const EDGE: u32 = 4;
 fn encode_band(texels: &Texels<'_>, encoding: Encoding) -> Result<Vec<u8>, EncodeError> {
     let Encoding { format, metric, effort, .. } = encoding;
     let mut blocks = encode(texels, format, metric, effort)?;
-    if let (Format::UastcRgb, Some(loss)) = (format, encoding.rdo) {
+    if let (Some(lower_rate), Some(loss)) = (format.codec().lower_rate, encoding.rdo) {
         lower_rate(&mut blocks, texels, metric, loss)?;
     }
     Ok(blocks)

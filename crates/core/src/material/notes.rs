@@ -1,7 +1,7 @@
 //! The notes to the user on a bump map and its bake, and the measurements from which on they are made.
 
 use crate::bump::Outliers;
-use crate::image::Format;
+use crate::image::FileFormat;
 use crate::material::bump_map::BumpMap;
 use crate::material::roughening::Roughening;
 use crate::math::symmetric::Symmetric2;
@@ -11,7 +11,7 @@ use crate::settings::Model;
 
 /// Returns whether a file is a JPEG.
 pub fn is_jpeg(file: &[u8]) -> bool {
-    Format::detect(file, None) == Some(Format::Jpeg)
+    FileFormat::detect(file, None) == Some(FileFormat::Jpeg)
 }
 
 /// Share of texels with opposed neighbours from which on a note says so. A map with one seam across 1024 texels has

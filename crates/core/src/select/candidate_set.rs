@@ -1,6 +1,6 @@
 //! The candidates for the roughness data of a layer, with their costs.
 
-use crate::codec::Format;
+use crate::codec::PayloadFormat;
 use crate::material::{BumpMap, Encoding, Normals, Roughening};
 use crate::mip::{AreaResampled, Pyramid, Wrap};
 use crate::settings::{Model, Settings};
@@ -59,7 +59,8 @@ impl CandidateSet<'_, '_, '_> {
     /// Returns the bytes of the roughness data on the GPU.
     pub(super) fn bytes(&self, model: Model, first: usize, sizes: &[(u32, u32)]) -> u64 {
         let target = self.settings.target;
-        let of = |format: Format| sizes[first..].iter().map(|s| format.level_bytes(s.0, s.1) as u64).sum::<u64>();
+        let of =
+            |format: PayloadFormat| sizes[first..].iter().map(|s| format.level_bytes(s.0, s.1) as u64).sum::<u64>();
         let portable = match model {
             Model::Isotropic => of(target.format(3)),
             Model::Anisotropic => 2 * of(target.format(3)),

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::codec::{EncodeError, Format};
+use crate::codec::EncodeError;
 use crate::lobe::SquaredAlpha;
 use crate::material::{AnisotropyTexture, Encoding, LevelRow, Product, Quantity, QuantityTexture, RoughnessTexture};
 use crate::math::symmetric::Symmetric2;
@@ -43,7 +43,7 @@ impl<'t, 'f, 'r> Shown<'t, 'f, 'r> {
         let scale = self.set.roughening.lobes().slope_scale();
         let encoding = Encoding::of_normals(self.set.settings);
         let texels = self.read(normals, self.set.first, encoding)?;
-        let has_z = !self.is_encoded || encoding.format != Format::Bc5;
+        let has_z = !self.is_encoded || encoding.format.has_z();
         let normal = |[x, y, z, _]: [f32; 4]| shown_normal(if has_z { [x, y, z] } else { with_z([x, y]) }, scale);
         Ok(texels.into_iter().map(normal).collect())
     }

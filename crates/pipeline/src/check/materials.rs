@@ -9,6 +9,7 @@ use serde_json::Value;
 
 use super::findings::{Code, Findings};
 use super::sources::Textures;
+use crate::gltf::layers::{LAYERS, member};
 use crate::gltf::rewrite::references;
 use crate::gltf::roughness_pyramid::{EXTENSION, RoughnessPyramid};
 
@@ -30,7 +31,7 @@ pub fn check_materials(root: &Root, value: &Value, textures: &Textures, findings
         if texture >= count {
             let message = format!("expected an index below {count}, found {texture}; bake again");
             findings.add(Code::BadReference, format!("{pointer}/index"), message);
-        } else if pointer.ends_with("/normalTexture") || pointer.ends_with("/clearcoatNormalTexture") {
+        } else if is_normal_texture(&pointer) {
             uses.normals.insert(texture);
         }
     }
@@ -51,6 +52,12 @@ pub fn check_materials(root: &Root, value: &Value, textures: &Textures, findings
     }
     check_tangents(root, findings);
     uses
+}
+
+/// Returns whether `pointer` leads to the normal texture of a layer.
+fn is_normal_texture(pointer: &str) -> bool {
+    let name = pointer.rsplit('/').next();
+    LAYERS.iter().any(|row| name == Some(member(row.normal_texture)))
 }
 
 /// Checks that meshes have tangents where `KHR_materials_anisotropy` needs them: by its section "Anisotropy", the

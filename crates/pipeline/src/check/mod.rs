@@ -6,6 +6,7 @@
 mod basisu;
 mod checker;
 mod container;
+mod decoded_levels;
 mod descriptor;
 mod document;
 mod files;
@@ -21,7 +22,6 @@ mod settings;
 mod sources;
 mod storage;
 mod targets;
-mod texels;
 mod texture;
 mod variance;
 

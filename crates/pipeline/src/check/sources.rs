@@ -6,6 +6,7 @@ use ::gltf::json::Root;
 use serde_json::Value;
 
 use super::findings::{Code, Findings};
+use crate::gltf::layers::LAYERS;
 use crate::gltf::roughness_pyramid::EXTENSION;
 
 /// The extension by which textures name KTX2 images.
@@ -88,7 +89,8 @@ impl Textures {
         let by_basisu = self.list.iter().any(|t| t.basisu.is_some());
         let is_used = |name: &str| of_materials.contains(name) || name == BASISU && by_basisu;
         let is_in = |list: &[String], name: &str| list.iter().any(|n| n == name);
-        for name in [BASISU, EXTENSION, "KHR_materials_anisotropy"] {
+        let of_layers = LAYERS.iter().filter_map(|row| Some(row.anisotropy.as_ref()?.extension));
+        for name in [BASISU, EXTENSION].into_iter().chain(of_layers) {
             if is_used(name) && !is_in(&root.extensions_used, name) {
                 let message =
                     format!("expected {name} in the list, since the document uses it, found it missing; bake again");

@@ -2,11 +2,11 @@
 
 use super::basisu::check_basisu;
 use super::container::{check_keys, check_levels};
+use super::decoded_levels::check_decoded_levels;
 use super::descriptor::check_descriptor;
 use super::findings::{Code, Findings};
 use super::provenance::check_provenance;
 use super::scope::Scope;
-use super::texels::check_texels;
 use crate::ktx2::{Ktx2, PROVENANCE_KEY};
 
 /// How a document uses a texture.
@@ -37,7 +37,7 @@ pub fn check_texture(bytes: &[u8], usage: Usage, scope: &Scope<'_>, findings: &m
     check_basisu(&file, usage.by_basisu, findings);
     let content = check_provenance(&file, scope, findings).map(|provenance| provenance.content);
     if scope.is_deep {
-        check_texels(&file, usage.normals || content.as_deref() == Some("normal"), findings);
+        check_decoded_levels(&file, usage.normals || content.as_deref() == Some("normal"), findings);
     }
     content
 }

@@ -3,8 +3,8 @@
 
 use std::f64::consts::SQRT_2;
 
+use super::decoded_levels::{extents, norm};
 use super::storage::Storage;
-use super::texels::{extents, norm};
 use crate::gltf::roughness_pyramid::RoughnessModel;
 use crate::ktx2::Ktx2;
 

@@ -9,10 +9,11 @@ use super::texture::{TextureFacts, inspect_texture};
 use crate::check::ReferencedFiles;
 use crate::decode::decode;
 use crate::gltf::document::{DocumentError, check_version};
+use crate::gltf::layers::{LAYERS, LayerRow, member};
 use crate::gltf::rewrite::references;
-use crate::gltf::roughness_pyramid::{EXTENSION, RoughnessPyramid};
+use crate::gltf::roughness_pyramid::{self, EXTENSION, RoughnessPyramid};
 use crate::gltf::texture::ImageLocation;
-use crate::image::{DecodeOptions, Format};
+use crate::image::{DecodeOptions, FileFormat};
 
 /// A glTF document.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -92,16 +93,11 @@ pub struct PictureFacts {
     pub bits: u32,
 }
 
-/// Names of the references that concern bumps and roughness.
-const SLOTS: [&str; 7] = [
-    "normalTexture",
-    "metallicRoughnessTexture",
-    "anisotropyTexture",
-    "clearcoatNormalTexture",
-    "clearcoatRoughnessTexture",
-    "offsetTexture",
-    "roughnessTexture",
-];
+/// Returns whether a reference of this name concerns bumps or roughness.
+fn is_slot(name: &str) -> bool {
+    let layers = LAYERS.iter().flat_map(LayerRow::textures).map(member);
+    layers.chain(roughness_pyramid::TEXTURES).any(|known| known == name)
+}
 
 /// Reads the facts of the document whose JSON is `root`. Errors inside the document are among the facts.
 ///
@@ -129,7 +125,7 @@ pub fn inspect_document(root: &Value, referenced: &ReferencedFiles<'_>) -> Resul
 /// A reference of a material: its JSON pointer inside the material, and the texture.
 type Slot = (String, usize);
 
-/// Returns the references of [`SLOTS`], by material.
+/// Returns the references that concern bumps and roughness, by material.
 fn slots(root: &Value) -> BTreeMap<usize, Vec<Slot>> {
     let mut slots: BTreeMap<usize, Vec<Slot>> = BTreeMap::new();
     for (pointer, texture) in references(root) {
@@ -137,7 +133,7 @@ fn slots(root: &Value) -> BTreeMap<usize, Vec<Slot>> {
             continue;
         };
         let Ok(material) = material.parse() else { continue };
-        if slot.rsplit('/').next().is_some_and(|name| SLOTS.contains(&name)) {
+        if slot.rsplit('/').next().is_some_and(is_slot) {
             slots.entry(material).or_default().push((slot.to_owned(), texture));
         }
     }
@@ -237,7 +233,7 @@ fn image_facts(image: usize, root: &Value, referenced: &ReferencedFiles<'_>) -> 
         return facts;
     }
     let bytes = partial.start();
-    let format = Format::detect(bytes, options.extension.as_deref());
+    let format = FileFormat::detect(bytes, options.extension.as_deref());
     match decode(bytes, &options) {
         Ok(image) => {
             facts.picture = Some(PictureFacts {

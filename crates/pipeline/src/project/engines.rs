@@ -56,6 +56,11 @@ const PRESETS: [Preset; 6] = [
 ];
 
 impl Engine {
+    /// Returns the names of all engines.
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        PRESETS.iter().map(|preset| preset.name)
+    }
+
     /// Returns the preset of the engine.
     pub fn preset(self) -> &'static Preset {
         // A test holds that every engine has a row.

@@ -8,8 +8,8 @@ use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
 use crate::project::globs::{GlobError, globs};
-use crate::project::layers::Layer;
 use crate::project::remote::RemoteValues;
+use crate::project::resolve::ConfigSource;
 use crate::project::values::Values;
 use crate::settings::SettingsError;
 
@@ -119,15 +119,16 @@ impl Config {
         Ok(config)
     }
 
-    /// Returns the layers of settings for `asset`, a path relative to the folder of the file.
-    pub fn layers(&self, asset: &Path) -> Vec<Layer> {
+    /// Returns the sources of settings for `asset`: the file, then its overrides that match. `asset` is relative to the
+    /// folder of the file.
+    pub fn sources(&self, asset: &Path) -> Vec<ConfigSource> {
         let path = self.path.display();
-        let mut layers = vec![Layer { origin: path.to_string(), values: self.defaults.clone() }];
+        let mut sources = vec![ConfigSource { origin: path.to_string(), values: self.defaults.clone() }];
         for part in self.overrides.iter().filter(|part| part.globs.is_match(asset)) {
             let origin = format!("{path}, override of {}", part.patterns.join(", "));
-            layers.push(Layer { origin, values: part.values.clone() });
+            sources.push(ConfigSource { origin, values: part.values.clone() });
         }
-        layers
+        sources
     }
 }
 

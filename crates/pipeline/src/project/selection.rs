@@ -9,8 +9,8 @@ use std::path::{Path, PathBuf};
 
 use self::configs::{Configs, FoundConfig};
 use super::inputs::{self, Input, InputError};
-use super::layers::{Layer, Resolved, resolve};
 use super::record::is_baked;
+use super::resolve::{ConfigSource, Resolved, resolve};
 use super::trust::NamedServer;
 use super::values::Values;
 use crate::settings::Settings;
@@ -127,17 +127,17 @@ impl Selection {
         output: &Path,
         is_baked: &mut dyn FnMut(&Path) -> bool,
     ) -> Result<Selected, SelectionError> {
-        let flags = Layer { origin: "command line".to_owned(), values: self.values.clone() };
+        let flags = ConfigSource { origin: "command line".to_owned(), values: self.values.clone() };
         let inputs::Found { inputs, errors, baked } = inputs::find(arguments, output, is_baked);
         let mut assets = Vec::with_capacity(inputs.len());
         for input in inputs {
             let folder = input.path.parent().unwrap_or(Path::new(""));
-            let mut layers = match self.config(&mut configs, folder)? {
-                Some(found) => found.config.layers(&found.relative(&input.path)),
+            let mut sources = match self.config(&mut configs, folder)? {
+                Some(found) => found.config.sources(&found.relative(&input.path)),
                 None => Vec::new(),
             };
-            layers.push(flags.clone());
-            let resolved = resolve(&layers)?;
+            sources.push(flags.clone());
+            let resolved = resolve(&sources)?;
             assets.push((input, resolved));
         }
         let settings = resolve(&[flags]).map_or_else(|_| Settings::default(), |resolved| resolved.settings);

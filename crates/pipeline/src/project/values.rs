@@ -1,4 +1,4 @@
-//! What a layer of settings may set: every setting, by the name that its flag has too.
+//! What a source of settings may set: every setting, by the name that its flag has too.
 
 use serde::ser::SerializeMap;
 use serde::{Deserialize, Serialize, Serializer};
@@ -13,7 +13,7 @@ use crate::settings::{Form, Model, Profile, Settings, SettingsError, View, limit
 /// Declares the settings, each once: the struct that holds them, and what is done with every one of them.
 macro_rules! values {
     ($($field:ident: $type:ty,)*) => {
-        /// Settings, as far as a layer sets them. Names are those of the flags of `bake`; see `roughcast bake --help`.
+        /// Settings, as far as a source sets them. Names are those of the flags of `bake`; see `roughcast bake --help`.
         #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
         #[serde(rename_all = "kebab-case", deny_unknown_fields)]
         #[allow(missing_docs)]

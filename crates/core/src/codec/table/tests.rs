@@ -2,8 +2,15 @@ use half::f16;
 
 use super::*;
 
-const FORMATS: [Format; 7] =
-    [Format::UastcRgb, Format::Bc4, Format::Bc5, Format::Bc7, Format::R16Float, Format::Rg16Float, Format::Rgba16Float];
+const FORMATS: [PayloadFormat; 7] = [
+    PayloadFormat::UastcRgb,
+    PayloadFormat::Bc4,
+    PayloadFormat::Bc5,
+    PayloadFormat::Bc7,
+    PayloadFormat::R16Float,
+    PayloadFormat::Rg16Float,
+    PayloadFormat::Rgba16Float,
+];
 
 #[test]
 fn every_format_has_a_row() {
@@ -17,34 +24,52 @@ fn every_format_has_a_row() {
         };
         assert_eq!(Codec::of_file(format.vulkan(), model).map(|codec| codec.format), Some(format));
     }
+    let srgb = Codec::of_file(Some(ktx2::Format::BC7_SRGB_BLOCK), None);
+    assert_eq!(srgb.map(|codec| codec.format), Some(PayloadFormat::Bc7));
     assert!(Codec::of_file(Some(ktx2::Format::BC1_RGB_UNORM_BLOCK), None).is_none());
 }
 
 #[test]
 fn every_target_has_a_format_for_each_number_of_channels() {
     let formats = |target: Target| [1, 2, 3].map(|channels| target.format(channels));
-    assert_eq!(formats(Target::Basis), [Format::UastcRgb; 3]);
-    assert_eq!(formats(Target::Bc), [Format::Bc4, Format::Bc5, Format::Bc7]);
-    assert_eq!(formats(Target::Float), [Format::R16Float, Format::Rg16Float, Format::Rgba16Float]);
+    assert_eq!(formats(Target::Basis), [PayloadFormat::UastcRgb; 3]);
+    assert_eq!(formats(Target::Bc), [PayloadFormat::Bc4, PayloadFormat::Bc5, PayloadFormat::Bc7]);
+    assert_eq!(formats(Target::Float), [PayloadFormat::R16Float, PayloadFormat::Rg16Float, PayloadFormat::Rgba16Float]);
+}
+
+#[cfg(feature = "cli")]
+#[test]
+fn every_target_has_formats_of_its_own_and_one_for_normals() {
+    for &target in <Target as clap::ValueEnum>::value_variants() {
+        assert!((1..=3).all(|channels| target.format(channels).codec().target == target), "{target:?}");
+        assert_eq!(TABLE.iter().filter(|codec| codec.target == target && codec.holds_normals).count(), 1, "{target:?}");
+    }
+}
+
+#[test]
+fn normals_without_z_are_those_of_two_channels() {
+    assert_eq!(Target::Bc.normal_format(), PayloadFormat::Bc5);
+    assert!(!PayloadFormat::Bc5.has_z());
+    assert!(Target::Basis.normal_format().has_z() && Target::Float.normal_format().has_z());
 }
 
 #[test]
 fn halves_keep_the_sign_and_fill_alpha() {
     let texels = Texels { width: 1, height: 1, row: &|_, out| out[0] = [-1.5, 2.0, 0.25, 9.0] };
-    let bytes = encode(&texels, Format::Rgba16Float, Metric::Rgb, Effort::Fast).unwrap();
+    let bytes = encode(&texels, PayloadFormat::Rgba16Float, Metric::Rgb, Effort::Fast).unwrap();
     let halves: Vec<f32> = bytes.chunks(2).map(|b| f16::from_le_bytes([b[0], b[1]]).to_f32()).collect();
     assert_eq!(halves, [-1.5, 2.0, 0.25, 1.0]);
-    assert_eq!(encode(&texels, Format::Rg16Float, Metric::Rgb, Effort::Fast).unwrap(), bytes[..4]);
-    assert_eq!(encode(&texels, Format::R16Float, Metric::Rgb, Effort::Fast).unwrap(), bytes[..2]);
+    assert_eq!(encode(&texels, PayloadFormat::Rg16Float, Metric::Rgb, Effort::Fast).unwrap(), bytes[..4]);
+    assert_eq!(encode(&texels, PayloadFormat::R16Float, Metric::Rgb, Effort::Fast).unwrap(), bytes[..2]);
 }
 
 #[test]
 fn halves_are_finite_or_an_error() {
     for value in [f32::NAN, f32::INFINITY, -1e5] {
         let texels = Texels { width: 1, height: 1, row: &|_, out| out[0] = [0.0, value, 0.0, 0.0] };
-        let found = encode(&texels, Format::Rg16Float, Metric::Rgb, Effort::Fast);
+        let found = encode(&texels, PayloadFormat::Rg16Float, Metric::Rgb, Effort::Fast);
         assert_eq!(found, Err(EncodeError::NotFinite { width: 1, height: 1 }));
-        assert!(encode(&texels, Format::R16Float, Metric::Rgb, Effort::Fast).is_ok());
+        assert!(encode(&texels, PayloadFormat::R16Float, Metric::Rgb, Effort::Fast).is_ok());
     }
 }
 

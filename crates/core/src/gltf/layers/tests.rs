@@ -1,9 +1,10 @@
 use super::*;
 
 #[test]
-fn every_layer_has_the_row_of_its_kind() {
+fn every_layer_has_a_row_with_its_name() {
     for row in &LAYERS {
         assert_eq!(row.kind.row().kind, row.kind);
+        assert_eq!(serde_json::to_value(row.kind).unwrap(), row.name);
     }
 }
 
@@ -13,6 +14,9 @@ fn roughness_texture_and_factor_are_members_of_one_object() {
     for row in &LAYERS {
         assert_eq!(object(row.roughness_texture), object(row.roughness_factor), "{:?}", row.kind);
         assert!(object(row.roughness_texture).is_some());
+        if let Some(extension) = row.extension {
+            assert_eq!(object(row.roughness_texture), Some(format!("extensions/{extension}").as_str()));
+        }
         for part in row.anisotropy.iter().flat_map(|a| [a.texture, a.strength, a.rotation]) {
             assert_eq!(object(part), row.anisotropy.as_ref().map(|a| a.object), "{part}");
         }

@@ -4,7 +4,7 @@ use crate::image::decode::DecodeOptions;
 use crate::image::decode::decode_raster as decode;
 use crate::image::decoded::{Image, Samples};
 use crate::image::error::DecodeError;
-use crate::image::format::Format;
+use crate::image::format::FileFormat;
 use crate::image::test_files;
 use crate::image::test_files::{Png, value, values, values16};
 
@@ -158,7 +158,7 @@ fn tiff_of_8_and_16_bits_and_floats() {
     assert_eq!(read(&float), of(3, Samples::F32(normals)));
     let signed = test_files::tiff::<tiff::GrayI16>(w, h, &[-5; 35]);
     let refused = decode(&signed, &DecodeOptions::default());
-    assert!(matches!(refused, Err(DecodeError::Unsupported { format: Format::Tiff, .. })));
+    assert!(matches!(refused, Err(DecodeError::Unsupported { format: FileFormat::Tiff, .. })));
 }
 
 #[test]

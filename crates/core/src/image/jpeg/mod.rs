@@ -16,12 +16,12 @@ use zune_jpeg::errors::DecodeErrors;
 
 use crate::image::decoded::{Image, Samples};
 use crate::image::error::DecodeError;
-use crate::image::format::Format;
+use crate::image::format::FileFormat;
 use crate::image::jpeg::damage::Damage;
 use crate::image::size::texels;
 use crate::memory;
 
-const FORMAT: Format = Format::Jpeg;
+const FORMAT: FileFormat = FileFormat::Jpeg;
 
 pub(super) fn decode(bytes: &[u8], limit: u64) -> Result<Image, DecodeError> {
     // The crate's SIMD features are off in Cargo.toml: its scalar path is as fast (287 ms against 312 ms for 4096^2).

@@ -1,4 +1,5 @@
 use super::*;
+use crate::codec::Target;
 
 #[test]
 fn bands_encode_the_bytes_of_the_whole_level() {

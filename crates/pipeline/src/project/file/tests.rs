@@ -1,7 +1,7 @@
 use std::path::Path;
 
 use crate::project::file::*;
-use crate::project::layers::resolve;
+use crate::project::resolve::resolve;
 
 fn parse(text: &str) -> Result<Config, ConfigError> {
     Config::parse(text, Path::new("roughcast.toml"))
@@ -13,8 +13,8 @@ fn message(text: &str) -> String {
 
 /// Returns the value of the setting `name` that `text` gives to `asset`.
 fn value(text: &str, asset: &str, name: &str) -> serde_json::Value {
-    let layers = parse(text).expect(text).layers(Path::new(asset));
-    members(&resolve(&layers).expect(text).values).remove(name).unwrap_or_default()
+    let sources = parse(text).expect(text).sources(Path::new(asset));
+    members(&resolve(&sources).expect(text).values).remove(name).unwrap_or_default()
 }
 
 fn members(values: &Values) -> serde_json::Map<String, serde_json::Value> {
@@ -70,7 +70,7 @@ fn the_last_override_that_matches_wins() {
 }
 
 #[test]
-fn an_engine_sets_its_preset_beneath_its_own_layer() {
+fn an_engine_sets_its_preset_beneath_other_values_of_its_source() {
     let text = "target = 'float'\nmodel = 'none'\n[[override]]\nfiles = 'a.gltf'\nengine = 'bevy'\n\
                 [[override]]\nfiles = 'b.gltf'\nengine = 'godot'\nmodel = 'anisotropic'\n\
                 [[override]]\nfiles = 'd.gltf'\nengine = 'babylon'\n\
@@ -144,8 +144,8 @@ fn no_prefix_of_a_file_panics() {
 
 #[test]
 fn members_with_defaults_come_first() {
-    let layers = parse("rdo = 1\nnearest = 2\nscreen-height = 3\n").expect("settings").layers(Path::new("a.gltf"));
-    let set = members(&resolve(&layers).expect("settings").values);
+    let sources = parse("rdo = 1\nnearest = 2\nscreen-height = 3\n").expect("settings").sources(Path::new("a.gltf"));
+    let set = members(&resolve(&sources).expect("settings").values);
     let names: Vec<&str> = set.keys().map(String::as_str).collect();
     let defaults = members(&Values::defaults());
     assert!(names.iter().copied().take(defaults.len()).eq(defaults.keys().map(String::as_str)), "{names:?}");
@@ -154,8 +154,8 @@ fn members_with_defaults_come_first() {
 
 #[test]
 fn a_table_of_settings_shows_the_origin_of_each() {
-    let layers = parse("engine = 'bevy'\nrdo = 1\n").expect("settings").layers(Path::new("a.gltf"));
-    let text = resolve(&layers).expect("settings").to_string();
+    let sources = parse("engine = 'bevy'\nrdo = 1\n").expect("settings").sources(Path::new("a.gltf"));
+    let text = resolve(&sources).expect("settings").to_string();
     for line in
         ["model = \"isotropic\"", "max-error = 0.1 ", "rdo = 1.0 ", "main-direction = [0.0,1.0,0.0]", "gltf = \"dual\""]
     {

@@ -6,7 +6,7 @@ use crate::image::Samples;
 use crate::ktx2::{Ktx2, ReadError};
 
 /// Decodes every level and checks its texels.
-pub fn check_texels(file: &Ktx2<'_>, are_normals: bool, findings: &mut Findings) {
+pub fn check_decoded_levels(file: &Ktx2<'_>, are_normals: bool, findings: &mut Findings) {
     for level in 0..file.level_count() {
         // `check_levels` has reported this level already.
         if matches!(file.check_length(level), Err(ReadError::LevelLength { .. })) {

@@ -4,57 +4,8 @@ use fearless_simd::Level;
 use half::f16;
 use rayon::prelude::*;
 
-use crate::codec::format::Format;
-use crate::codec::uastc::SizeError;
-use crate::memory::OutOfMemory;
+use crate::codec::error::EncodeError;
 use crate::simd::dispatch;
-
-/// Why a level cannot be encoded.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum EncodeError {
-    /// The `bc` feature is off.
-    #[error(
-        "target `bc` needs the block encoders of cargo feature `bc`, found a build without it; install with `--features bc`"
-    )]
-    WithoutBc,
-    /// The block encoder failed.
-    #[error("the {format:?} encoder failed on a level of {width} x {height}: {reason}; try another target")]
-    Encoder {
-        /// The format of the blocks.
-        format: Format,
-        /// Columns of the level.
-        width: u32,
-        /// Rows of the level.
-        height: u32,
-        /// The message of the encoder.
-        reason: String,
-    },
-    /// There is no memory for a level.
-    #[error(transparent)]
-    OutOfMemory(#[from] OutOfMemory),
-    /// A value cannot be represented by a half float.
-    #[error(
-        "expected values that half floats hold in a level of {width} x {height}, found some beyond +-65504, or NaN; \
-         use `--target basis`"
-    )]
-    NotFinite {
-        /// Columns of the level.
-        width: u32,
-        /// Rows of the level.
-        height: u32,
-    },
-    /// The PNG encoder failed.
-    #[error("the PNG of a level of {width} x {height} cannot be written: {reason}; leave it out with `--gltf strict`")]
-    Png {
-        /// Columns of the level.
-        width: u32,
-        /// Rows of the level.
-        height: u32,
-        /// The message of the encoder.
-        reason: String,
-    },
-}
 
 /// The texels of one level, produced row by row.
 pub struct Texels<'a> {
@@ -72,11 +23,6 @@ impl Texels<'_> {
         self.convert(4, |texels, out: &mut [u8]| {
             dispatch!(Level::new(), _simd => unorm8_row(texels, out));
         })
-    }
-
-    pub(super) fn refused(&self, error: &SizeError) -> EncodeError {
-        let (width, height) = (self.width, self.height);
-        EncodeError::Encoder { format: Format::UastcRgb, width, height, reason: error.to_string() }
     }
 
     /// Returns the first `channels` channels as half floats. A fourth channel is 1.

@@ -1,4 +1,5 @@
-//! Layers of settings, of which a later one overrides the earlier ones, and where each value came from.
+//! Resolves settings from their sources, of which a later one overrides the earlier ones, and records the origin of
+//! each value.
 
 use std::fmt::{self, Display};
 
@@ -6,12 +7,12 @@ use crate::project::values::{Origins, Values};
 use crate::settings::{Settings, SettingsError};
 use crate::text::printable;
 
-/// Settings that come from one origin: a file, an override of it, or the command line.
+/// A source of settings: a file, an override in a file, or the command line.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Layer {
-    /// The origin, for a person.
+pub struct ConfigSource {
+    /// The name of the source, for a person.
     pub origin: String,
-    /// What it sets.
+    /// The settings that the source sets.
     pub values: Values,
 }
 
@@ -25,15 +26,15 @@ pub struct Resolved {
     origins: Origins,
 }
 
-/// Merges `layers` over the defaults: of two layers that set a value, the later one holds.
+/// Merges `sources` over the defaults: of two sources that set a value, the later one holds.
 ///
 /// # Errors
 /// [`SettingsError`] for values that are out of range or do not go together.
-pub fn resolve(layers: &[Layer]) -> Result<Resolved, SettingsError> {
+pub fn resolve(sources: &[ConfigSource]) -> Result<Resolved, SettingsError> {
     let (mut values, mut origins) = (Values::defaults(), Origins::default());
-    let profile = layers.iter().rev().find_map(|layer| layer.values.profile).unwrap_or_default();
-    for Layer { origin, values: layer } in layers {
-        if let Some(engine) = layer.engine {
+    let profile = sources.iter().rev().find_map(|source| source.values.profile).unwrap_or_default();
+    for ConfigSource { origin, values: explicit } in sources {
+        if let Some(engine) = explicit.engine {
             let preset = engine.preset();
             let needs = Values {
                 target: Some(preset.target),
@@ -44,8 +45,8 @@ pub fn resolve(layers: &[Layer]) -> Result<Resolved, SettingsError> {
             origins.record(&needs, &format!("{origin}, engine = {}", preset.name));
             values = values.overridden_by(&needs);
         }
-        origins.record(layer, origin);
-        values = values.overridden_by(layer);
+        origins.record(explicit, origin);
+        values = values.overridden_by(explicit);
     }
     values.engine = None;
     Ok(Resolved { settings: values.settings()?, values, origins })

@@ -1,4 +1,4 @@
-//! Decoding of formats that store each texel by itself.
+//! Decoding of uncompressed formats, which store each texel by itself.
 
 use std::borrow::Cow;
 
