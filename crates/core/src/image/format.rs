@@ -34,7 +34,8 @@ struct Row {
     signatures: &'static [Signature],
     /// Extensions of its files, in lower case.
     extensions: &'static [&'static str],
-    /// The MIME type. IANA has not registered types of TGA and OpenEXR; theirs are those of the freedesktop.org database.
+    /// The MIME type. IANA has not registered types of TGA and OpenEXR; theirs are those of the freedesktop.org
+    /// database.
     mime_type: &'static str,
     /// Whether glTF or one of its extensions names the format for images of documents.
     is_in_gltf: bool,
