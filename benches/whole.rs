@@ -34,7 +34,7 @@ fn whole(bencher: Bencher, form: Form, model: Model) {
     let document = Document::parse(&files[&PathBuf::from("asset.gltf")]).expect("a document");
     let read = |path: &std::path::Path| Ok(files[path].clone());
     let source = Source { document: &document, stem: "asset", files: &read };
-    let settings = Settings::default().with_form(form).with_model(model);
+    let settings = Settings::default().with_gltf(form).with_model(model);
     let texels = common::size() * common::size();
     bencher.counter(ItemsCount::new(texels)).bench(|| bake_asset(black_box(&source), &settings, &|_| ()).map(drop));
 }

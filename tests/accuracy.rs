@@ -151,7 +151,7 @@ fn bars(shaded_as: Family, settings: Settings) -> (f64, [f64; 2]) {
 }
 
 fn settings(effort: Effort, target: Target) -> Settings {
-    Settings::default().with_effort(effort).with_target(target).with_model(Model::Anisotropic).with_provenance(false)
+    Settings::default().with_quality(effort).with_target(target).with_model(Model::Anisotropic).with_provenance(false)
 }
 
 #[test]
@@ -192,7 +192,7 @@ fn level_0_is_unchanged() {
 #[test]
 fn beckmann_engines_get_beckmann_lobes() {
     for effort in [Effort::Fast, Effort::Best] {
-        let of = |family| bars(Family::Beckmann, settings(effort, Target::Float).with_family(family)).0;
+        let of = |family| bars(Family::Beckmann, settings(effort, Target::Float).with_lobe(family)).0;
         let (suited, not) = (of(Family::Beckmann), of(Family::Ggx));
         assert!(suited < 1.15 && suited < not - 0.04, "{effort:?}: {suited} for Beckmann, {not} for GGX");
     }

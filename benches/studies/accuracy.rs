@@ -131,7 +131,7 @@ fn errors_by_level(image: &Image, alpha: f32, texels: usize) -> Result<Vec<Means
     let bake = |model, effort, target| -> Result<_, Box<dyn Error>> {
         let base = BaseRoughness { image: None, factor: Roughness::from(Alpha(alpha)).0 };
         let settings =
-            Settings::default().with_model(model).with_effort(effort).with_target(target).with_provenance(false);
+            Settings::default().with_model(model).with_quality(effort).with_target(target).with_provenance(false);
         Ok(files_of(&bake_map(&bump_map, Some(&base), &settings)?))
     };
     let files = OURS.map(|(_, model, effort, target)| bake(model, effort, target));

@@ -11,7 +11,7 @@ use roughcast::bump::{Moments, NormalLayout, NormalMap, NormalOffsets};
 use roughcast::decode::decode;
 use roughcast::image::DecodeOptions;
 use roughcast::lobe::{Alpha, Family, OrientedLobe, SquaredAlpha};
-use roughcast::metric::{Peer, Precision, Surface, mean_errors, sample_texels, survey};
+use roughcast::metric::{Peer, Precision, Surface, mean_errors, sample_sites, sample_texels};
 use roughcast::mip::{TexelRows, level_sizes};
 
 const PEERS: [Peer; 3] = [Peer::PlainMips, Peer::CorrectedVmf, Peer::D];
@@ -71,7 +71,7 @@ fn compare(map: &NormalMap, alpha: f32, same: &mut Differences, more: &mut Diffe
         }
     };
     let precision = Precision::QUICK;
-    let sites = survey(&sizes, 1..sizes.len(), Family::Ggx, precision, &row);
+    let sites = sample_sites(&sizes, 1..sizes.len(), Family::Ggx, precision, &row);
     for (level, &size) in sizes.iter().enumerate().skip(1) {
         let of: Vec<_> = sites.iter().filter(|s| s.level == level).collect();
         let mut quick = [0.0; PEERS.len()];

@@ -7,10 +7,10 @@ use std::path::PathBuf;
 use clap::ValueEnum;
 use semver::Version;
 
-use super::cached::CacheOptions;
-use super::outcome::Outcome;
-use super::selection::SettingOptions;
-use super::work::Work;
+use super::options::cache::CacheOptions;
+use super::options::selection::SettingOptions;
+use super::terminal::outcome::Outcome;
+use super::terminal::work::Work;
 use crate::cache::CacheError;
 use crate::check::{self, Checked, Checker, Code, Sources};
 use crate::codec::EncodeError;

@@ -3,9 +3,9 @@
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use super::options::{effort, finite, unit_interval};
-use super::outcome::Outcome;
-use super::progress::ProgressLine;
+use super::options::texture::{effort, finite, unit_interval};
+use super::terminal::outcome::Outcome;
+use super::terminal::progress::ProgressLine;
 use crate::codec::uastc::Effort;
 use crate::compare::{CompareOptions, Comparison, compare_file};
 use crate::run::Progress;

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use clap::Command;
 use clap_complete::Shell;
 
-use super::outcome::Outcome;
+use super::terminal::outcome::Outcome;
 
 /// Print the completions of a shell.
 #[derive(Debug, clap::Args)]

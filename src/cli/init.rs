@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use super::outcome::Outcome;
+use super::terminal::outcome::Outcome;
 use crate::output::Guard;
 use crate::project::{FILE_NAME, TEMPLATE};
 use crate::text::printable;

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use serde_json::Value;
 
-use super::outcome::Outcome;
+use super::terminal::outcome::Outcome;
 use crate::bake::{SourceError, output_stem_of};
 use crate::check::{Folder, ReferencedFiles};
 use crate::gltf::document::{Document, DocumentError};

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::Command;
 use clap_mangen::Man;
 
-use super::outcome::Outcome;
+use super::terminal::outcome::Outcome;
 use crate::output::Guard;
 use crate::text::printable;
 

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 
-use super::options::{TextureOptions, finite, unit_interval};
-use super::outcome::Outcome;
+use super::options::texture::{TextureOptions, finite, unit_interval};
+use super::terminal::outcome::Outcome;
 use crate::api::BumpTexels;
 use crate::bump::NormalLayout;
 use crate::lobe::Family;
@@ -107,7 +107,7 @@ impl Args {
             roughness: self.roughness.clone(),
             roughness_factor: self.roughness_factor,
             output: self.output.clone(),
-            settings: self.texture.settings().with_family(self.lobe),
+            settings: self.texture.settings().with_lobe(self.lobe),
         }
     }
 }

@@ -1,47 +1,40 @@
-//! The command line: one file per command, each with its `Args` and a `run`.
+//! The command line: one file per command, each with its `Args` and a `run`. `options` holds groups of options that
+//! several commands have, `terminal` what they print with, and `threads` starts the thread pool.
 
 mod bake;
-mod cached;
 mod check;
 mod compare;
 mod completions;
 mod init;
 mod inspect;
-mod jobs;
 mod man;
 mod map;
-mod merge;
 mod options;
-mod outcome;
 mod plan;
-mod progress;
-mod remote;
+mod plan_merge;
 mod render;
-mod selection;
-mod streams;
-mod summary;
+mod terminal;
 mod threads;
-mod view;
 mod watch;
-mod work;
 
-pub use outcome::Outcome;
+pub use terminal::outcome::Outcome;
 
 use std::io::{self, Write};
 
 use clap::{CommandFactory, Parser, Subcommand};
 
-use streams::{Messages, Results};
+use terminal::streams::{Messages, Results};
 
 /// Bakes the roughness that mipmapped normal maps lose into KTX2 textures and glTF materials.
 #[derive(Debug, Parser)]
 #[command(name = "roughcast", version, about, max_term_width = 100, arg_required_else_help = true)]
-#[command(after_help = "Exit codes: 0 done, 1 some inputs failed for good (all others are done), 2 wrong usage,\n\
+#[command(after_help = "Exit codes: 0 done, 1 some inputs failed permanently (all others are done), 2 wrong usage,\n\
     3 check found something, 4 failed but worth trying again.")]
 pub struct Cli {
     #[command(subcommand)]
     command: Command,
-    /// Worker threads, 64 or 4 per core at most; 0 takes 1 per core. Bytes do not depend on it.
+    /// Number of worker threads, at most 4 per core or 64, whichever is more; 0: one per core. Outputs do not depend on
+    /// it.
     #[arg(long, global = true, default_value_t = 0, value_name = "N", display_order = 900)]
     threads: usize,
 }

@@ -3,9 +3,9 @@
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use super::merge;
-use super::outcome::Outcome;
-use super::selection::{SelectionOptions, print_problems};
+use super::options::selection::{SelectionOptions, print_problems};
+use super::plan_merge;
+use super::terminal::outcome::Outcome;
 use crate::run::{Job, Plan, PlannedAsset, plan_assets};
 use crate::text::printable;
 
@@ -33,7 +33,7 @@ pub struct Args {
 
 #[derive(Debug, clap::Subcommand)]
 enum Command {
-    Merge(merge::Args),
+    Merge(plan_merge::Args),
 }
 
 /// Why an asset has no place in a plan.
@@ -48,7 +48,7 @@ struct Unplanned {
 /// When `out` or `err` cannot be written to.
 pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<Outcome> {
     if let Some(Command::Merge(args)) = &args.command {
-        return merge::run(args, out, err);
+        return plan_merge::run(args, out, err);
     }
     let selected = match args.selection.selection().find(&args.inputs) {
         Ok(selected) => selected,

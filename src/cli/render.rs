@@ -3,9 +3,9 @@
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use super::options::{TextureOptions, finite, unit_interval};
-use super::outcome::Outcome;
-use super::progress::ProgressLine;
+use super::options::texture::{TextureOptions, finite, unit_interval};
+use super::terminal::outcome::Outcome;
+use super::terminal::progress::ProgressLine;
 use crate::pictures::{ColumnReport, PictureOptions, RowReport, SheetReport, draw_pictures};
 use crate::render::{EnvironmentFilter, Filter, Reflection, SceneName};
 use crate::run::Progress;

@@ -5,10 +5,10 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 use std::time::Duration;
 
-use super::cached::CacheOptions;
-use super::outcome::Outcome;
-use super::selection::SelectionOptions;
-use super::summary::summary;
+use super::options::cache::CacheOptions;
+use super::options::selection::SelectionOptions;
+use super::terminal::outcome::Outcome;
+use super::terminal::summary::summary;
 use crate::cache::CacheError;
 use crate::project::{Selection, SelectionError};
 use crate::text::printable;

@@ -117,8 +117,8 @@ pub fn missed_bound(text: String, is_avoidable: bool) -> Note {
 
 /// Returns the note on a bump map that is a JPEG.
 pub fn jpeg_source() -> Note {
-    let text = "the bump map is a JPEG: its compression adds and removes bumps, which the bake takes for the \
-                surface's; use a lossless source";
+    let text = "the bump map is a JPEG: its compression changes the bumps, and the bake cannot tell these \
+                changes from the surface; use a lossless source";
     note(NoteKind::JpegSource, text)
 }
 
@@ -185,8 +185,8 @@ pub fn filter_loss(loss: f32) -> Note {
 
 /// Returns the note on a sampler whose minFilter has no mips.
 pub fn sampler_without_mips() -> Note {
-    let text = "the minFilter of the texture's sampler never reads mips: the bake has no effect in engines that obey it; set \
-         one with mips";
+    let text = "the minFilter of the texture's sampler never reads mips: the bake has no effect in engines that obey \
+                it; set one with mips";
     note(NoteKind::SamplerWithoutMips, text)
 }
 
@@ -227,8 +227,8 @@ pub fn conflicting_rotations(over_mesh: f32, over_map: f32) -> Note {
 pub fn other_texture_coordinates(texture: &str) -> Note {
     let text = format!(
         "the {texture} texture has other texture coordinates or another KHR_texture_transform than the bumps: their \
-         texels do not lie over each other, so the {texture} texture was left unchanged and lacks the roughness of lost \
-         bumps; give both textures the same coordinates"
+         texels do not lie over each other, so the {texture} texture was left unchanged and lacks the roughness of \
+         lost bumps; give both textures the same coordinates"
     );
     note(NoteKind::OtherTextureCoordinates, text)
 }

@@ -1,4 +1,4 @@
-//! What a bake can be asked for. Every setting changes output bytes, so every setting goes into the provenance.
+//! What a bake can be asked for. [`Settings::to_json`] lists the settings that change the bytes of a texture.
 
 mod error;
 mod view;
@@ -109,16 +109,16 @@ pub struct Settings {
     /// The shape of the distribution of slopes that footprints are assumed to have.
     pub distribution: Distribution,
     /// The lobe that the engine shades with.
-    pub family: Family,
+    pub lobe: Family,
     /// The payload of textures.
     pub target: Target,
     /// Search effort of block encoders.
-    pub effort: Effort,
+    pub quality: Effort,
     /// How much signal-to-noise ratio, in dB, each level of [`Target::Basis`] may lose for fewer bytes: above 0, up to
     /// 6. `None` leaves the blocks as they are.
     pub rdo: Option<f64>,
     /// How the document refers to textures.
-    pub form: Form,
+    pub gltf: Form,
     /// Whether a .glb is written instead of a .gltf with external files.
     pub glb: bool,
     /// Frame of the pyramid profile's offsets.
@@ -141,11 +141,11 @@ impl Default for Settings {
             model: Model::default(),
             max_error: 0.1,
             distribution: Distribution::default(),
-            family: Family::default(),
+            lobe: Family::default(),
             target: Target::default(),
-            effort: Effort::Fast,
+            quality: Effort::Fast,
             rdo: None,
-            form: Form::default(),
+            gltf: Form::default(),
             glb: false,
             frame: Frame::default(),
             height_scale: None,
@@ -175,11 +175,11 @@ impl Settings {
         with_model: model, Model;
         with_max_error: max_error, f32;
         with_distribution: distribution, Distribution;
-        with_family: family, Family;
+        with_lobe: lobe, Family;
         with_target: target, Target;
-        with_effort: effort, Effort;
+        with_quality: quality, Effort;
         with_rdo: rdo, f64;
-        with_form: form, Form;
+        with_gltf: gltf, Form;
         with_glb: glb, bool;
         with_frame: frame, Frame;
         with_height_scale: height_scale, f32;
@@ -193,7 +193,7 @@ impl Settings {
     /// # Errors
     /// [`SettingsError`] for the first value that is out of range, or for two that exclude each other.
     pub fn validate(&self) -> Result<(), SettingsError> {
-        if self.glb && self.form == Form::Dual {
+        if self.glb && self.gltf == Form::Dual {
             return Err(SettingsError::DualInGlb);
         }
         limit::MAX_ERROR.check(f64::from(self.max_error))?;
@@ -227,13 +227,13 @@ impl Settings {
             "model": model,
             "maxError": f64::from(self.max_error),
             "distribution": self.distribution,
-            "lobe": self.family,
+            "lobe": self.lobe,
             "target": self.target,
-            "quality": match self.effort {
+            "quality": match self.quality {
                 Effort::Fast => "fast",
                 Effort::Best => "best",
             },
-            "gltf": self.form,
+            "gltf": self.gltf,
             "frame": frame,
             "heightScale": self.height_scale.map(f64::from),
         });

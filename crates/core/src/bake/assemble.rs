@@ -6,13 +6,13 @@ use std::sync::Arc;
 
 use super::baked_asset::BakedAsset;
 use super::compact::compact;
-use super::container;
-use super::encode::ktx2_files;
 use super::error::BakeError;
 use super::extension::{EXTENSION, Extension, RangedTexture};
-use super::file::NewFile;
 use super::group_output::{AnisotropyChange, GroupOutput, GroupTexture, PyramidUse};
+use super::ktx2_files::ktx2_files;
 use super::names::Names;
+use super::new_file::NewFile;
+use super::output_document;
 use super::provenance::DocumentProvenance;
 use super::reader::Reader;
 use crate::gltf::document::Document;
@@ -50,7 +50,7 @@ impl<'a> Assembly<'a> {
     pub fn new(reader: &'a Reader<'a>, settings: &'a Settings) -> Result<Self, BakeError> {
         let source = reader.source;
         let (document, bin) =
-            if settings.glb { (container::to_glb(reader)?, None) } else { container::to_gltf(source)? };
+            if settings.glb { (output_document::to_glb(reader)?, None) } else { output_document::to_gltf(source)? };
         Ok(Self {
             reader,
             settings,
@@ -99,7 +99,7 @@ impl<'a> Assembly<'a> {
         let name = path.rsplit('/').next().unwrap_or(&path).to_owned();
         self.report.textures.push(texture.report(format!("{path}.ktx2"), ktx2.len()));
         let ktx2 = self.add_image(&path, "ktx2", ktx2)?;
-        let source = match (texture.mip_chain.fallback, self.settings.form) {
+        let source = match (texture.mip_chain.fallback, self.settings.gltf) {
             (Some(png), _) => Some(self.add_image(&path, "png", png)?),
             (None, Form::Dual) => Some(ktx2.clone()),
             (None, _) => None,
@@ -111,7 +111,7 @@ impl<'a> Assembly<'a> {
 
     fn add_image(&mut self, path: &str, extension: &str, bytes: Vec<u8>) -> Result<NewImage, BakeError> {
         if self.settings.glb {
-            let view = container::embed(&mut self.document, &bytes)?;
+            let view = output_document::embed(&mut self.document, &bytes)?;
             let mime = if extension == "ktx2" { "image/ktx2" } else { "image/png" };
             return Ok(NewImage::BufferView { view, mime });
         }
@@ -131,7 +131,7 @@ impl<'a> Assembly<'a> {
         write_pyramids(json, &self.pyramids, &indices, &self.ranges)?;
         self.finish_container()?;
         self.write_provenance()?;
-        let mut copies = container::files(self.document.json())?;
+        let mut copies = output_document::files(self.document.json())?;
         let new: HashSet<&Path> = self.files.iter().map(|file| file.path.as_path()).collect();
         copies.retain(|copy| !new.contains(copy.as_path()));
         self.report.layers.extend(flat);
@@ -149,8 +149,8 @@ impl<'a> Assembly<'a> {
     fn finish_container(&mut self) -> Result<(), BakeError> {
         let source = self.reader.source;
         if self.settings.glb {
-            container::embed_images(&mut self.document, source)?;
-            container::compact_glb(&mut self.document, source.document)?;
+            output_document::embed_images(&mut self.document, source)?;
+            output_document::compact_glb(&mut self.document, source.document)?;
         }
         if let Some(NewFile { path, bytes }) = self.bin.take() {
             let bytes = compact(self.document.json_mut(), source.document.json(), bytes)?;

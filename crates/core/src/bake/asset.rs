@@ -7,10 +7,10 @@ use serde_json::Value;
 use super::assemble::Assembly;
 use super::bake_group::bake_group;
 use super::baked_asset::BakedAsset;
-use super::container;
 use super::error::BakeError;
 use super::geometry::Geometry;
 use super::group::group_by_bump_map;
+use super::output_document;
 use super::reader::Reader;
 use super::source::{Source, SourceError};
 use crate::gltf::document::check_version;
@@ -48,7 +48,7 @@ pub fn bake_asset(source: &Source<'_>, settings: &Settings, advance: &dyn Fn(f32
 
 /// Checks that no file of the document is known to be missing, before any work is done.
 fn check_files(source: &Source<'_>) -> Result<(), BakeError> {
-    let paths = container::files(source.document.json())?;
+    let paths = output_document::files(source.document.json())?;
     let paths: Vec<PathBuf> = paths.into_iter().filter(|path| source.files.is_missing(path)).collect();
     if paths.is_empty() { Ok(()) } else { Err(SourceError::Missing { paths }.into()) }
 }
@@ -59,7 +59,7 @@ fn unchanged(source: &Source<'_>, layers: Vec<LayerReport>) -> Result<BakedAsset
         document: source.document.to_bytes()?,
         container: source.document.container(),
         files: Vec::new(),
-        copies: container::files(source.document.json())?,
+        copies: output_document::files(source.document.json())?,
         report: AssetReport { layers, ..AssetReport::default() },
     })
 }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::file::NewFile;
+use super::new_file::NewFile;
 use crate::gltf::document::Container;
 use crate::report::AssetReport;
 

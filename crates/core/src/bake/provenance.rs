@@ -7,9 +7,9 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::container;
 use super::error::BakeError;
-use super::file::NewFile;
+use super::new_file::NewFile;
+use super::output_document;
 use super::reader::Reader;
 use crate::digest::{Digest, digest};
 use crate::gltf::document::{Container, Document};
@@ -50,7 +50,7 @@ impl DocumentProvenance {
     ) -> Result<Self, BakeError> {
         let source = reader.source;
         let mut files = Vec::new();
-        for path in container::files(source.document.json())? {
+        for path in output_document::files(source.document.json())? {
             if !is_recorded(&path)
                 && let Some(blake3) = reader.digest(&path)
             {

@@ -46,7 +46,7 @@ pub fn bake_map(
     settings: &Settings,
 ) -> Result<EncodedMap, BakeError> {
     // PNG fallbacks are for documents, which refer to both files.
-    let settings = &Settings { form: Form::Strict, ..*settings };
+    let settings = &Settings { gltf: Form::Strict, ..*settings };
     let map = MapOffsets::new(bump_map, settings, bump_map.wrap())?;
     let mut notes = notes::of_bump_map(bump_map, map.bumps.size());
     let layer = std::iter::once_with(|| layer_input(&map, base_roughness));

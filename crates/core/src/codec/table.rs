@@ -1,4 +1,5 @@
-//! The table of payloads: one row has all facts of a format but its decoder, which is in `ktx2/blocks.rs`.
+//! The table of payloads: one row has all facts of a format except its decoder, which is in `ktx2`: `basis.rs` (UASTC),
+//! `blocks.rs` (BC1 to BC7) or `uncompressed.rs` (floats).
 
 use std::num::NonZeroU8;
 
@@ -24,7 +25,7 @@ pub struct Codec {
     pub format: PayloadFormat,
     /// The target that it belongs to.
     pub target: Target,
-    /// Most channels of texels that the target stores in it.
+    /// The largest number of channels that the target stores in this format.
     pub channels: u32,
     /// Whether the target stores normals in it: x, y and z or, in a format of two channels, x and y. Readers rebuild z
     /// from x and y.

@@ -1,4 +1,4 @@
-//! Decoding of the block formats, block by block: one row for each format.
+//! Decoding of BC1 to BC7, block by block: one row for each format.
 
 use crate::image::Samples;
 

@@ -1,4 +1,5 @@
-//! Roughness from covariances: D, lambda_1 and the correction factor (paper, "The roughness pyramid").
+//! Roughness from covariances: D and lambda_1 (paper, "The roughness pyramid"). The correction factor is in
+//! `correction.rs`.
 
 use crate::math::symmetric::Symmetric2;
 

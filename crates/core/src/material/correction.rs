@@ -18,7 +18,7 @@ where
         let in_row = |texels: &mut Vec<ShapedMoments>, y: u32| {
             moments.row(level, y, texels);
             texels.iter().fold([0.0; 2], |sum, m| {
-                let corrected = settings.distribution.correct(m, base_lobe, settings.family).covariance.trace();
+                let corrected = settings.distribution.correct(m, base_lobe, settings.lobe).covariance.trace();
                 [sum[0] + f64::from(corrected), sum[1] + f64::from(m.moments.covariance.trace())]
             })
         };

@@ -7,8 +7,8 @@ use crate::material::roughening::Roughening;
 use crate::math::symmetric::Symmetric2;
 use crate::settings::Model;
 
-/// Axis ratio from which on the direction of a lobe counts. An isotropic lobe in place of such a lobe has an error of
-/// 0.13.
+/// Smallest axis ratio at which the direction of a lobe counts. An isotropic lobe in place of such a lobe has an error
+/// of 0.13.
 const CLEARLY_ANISOTROPIC: f32 = 1.5;
 
 /// Returns the rows of a level that are sampled: all rows, or 65 of them. The number is odd so that the samples do not

@@ -1,4 +1,5 @@
-//! The lobe of every texel of every level: the base lobe, roughened by the bumps that the level has lost.
+//! The lobe of every texel of every level: the base lobe, widened by the bumps that the level has lost. GGX lobes are
+//! merged from level to level; with a fixed distribution or another family, A' = A + 2 c K.
 
 use rayon::prelude::*;
 
@@ -29,17 +30,17 @@ impl<'a> Lobes<'a> {
     pub fn new<'b: 'a>(base: &Base<'a>, bumps: &Bumps<'b>, slope_scale: f32, settings: &Settings) -> Self {
         let level_0 = Level0 { base: base.level_0().clone(), bumps: bumps.rows, slope_scale };
         let roughened = || level_0.roughened(base, bumps, settings).into();
-        let tail = match (settings.distribution, settings.effort) {
+        let tail = match (settings.distribution, settings.quality) {
             (Distribution::Normal | Distribution::Uniform, _) => roughened(),
             (Distribution::Auto, effort) => {
-                let merged = match settings.family {
+                let merged = match settings.lobe {
                     Family::Ggx => MipTail::with_max_kept(&level_0, MAX_KEPT_TEXELS),
                     // Normal distributions are merged by likelihood when their moments are added.
                     Family::Beckmann => roughened(),
                 };
                 match effort {
                     Effort::Fast => merged,
-                    Effort::Best => fitted(&level_0, &merged, settings.family),
+                    Effort::Best => fitted(&level_0, &merged, settings.lobe),
                 }
             }
         };
@@ -97,7 +98,7 @@ impl<'a> Lobes<'a> {
 /// bakes in 5.0 s instead of 7.1.
 const MAX_KEPT_TEXELS: u64 = 1 << 24;
 
-/// Levels between a texel and the finer lobes that are its reference in a fit.
+/// A fit compares a lobe with the lobes that are this many levels finer.
 const FIT_DEPTH: usize = 3;
 /// Half-vectors for each fit. Four times as many gain 0.001 of lobe error on average, measured on real materials.
 const FIT_SAMPLES: usize = 128;
@@ -229,7 +230,7 @@ impl Level0<'_> {
                 // width by the slope scale than to multiply four orders of moments.
                 let base_lobe = base_lobe(texel);
                 let unscaled = SquaredAlpha((1.0 / squared_scale) * base_lobe.0);
-                let corrected = settings.distribution.correct(m, unscaled, settings.family);
+                let corrected = settings.distribution.correct(m, unscaled, settings.lobe);
                 let Offset { u, v } = corrected.centre;
                 let centre = Offset { u: u * self.slope_scale, v: v * self.slope_scale };
                 *lobe = OrientedLobe::new(centre, base_lobe.roughen(squared_scale * corrected.covariance));

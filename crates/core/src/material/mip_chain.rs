@@ -50,10 +50,10 @@ impl Encoding {
         Self {
             format: settings.target.format(channels),
             metric: Metric::Rgb,
-            effort: settings.effort,
+            effort: settings.quality,
             rdo: settings.rdo,
             finest: 0,
-            fallback: settings.form == Form::Fallback,
+            fallback: settings.gltf == Form::Fallback,
         }
     }
 

@@ -1,4 +1,4 @@
-//! The notes to the user on a bump map and its bake, and the measurements from which on they are made.
+//! The notes to the user on a bump map and its bake, and the thresholds above which they are made.
 
 use crate::bump::Outliers;
 use crate::image::FileFormat;
@@ -14,14 +14,13 @@ pub fn is_jpeg(file: &[u8]) -> bool {
     FileFormat::detect(file, None) == Some(FileFormat::Jpeg)
 }
 
-/// Share of texels with opposed neighbours from which on a note says so. A map with one seam across 1024 texels has
-/// 0.3 %.
+/// Smallest share of texels with opposed neighbours that is reported. A map with one seam across 1024 texels has 0.3 %.
 const MIN_OPPOSED: f32 = 0.001;
 
-/// Lobe error by rounding from which on a note says so.
+/// Smallest lobe error by rounding that is reported.
 const MIN_ROUNDING: f32 = 0.05;
 
-/// Share of the variance that filtering loses from which on a note says so: 5 % of alpha.
+/// Smallest share of the variance lost by filtering that is reported: 5 % of alpha.
 const MIN_FILTER_LOSS: f32 = 0.1;
 
 /// Returns the notes of a bump map that is baked on a grid of `grid` (columns, rows).

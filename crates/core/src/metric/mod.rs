@@ -6,26 +6,26 @@
 //! This module takes maps and decoded images, never files.
 
 mod cluster;
+mod decoded;
+mod density;
 mod footprint;
-mod lobe;
 mod oracle;
 mod peaks;
 mod peers;
 mod reference;
 mod refine;
-mod score;
-mod survey;
+mod sample_sites;
 #[cfg(test)]
 mod tests;
 
 pub use cluster::clustered;
+pub use decoded::{Decoded, mean_errors, sample_texels, shown_lobe, shown_normal, with_z};
+pub use density::Lobe;
 pub(crate) use footprint::overlaps;
 pub use footprint::{Footprint, FootprintMoments, Part, Surface};
-pub use lobe::Lobe;
 pub use oracle::oracle;
 pub use peaks::is_two_peaked;
 pub use peers::Peer;
 pub use reference::{Reference, SAMPLES};
 pub use refine::refine;
-pub use score::{Decoded, mean_errors, sample_texels, shown_lobe, shown_normal, with_z};
-pub use survey::{Level0Row, Precision, Site, survey};
+pub use sample_sites::{Level0Row, Precision, Site, sample_sites};

@@ -1,7 +1,7 @@
 //! The best single lobe that an engine can show, found by numerical search.
 
 use crate::math::symmetric::MohrCircle;
-use crate::metric::lobe::Lobe;
+use crate::metric::density::Lobe;
 use crate::metric::reference::Reference;
 
 /// Mean slopes, then the logarithm of A as (m + d, o, m - d). Every vector of these parameters is a valid lobe.

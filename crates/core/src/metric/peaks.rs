@@ -3,8 +3,8 @@
 use crate::lobe::Family;
 use crate::math::symmetric::MohrCircle;
 use crate::math::vector::{Vector, normalised};
+use crate::metric::density::Lobe;
 use crate::metric::footprint::{Footprint, slope};
-use crate::metric::lobe::Lobe;
 
 /// A valley counts when its density is below this share of the lower peak. Two equal normal distributions that are 2.7
 /// standard deviations apart have such a valley.

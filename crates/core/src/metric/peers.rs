@@ -5,8 +5,8 @@ use half::f16;
 
 use crate::lobe::Family;
 use crate::math::symmetric::MohrCircle;
+use crate::metric::density::Lobe;
 use crate::metric::footprint::FootprintMoments;
-use crate::metric::lobe::Lobe;
 
 /// Another way to make a lobe from a footprint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -4,8 +4,8 @@ use std::array;
 
 use crate::lobe::Family;
 use crate::math::vector::Vector;
+use crate::metric::density::Lobe;
 use crate::metric::footprint::Footprint;
-use crate::metric::lobe::Lobe;
 use crate::simd::dispatch;
 
 /// Samples of a footprint that keep the error of [`Reference::error`] below 0.002 (test
@@ -66,7 +66,7 @@ impl Reference {
     /// Returns 1/2 integral |P_ref - P| dw in [0, 1]: the share of reflected half-vectors that `lobe` puts in the wrong
     /// place.
     ///
-    /// Both densities integrate to 1, so `P` has too much in one place what it lacks in another. The error is therefore
+    /// Both densities integrate to 1: what `P` lacks in one place, it has too much of elsewhere. The error is therefore
     /// the integral of (P_ref - P)+, which is the mean of (1 - P / P_ref)+ over half-vectors drawn from P_ref. No
     /// half-vector need be drawn from P.
     pub fn error(&self, lobe: &Lobe) -> f64 {

@@ -3,7 +3,7 @@
 use crate::lobe::Family;
 use crate::math::symmetric::MohrCircle;
 use crate::math::vector::{combine, frame, normalised};
-use crate::metric::lobe::Lobe;
+use crate::metric::density::Lobe;
 use crate::metric::reference::Reference;
 
 /// Rounds over the four directions of search. Twice as many rounds gain less than 0.001 on real materials.

@@ -79,11 +79,11 @@ impl Reason {
         match self {
             Self::Encoding => "lost in encoding",
             Self::AlphaAboveOne => "alpha would have to be above 1",
-            Self::Isotropic => "a circle in an ellipse's place",
-            Self::TwoPeaked => "two peaks, one lobe",
+            Self::Isotropic => "the lobe is isotropic, and these bumps need an anisotropic one",
+            Self::TwoPeaked => "the bumps reflect in two directions, which one lobe cannot show",
             Self::Steep => "slopes beyond the clamp",
             Self::NoSingleLobe => "no single lobe has this shape",
-            Self::Fit => "the lobe is not the best one that there is",
+            Self::Fit => "the fit does not reach the best lobe",
         }
     }
 }

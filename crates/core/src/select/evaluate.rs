@@ -2,11 +2,11 @@
 
 use crate::codec::EncodeError;
 use crate::lobe::OrientedLobe;
-use crate::metric::{Precision, Site, survey};
+use crate::metric::{Precision, Site, sample_sites};
 use crate::report::{Candidate, Choice};
 use crate::select::candidate_set::CandidateSet;
-use crate::select::choose::choose;
 use crate::select::misses::{misses, rounded};
+use crate::select::rule::choose;
 use crate::select::shown::{Errors, Shown};
 use crate::settings::Model;
 
@@ -48,7 +48,7 @@ impl CandidateSet<'_, '_, '_> {
         let finest = self.finest.min(sizes.len() - 1);
         let lobes = self.roughening.lobes();
         let row = |y, out: &mut [OrientedLobe]| lobes.row(0, y, out);
-        let sites = survey(&sizes, finest..sizes.len(), self.settings.family, Precision::QUICK, &row);
+        let sites = sample_sites(&sizes, finest..sizes.len(), self.settings.lobe, Precision::QUICK, &row);
         Samples { sizes, finest, sites }
     }
 

@@ -69,7 +69,7 @@ impl<'s> Measurements<'s> {
             .then(|| shown.errors(&sites, Model::Anisotropic, first))
             .transpose()?;
         Ok(Self {
-            family: set.settings.family,
+            family: set.settings.lobe,
             unencoded: shown.errors(&sites, model, first)?,
             unclamped: shown.unclamped_errors(&sites, model, first)?,
             anisotropic,

@@ -2,11 +2,11 @@
 //! reasons why a bound is missed. Candidates are measured at sample points, before any of them is baked.
 
 mod candidate_set;
-mod choose;
 mod evaluate;
 mod misses;
+mod rule;
 mod shown;
 mod texture_samples;
 
 pub use candidate_set::CandidateSet;
-pub use choose::choose;
+pub use rule::choose;

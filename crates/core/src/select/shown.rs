@@ -93,7 +93,7 @@ impl<'t, 'f, 'r> Shown<'t, 'f, 'r> {
             let a = SquaredAlpha(Symmetric2::new(uu, uv, vv));
             let a = if model == Model::Isotropic { SquaredAlpha::isotropic(a.closest_isotropic()) } else { a };
             let normals = self.normals.iter().filter_map(|n| n.get(i));
-            normals.map(|n| Lobe::new(self.set.settings.family, *n, [a.0.uu, a.0.uv, a.0.vv].map(f64::from))).collect()
+            normals.map(|n| Lobe::new(self.set.settings.lobe, *n, [a.0.uu, a.0.uv, a.0.vv].map(f64::from))).collect()
         };
         Ok(largest(sites, (0..sites.len()).map(lobe).collect()))
     }
@@ -104,7 +104,7 @@ impl<'t, 'f, 'r> Shown<'t, 'f, 'r> {
         let squared_alphas = [self.portable_alphas(model, first)?, self.pyramid_alphas(model, first)?];
         for (normals, squared_alphas) in self.normals.iter().zip(squared_alphas) {
             for ((lobes, normal), a) in lobes.iter_mut().zip(normals).zip(squared_alphas) {
-                lobes.push(Lobe::new(self.set.settings.family, *normal, a));
+                lobes.push(Lobe::new(self.set.settings.lobe, *normal, a));
             }
         }
         Ok(lobes)

@@ -8,15 +8,15 @@ use std::path::{Path, PathBuf};
 use rayon::prelude::*;
 use semver::Version;
 
+use super::checked_files::{CheckedFile, Sources, find_checked_files, source_document};
 use super::document::check_document;
 use super::files::Files;
 use super::findings::{Code, Finding, Findings, Severity};
 use super::folder::Folder;
 use super::formats::Report;
-use super::origin::Origin;
 use super::partial_file::PartialFile;
 use super::scope::Scope;
-use super::targets::{Sources, Target, find_targets, source_document};
+use super::source_digests::SourceDigests;
 use super::texture::{Usage, check_texture};
 use crate::input_file::read_file;
 
@@ -58,7 +58,7 @@ impl Checker {
         let mut checked = Checked::default();
         let mut targets = Vec::new();
         for argument in baked {
-            match find_targets(argument) {
+            match find_checked_files(argument) {
                 Ok(found) => targets.extend(found),
                 Err(error) => {
                     let path = argument.display();
@@ -66,7 +66,7 @@ impl Checker {
                 }
             }
         }
-        let (textures, documents): (Vec<_>, Vec<_>) = targets.into_iter().partition(Target::is_texture);
+        let (textures, documents): (Vec<_>, Vec<_>) = targets.into_iter().partition(CheckedFile::is_texture);
         let referred = self.check_documents(&documents, sources, &mut checked);
         self.check_textures(&textures, &referred, sources, &mut checked);
         self.find_missing_outputs(&documents, sources, &mut checked);
@@ -74,7 +74,12 @@ impl Checker {
     }
 
     /// Checks `documents` and returns the real paths of the files that they refer to.
-    fn check_documents(&self, documents: &[Target], sources: &Sources, checked: &mut Checked) -> BTreeSet<PathBuf> {
+    fn check_documents(
+        &self,
+        documents: &[CheckedFile],
+        sources: &Sources,
+        checked: &mut Checked,
+    ) -> BTreeSet<PathBuf> {
         let mut referred = BTreeSet::new();
         let results: Vec<_> = documents.par_iter().map(|target| self.check_document(target, sources)).collect();
         for (target, result) in documents.iter().zip(results) {
@@ -94,13 +99,13 @@ impl Checker {
     /// Checks the textures to which no document refers.
     fn check_textures(
         &self,
-        textures: &[Target],
+        textures: &[CheckedFile],
         referred: &BTreeSet<PathBuf>,
         sources: &Sources,
         checked: &mut Checked,
     ) {
         let is_referred = |path: &Path| fs::canonicalize(path).is_ok_and(|path| referred.contains(&path));
-        let standalone: Vec<&Target> = textures.iter().filter(|target| !is_referred(&target.path)).collect();
+        let standalone: Vec<&CheckedFile> = textures.iter().filter(|target| !is_referred(&target.path)).collect();
         let results: Vec<_> = standalone.par_iter().map(|target| self.check_texture(target, sources)).collect();
         for (target, result) in standalone.iter().zip(results) {
             self.add(target, result, checked);
@@ -108,8 +113,8 @@ impl Checker {
     }
 
     /// Adds a finding for every expected output that does not exist.
-    fn find_missing_outputs(&self, documents: &[Target], sources: &Sources, checked: &mut Checked) {
-        let present: BTreeSet<PathBuf> = documents.iter().map(Target::key).collect();
+    fn find_missing_outputs(&self, documents: &[CheckedFile], sources: &Sources, checked: &mut Checked) {
+        let present: BTreeSet<PathBuf> = documents.iter().map(CheckedFile::key).collect();
         for missing in sources.expected.iter().filter(|key| !present.contains(*key)) {
             let Some(asset) = sources.assets.get(missing) else { continue };
             let mut findings = Findings::new(asset.input.path.display().to_string());
@@ -123,7 +128,12 @@ impl Checker {
     }
 
     /// Adds the findings of a file to the report, or an error if the file cannot be read. Returns the findings.
-    fn add<'c>(&self, target: &Target, result: io::Result<Vec<Finding>>, checked: &'c mut Checked) -> &'c [Finding] {
+    fn add<'c>(
+        &self,
+        target: &CheckedFile,
+        result: io::Result<Vec<Finding>>,
+        checked: &'c mut Checked,
+    ) -> &'c [Finding] {
         let list = &mut checked.report.findings;
         let start = list.len();
         match result {
@@ -151,7 +161,7 @@ impl Checker {
         }
     }
 
-    fn check_document(&self, target: &Target, sources: &Sources) -> io::Result<DocumentFindings> {
+    fn check_document(&self, target: &CheckedFile, sources: &Sources) -> io::Result<DocumentFindings> {
         let bytes = read_file(&target.path)?;
         let name = target.path.display().to_string();
         let folder = target.path.parent().unwrap_or(Path::new(""));
@@ -165,7 +175,7 @@ impl Checker {
         let source_folder = source_path.as_deref().and_then(Path::parent).unwrap_or(Path::new("")).to_owned();
         let read_source = |path: &Path| read_file(&source_folder.join(path));
         let origin = source_path.and_then(|path| match source_document(&path) {
-            Ok(document) => Some(Origin::new(Some(document), &read_source)),
+            Ok(document) => Some(SourceDigests::new(Some(document), &read_source)),
             Err(reason) => {
                 let message =
                     format!("expected the document that this was baked from at {}, found: {reason}", path.display());
@@ -184,7 +194,7 @@ impl Checker {
     }
 
     /// Checks a texture to which no document refers.
-    fn check_texture(&self, target: &Target, sources: &Sources) -> io::Result<Vec<Finding>> {
+    fn check_texture(&self, target: &CheckedFile, sources: &Sources) -> io::Result<Vec<Finding>> {
         let files = Folder(PathBuf::new());
         let held = PartialFile::read(files.length(&target.path)?, self.is_deep, |part| files.read(&target.path, part))?;
         let mut findings = Findings::new(target.path.display().to_string());
@@ -195,13 +205,13 @@ impl Checker {
             let below = target.below.parent().unwrap_or(Path::new(""));
             let folder = sources.folder.as_ref().map(|folder| folder.join(below));
             let read_source = |path: &Path| read_file(&folder.as_deref().unwrap_or(Path::new("")).join(path));
-            let origin = folder.as_ref().map(|_| Origin::new(None, &read_source));
+            let origin = folder.as_ref().map(|_| SourceDigests::new(None, &read_source));
             check_texture(held.as_ktx2(), Usage::default(), &self.scope(origin.as_ref()), &mut findings);
         }
         Ok(findings.into_list())
     }
 
-    fn scope<'a>(&'a self, origin: Option<&'a Origin<'a>>) -> Scope<'a> {
+    fn scope<'a>(&'a self, origin: Option<&'a SourceDigests<'a>>) -> Scope<'a> {
         Scope { is_deep: self.is_deep, origin, settings: None, min_version: self.min_version.as_ref() }
     }
 }

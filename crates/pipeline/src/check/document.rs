@@ -12,8 +12,8 @@ use super::materials::check_materials;
 use super::partial_file::PartialFile;
 use super::provenance::check_document_provenance;
 use super::scope::Scope;
-use super::sources::{Sources, Textures};
 use super::texture::{Usage, check_texture};
+use super::texture_images::{TextureImages, Textures};
 use super::variance::{Levels, RangedTexture, check_variance};
 use crate::bake::SourceError;
 use crate::gltf::document::{Container, Document, DocumentError};
@@ -198,7 +198,7 @@ impl Images<'_> {
 
 fn check_core_source(
     texture: usize,
-    sources: Sources,
+    sources: TextureImages,
     partial: &PartialFile,
     mime: Option<&str>,
     findings: &mut Findings,

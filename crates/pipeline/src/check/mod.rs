@@ -4,6 +4,7 @@
 //! `gltf`. This module reads files through [`Files`] only and knows no kernels.
 
 mod basisu;
+mod checked_files;
 mod checker;
 mod container;
 mod decoded_levels;
@@ -14,25 +15,24 @@ mod findings;
 mod folder;
 mod formats;
 mod materials;
-mod origin;
 mod partial_file;
 mod provenance;
 mod scope;
 mod settings;
-mod sources;
+mod source_digests;
 mod storage;
-mod targets;
 mod texture;
+mod texture_images;
 mod variance;
 
+pub use checked_files::{SourceAsset, Sources};
 pub use checker::{Checked, Checker};
 pub use document::{CheckedDocument, check_document};
 pub use files::{Files, ReferencedFiles};
 pub use findings::{Code, Finding, Findings, MAX_LISTED, Severity};
 pub use folder::Folder;
 pub use formats::{CHECK_FORMAT, Report, json, junit, sarif, text};
-pub use origin::Origin;
 pub use partial_file::PartialFile;
 pub use scope::Scope;
-pub use targets::{SourceAsset, Sources};
+pub use source_digests::SourceDigests;
 pub use texture::{Usage, check_texture};

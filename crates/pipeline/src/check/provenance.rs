@@ -5,9 +5,9 @@ use std::cmp::Ordering;
 use semver::Version;
 
 use super::findings::{Code, Findings};
-use super::origin::Origin;
 use super::scope::Scope;
 use super::settings::check_settings;
+use super::source_digests::SourceDigests;
 use crate::bake::DocumentProvenance;
 use crate::digest::digest;
 use crate::gltf::document::Document;
@@ -71,7 +71,7 @@ pub fn check_document_provenance(
     document: &Document,
     bytes: &[u8],
     has_textures: bool,
-    origin: &Origin<'_>,
+    origin: &SourceDigests<'_>,
     findings: &mut Findings,
 ) {
     let Some((source, source_digest)) = origin.document() else { return };
@@ -98,7 +98,7 @@ pub fn check_document_provenance(
     }
 }
 
-fn check_sources(sources: &[SourceDigest], origin: &Origin<'_>, place: &str, findings: &mut Findings) {
+fn check_sources(sources: &[SourceDigest], origin: &SourceDigests<'_>, place: &str, findings: &mut Findings) {
     for source in sources {
         match origin.digests(&source.uri) {
             Err(reason) => {

@@ -139,7 +139,7 @@ fn compare_material(
     advance: &dyn Fn(f32, &str),
 ) -> Result<Option<Comparison>, CompareError> {
     let settings = Settings::default()
-        .with_form(Form::Strict)
+        .with_gltf(Form::Strict)
         .with_target(Target::Basis)
         .with_max_error(options.max_error)
         .with_max_texels(options.max_texels)
@@ -158,7 +158,7 @@ fn compare_material(
     let mut ours = Vec::with_capacity(OURS);
     for (model, effort, label) in models.into_iter().flat_map(named).chain([auto]) {
         let start = Instant::now();
-        let baked = bake_asset(source, &settings.with_model(model).with_effort(effort), &|_| {})?;
+        let baked = bake_asset(source, &settings.with_model(model).with_quality(effort), &|_| {})?;
         let seconds = start.elapsed().as_secs_f64();
         ours.push(Ours {
             name: label,

@@ -43,7 +43,7 @@ impl Columns {
 /// # Errors
 /// [`ReadBackError::NoBumps`] if no material has bumps, and the errors of the bake.
 pub fn columns(source: &Source<'_>, settings: &Settings) -> Result<Vec<Columns>, PictureError> {
-    let strict = settings.with_form(Form::Strict).with_glb(false).with_provenance(false);
+    let strict = settings.with_gltf(Form::Strict).with_glb(false).with_provenance(false);
     let of_profile = |profile| strict.with_profile(profile);
     let plain = of_profile(Profile::Portable).with_model(Model::None).with_target(Target::Float);
     let plain = read(source, &plain)?;

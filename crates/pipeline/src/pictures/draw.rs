@@ -60,7 +60,7 @@ impl PictureOptions {
 
     /// Returns the settings of the bakes. The paper takes its lobes for normal distributions.
     fn bake_settings(&self) -> Settings {
-        self.settings.with_family(match self.reflection {
+        self.settings.with_lobe(match self.reflection {
             Reflection::Ggx => Family::Ggx,
             Reflection::Beckmann | Reflection::BlinnPhong | Reflection::BlinnPhongPrinted => Family::Beckmann,
         })

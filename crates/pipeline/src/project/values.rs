@@ -1,4 +1,4 @@
-//! What a source of settings may set: every setting, by the name that its flag has too.
+//! All settings that a source of settings can set, under the names of their flags.
 
 use serde::ser::SerializeMap;
 use serde::{Deserialize, Serialize, Serializer};
@@ -149,13 +149,13 @@ impl Values {
             model: Some(defaults.model),
             // 0.1 in single precision is another number in double precision.
             max_error: Some(0.1),
-            quality: Some(defaults.effort),
+            quality: Some(defaults.quality),
             distribution: Some(defaults.distribution),
-            lobe: Some(defaults.family),
+            lobe: Some(defaults.lobe),
             target: Some(defaults.target),
             max_texels: Some(defaults.max_texels),
             provenance: Some(defaults.provenance),
-            gltf: Some(defaults.form),
+            gltf: Some(defaults.gltf),
             glb: Some(defaults.glb),
             frame: Some(FrameName::Unit),
             main_direction: Some([0.0, 1.0, 0.0]),
@@ -173,7 +173,7 @@ impl Values {
     pub fn settings(&self) -> Result<Settings, SettingsError> {
         let defaults = Settings::default();
         let glb = self.glb.unwrap_or(defaults.glb);
-        let form = self.gltf.unwrap_or(defaults.form);
+        let form = self.gltf.unwrap_or(defaults.gltf);
         if glb && form == Form::Dual {
             return Err(SettingsError::DualInGlb);
         }
@@ -185,11 +185,11 @@ impl Values {
         settings.model = self.model.unwrap_or_default();
         settings.max_error = max_error.map_or(settings.max_error, |e| e as f32);
         settings.distribution = self.distribution.unwrap_or_default();
-        settings.family = self.lobe.unwrap_or_default();
+        settings.lobe = self.lobe.unwrap_or_default();
         settings.target = self.target.unwrap_or_default();
-        settings.effort = self.quality.unwrap_or(settings.effort);
+        settings.quality = self.quality.unwrap_or(settings.quality);
         settings.rdo = rdo;
-        settings.form = form;
+        settings.gltf = form;
         settings.glb = glb;
         settings.frame = self.frame()?;
         settings.height_scale = height_scale.map(|s| s as f32);

@@ -12,10 +12,10 @@ mod farm;
 #[path = "no_farm.rs"]
 mod farm;
 mod options;
-mod outcome;
+mod request;
 mod schedule;
 
 pub use farm::{Remote, RemoteError};
 pub use options::{Header, Options, Tls};
-pub use outcome::{Counts, JobFailure, JobRequest, Origin, Outcome, Wait};
+pub use request::{Counts, JobFailure, JobRequest, Origin, Outcome, Wait};
 pub use schedule::{ScheduleError, schedule};

@@ -1,7 +1,7 @@
 //! The client of build farms in builds without the feature `remote`.
 
 use super::options::Options;
-use super::outcome::{Counts, JobRequest, Wait};
+use super::request::{Counts, JobRequest, Wait};
 
 /// A server, which cannot exist in this build.
 pub enum Remote {}

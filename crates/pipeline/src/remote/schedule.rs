@@ -4,7 +4,7 @@ use std::io;
 
 use super::farm::{Remote, RemoteError};
 use super::options::Options;
-use super::outcome::JobRequest;
+use super::request::JobRequest;
 use crate::cache::Cache;
 use crate::output::Guard;
 use crate::report::Counts;

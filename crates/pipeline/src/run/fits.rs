@@ -1,4 +1,4 @@
-//! Whether an entry of a cache has exactly the outputs of a job: others can fill caches, too.
+//! Whether an entry of a cache has exactly the outputs of a job. Caches are not trusted: others can write to them.
 
 use std::collections::{BTreeSet, HashSet};
 use std::path::{Path, PathBuf};

@@ -8,7 +8,7 @@ use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::json;
 
-use crate::bake::{Survey, output_stem_of, portable_stem, survey};
+use crate::bake::{DocumentFacts, document_facts, output_stem_of, portable_stem};
 use crate::digest::{Digest, digest};
 use crate::gltf::document::{Container, Document};
 use crate::input_file::{hash_file, read_file};
@@ -92,18 +92,18 @@ impl Job {
     pub fn new(source: &Path, output: &Path, settings: &Values) -> Result<Self, RunError> {
         let bytes = read_file(source).map_err(RunError::Read)?;
         let document = parsed(&bytes)?;
-        let survey = survey(&document)?;
+        let facts = document_facts(&document)?;
         let stem = output_stem_of(source);
         // Removes parts without meaning, such as a slash at the end.
         let output: &Path = &output.components().collect::<PathBuf>();
         let mut inputs =
             vec![JobInput { path: source.to_owned(), blake3: Some(digest(&bytes)), bytes: bytes.len() as u64 }];
-        inputs.par_extend(survey.files.par_iter().map(|file| {
+        inputs.par_extend(facts.files.par_iter().map(|file| {
             let path = beside(source, file);
             let (blake3, bytes) = hash_file(&path).ok().unzip();
             JobInput { path, blake3, bytes: bytes.unwrap_or(0) }
         }));
-        let names = survey.files.iter().map(|file| file.to_string_lossy());
+        let names = facts.files.iter().map(|file| file.to_string_lossy());
         let files: Vec<(String, Option<Digest>)> = [stem.clone().into()]
             .into_iter()
             .chain(names)
@@ -113,8 +113,8 @@ impl Job {
         let identity = json!({ "version": env!("CARGO_PKG_VERSION"), "settings": settings, "files": files });
         Ok(Self {
             id: digest(identity.to_string().as_bytes()),
-            outputs: outputs(&survey, &settings.settings()?, &stem, output),
-            cost: if survey.has_bumps { inputs.iter().map(|input| input.bytes).sum() } else { 0 },
+            outputs: outputs(&facts, &settings.settings()?, &stem, output),
+            cost: if facts.has_bumps { inputs.iter().map(|input| input.bytes).sum() } else { 0 },
             command: command(source, output, settings),
             source: source.to_owned(),
             output: output.to_owned(),
@@ -198,16 +198,16 @@ fn relative<'de, D: Deserializer<'de>>(deserializer: D) -> Result<PathBuf, D::Er
     Ok(path)
 }
 
-fn outputs(survey: &Survey, settings: &Settings, stem: &str, folder: &Path) -> Vec<JobOutput> {
+fn outputs(facts: &DocumentFacts, settings: &Settings, stem: &str, folder: &Path) -> Vec<JobOutput> {
     let file = |path: PathBuf| JobOutput { path, kind: OutputKind::File };
-    let is_glb = if survey.has_bumps { settings.glb } else { survey.container == Container::Glb };
+    let is_glb = if facts.has_bumps { settings.glb } else { facts.container == Container::Glb };
     let mut outputs = vec![file(folder.join(format!("{stem}.{}", if is_glb { "glb" } else { "gltf" })))];
-    if survey.has_bumps && !is_glb {
+    if facts.has_bumps && !is_glb {
         let name = format!("{}.roughcast", portable_stem(stem));
         outputs.push(JobOutput { path: folder.join(name), kind: OutputKind::Folder });
     }
     if !is_glb {
-        outputs.extend(survey.buffers.iter().map(|buffer| file(normal_path(&folder.join(buffer)))));
+        outputs.extend(facts.buffers.iter().map(|buffer| file(normal_path(&folder.join(buffer)))));
     }
     outputs
 }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::bake::survey;
+use crate::bake::document_facts;
 use crate::digest::digest;
 use crate::input_file::read_file;
 use crate::run::error::RunError;
@@ -30,11 +30,11 @@ impl Job {
         if self.inputs.first().and_then(|input| input.blake3) != Some(digest(&bytes)) {
             return Err(RunError::Changed { path: self.source.clone() });
         }
-        let survey = survey(&parsed(&bytes)?)?;
+        let facts = document_facts(&parsed(&bytes)?)?;
         let id = self.id.to_string();
         let (from, to) = (Path::new("in").join(&id), Path::new("out").join(&id));
         let source = from.join(self.source.file_name().unwrap_or_default().to_string_lossy().as_ref());
-        let names = [source.clone()].into_iter().chain(survey.files.iter().map(|file| from.join(file)));
+        let names = [source.clone()].into_iter().chain(facts.files.iter().map(|file| from.join(file)));
         let (mut inputs, mut files, mut folders) = (Vec::new(), Vec::<(PathBuf, PathBuf)>::new(), Vec::new());
         for (name, input) in names.zip(&self.inputs) {
             let path = normal_path(&name);

@@ -10,10 +10,10 @@ use crate::output::Guard;
 use crate::report::{AssetOutcome, Counts, Origin, Status};
 use crate::run::budget::MemoryBudget;
 use crate::run::error::RunError;
-use crate::run::failure::{JobFailure, Wait};
 use crate::run::in_order::in_order;
 use crate::run::job::Job;
 use crate::run::planned::PlannedAsset;
+use crate::run::remote_end::{JobFailure, Wait};
 use crate::run::restore::Lookup;
 use crate::run::run_job::{Done, Prepared, finish, prepare};
 use crate::settings::Settings;
@@ -43,7 +43,7 @@ pub trait RunEvents {
 pub struct Scheduler<'a> {
     /// The cache.
     pub cache: Option<&'a Cache>,
-    /// The settings of the run; the outcome of an asset names the settings of the asset where they differ.
+    /// The settings of the run. The outcome of an asset records its own settings if they differ from these.
     pub settings: &'a Settings,
     /// Checks that a job may be run.
     pub check: &'a (dyn Fn(&Job) -> Result<(), RunError> + Sync),

@@ -158,7 +158,7 @@ fn errors_are_those_of_the_baked_files() {
         (brushed, Target::Bc, Family::Ggx),
     ] {
         let image = normals(64, slope);
-        let settings = Settings { model: Model::Anisotropic, target, family, ..settings(0.1) };
+        let settings = Settings { model: Model::Anisotropic, target, lobe: family, ..settings(0.1) };
         let baked = bake(&image, 0.4, &settings);
         let choice = baked.choice.as_ref().unwrap();
         let map = NormalMap::new(image, NormalLayout::Xyz, false).unwrap();
@@ -211,7 +211,7 @@ fn distinguishes_two_peaks_from_too_simple_a_model() {
     assert!(grooves.misses.iter().all(|m| m.reason == Reason::TwoPeaked), "{:#?}", grooves.misses);
     let note = grooves.note(&settings(0.1)).unwrap();
     assert!(
-        note.text.starts_with("levels 1-6 miss --max-error 0.1") && note.text.ends_with("two peaks, one lobe"),
+        note.text.starts_with("levels 1-6 miss --max-error 0.1") && note.text.ends_with("which one lobe cannot show"),
         "{note}"
     );
     // The model none was requested, and a single lobe would meet the bound.

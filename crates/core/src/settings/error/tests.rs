@@ -30,5 +30,5 @@ fn rejects_values_out_of_range() {
     ] {
         assert_eq!(wrong.validate().unwrap_err().to_string(), expected);
     }
-    assert_eq!(settings.with_glb(true).with_form(Form::Dual).validate(), Err(SettingsError::DualInGlb));
+    assert_eq!(settings.with_glb(true).with_gltf(Form::Dual).validate(), Err(SettingsError::DualInGlb));
 }

@@ -7,7 +7,7 @@ use std::time::Duration;
 use backon::{BackoffBuilder, ExponentialBackoff, ExponentialBuilder};
 
 use super::error::RemoteError;
-use crate::remote::outcome::Counts;
+use crate::remote::request::Counts;
 
 /// Waits between attempts: each is twice the one before, up to 7.5 seconds. Jitter adds up to the wait itself, so that
 /// callers that were refused together do not come back together.

@@ -5,8 +5,8 @@ use rayon::prelude::*;
 use crate::image::Image;
 use crate::lobe::{Anisotropy, Family, Roughness};
 use crate::math::vector::{Vector, normalised};
+use crate::metric::density::Lobe;
 use crate::metric::footprint::{Footprint, Surface};
-use crate::metric::lobe::Lobe;
 use crate::metric::reference::{Reference, SAMPLES, even_point};
 
 /// One level of a material's textures, decoded from its files.

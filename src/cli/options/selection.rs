@@ -3,9 +3,9 @@
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use super::options::{DocumentOptions, TextureOptions};
-use super::outcome::Outcome;
+use super::texture::{DocumentOptions, TextureOptions};
 use super::view::ViewOptions;
+use crate::cli::terminal::outcome::Outcome;
 use crate::lobe::Family;
 use crate::project::{ConfigChoice, Selected, Selection, Values};
 

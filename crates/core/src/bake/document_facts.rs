@@ -4,15 +4,15 @@ use std::path::PathBuf;
 
 use serde_json::Value;
 
-use super::container;
 use super::error::BakeError;
+use super::output_document;
 use crate::gltf::document::{Container, Document, check_version};
 use crate::gltf::json::Json;
 use crate::gltf::material::materials;
 
 /// The facts of a document that are known before its bake.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Survey {
+pub struct DocumentFacts {
     /// Files that images and buffers name, relative to the document.
     pub files: Vec<PathBuf>,
     /// Files that buffers name. The output names them, too, unless it is a .glb.
@@ -23,18 +23,18 @@ pub struct Survey {
     pub container: Container,
 }
 
-/// Surveys `document`.
+/// Returns the facts of `document`.
 ///
 /// # Errors
 /// [`BakeError`] for materials and references that a bake would refuse, too.
-pub fn survey(document: &Document) -> Result<Survey, BakeError> {
+pub fn document_facts(document: &Document) -> Result<DocumentFacts, BakeError> {
     let json: &Json = document.json();
     let root: Value = json.value("")?.unwrap_or_default();
     check_version(&root)?;
     let materials = materials(&root).into_iter().collect::<Result<Vec<_>, _>>()?;
-    Ok(Survey {
-        files: container::files(json)?,
-        buffers: container::buffer_files(json)?,
+    Ok(DocumentFacts {
+        files: output_document::files(json)?,
+        buffers: output_document::buffer_files(json)?,
         has_bumps: materials.iter().any(|material| !material.layers.is_empty()),
         container: document.container(),
     })

@@ -7,9 +7,9 @@ use rayon::prelude::*;
 
 use crate::lobe::{Family, OrientedLobe};
 use crate::metric::cluster::clustered;
+use crate::metric::decoded::sample_texels;
 use crate::metric::footprint::{Footprint, Part, overlaps};
 use crate::metric::reference::{Reference, even_point};
-use crate::metric::score::sample_texels;
 
 /// How much a survey samples of each level. A level with few texels has more samples for each texel. Time grows with
 /// `half_vectors * parts`.
@@ -70,7 +70,7 @@ pub type Level0Row<'a> = dyn Fn(u32, &mut [OrientedLobe]) + Sync + 'a;
 /// Returns the sampled texels of `levels` of a mip chain with `sizes`, whose texels have lobes of `family`, level by
 /// level. `row` is called once for each row of level 0 that is needed. The result depends on neither machine nor
 /// threads.
-pub fn survey(
+pub fn sample_sites(
     sizes: &[(u32, u32)],
     levels: Range<usize>,
     family: Family,

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use super::outcome::Outcome;
+use super::terminal::outcome::Outcome;
 use crate::input_file::read_file;
 use crate::output::{Guard, OutputPath, PublishError};
 use crate::report::{PartReport, ReportError};
@@ -13,7 +13,7 @@ use crate::text::printable;
 /// List the jobs of a plan that failed or are missing after the plan was run in parts.
 ///
 /// Reads the reports of the parts and checks that all outputs exist; without reports, only the outputs decide. Exit
-/// code 1: some jobs failed for good and all others are done; 4: some jobs were not run, or another try may succeed.
+/// code 1: some jobs failed permanently and all others are done; 4: some jobs were not run, or another try may succeed.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example:\n  roughcast plan merge plan.json reports/*.json --rest rest.json\n  \
     roughcast bake --plan rest.json")]
@@ -64,7 +64,7 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
         writeln!(err, "warning: {}: expected a report of this plan, found none of its jobs there", path.display())?;
     }
     let merged = Merged::new(&plan, &reports, !args.no_outputs);
-    // A failure for good does not outweigh missing jobs here: exit code 1 means that all other jobs are done.
+    // A permanent failure does not outweigh missing jobs here: exit code 1 means that all other jobs are done.
     let mut outcome = match (merged.missing.is_empty(), merged.failed.is_empty()) {
         (false, _) => Outcome::Retry,
         (true, false) => Outcome::Failed,

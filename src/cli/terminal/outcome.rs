@@ -28,7 +28,7 @@ impl Outcome {
         }
     }
 
-    /// Combines the outcomes of two parts. A failure for good outweighs one that may be tried again.
+    /// Combines the outcomes of two parts. A permanent failure outweighs one that may pass at another try.
     pub fn and(self, other: Self) -> Self {
         let weight = |o: Self| match o {
             Self::Done => 0,

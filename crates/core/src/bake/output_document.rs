@@ -9,8 +9,8 @@ use serde_json::{Value, json};
 
 use super::compact::compact;
 use super::error::ContainerError;
-use super::file::NewFile;
 use super::names::portable_stem;
+use super::new_file::NewFile;
 use super::reader::Reader;
 use super::source::Source;
 use crate::gltf::document::{Container, Document, DocumentError};

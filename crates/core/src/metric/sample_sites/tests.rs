@@ -82,7 +82,7 @@ fn clusters_keep_directions_apart() {
 #[test]
 fn surveys_agree_with_full_mean_errors() {
     let (surface, sizes) = (surface(), crate::mip::level_sizes(SIDE, SIDE));
-    let sites = survey(&sizes, 1..sizes.len(), Family::Ggx, Precision::QUICK, &level0);
+    let sites = sample_sites(&sizes, 1..sizes.len(), Family::Ggx, Precision::QUICK, &level0);
     for (level, &size) in sizes.iter().enumerate().skip(1) {
         let lobes = |footprint: &Footprint| {
             [Peer::PlainMips, Peer::CorrectedVmf, Peer::D].map(|peer| peer.lobe(Family::Ggx, &footprint.moments()))
@@ -107,7 +107,7 @@ fn surveys_do_not_depend_on_threads_and_keep_to_the_levels() {
     let sizes = crate::mip::level_sizes(SIDE, SIDE);
     let on = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| survey(&sizes, 2..5, Family::Ggx, Precision::QUICK, &level0))
+        pool.install(|| sample_sites(&sizes, 2..5, Family::Ggx, Precision::QUICK, &level0))
     };
     let (one, three) = (on(1), on(3));
     assert_eq!(one.len(), three.len());
@@ -116,7 +116,7 @@ fn surveys_do_not_depend_on_threads_and_keep_to_the_levels() {
         assert_eq!((a.reference.points(), a.reference.densities()), (b.reference.points(), b.reference.densities()));
     }
     assert!(one.iter().all(|s| (2..5).contains(&s.level)));
-    assert!(survey(&sizes, 40..50, Family::Ggx, Precision::QUICK, &level0).is_empty());
+    assert!(sample_sites(&sizes, 40..50, Family::Ggx, Precision::QUICK, &level0).is_empty());
 }
 
 #[test]

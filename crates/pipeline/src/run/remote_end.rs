@@ -1,4 +1,4 @@
-//! How a job ends that somebody else may have run.
+//! How a job ended that a server may have run.
 
 use crate::report::Origin;
 use crate::run::error::RunError;

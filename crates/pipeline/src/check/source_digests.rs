@@ -11,13 +11,13 @@ use crate::gltf::document::Document;
 use crate::gltf::texture::ImageLocation;
 
 /// The sources of one baked asset. Each digest is computed once.
-pub struct Origin<'a> {
+pub struct SourceDigests<'a> {
     document: Option<Document>,
     read: &'a (dyn Fn(&Path) -> io::Result<Vec<u8>> + Sync),
     digests: RefCell<BTreeMap<String, Result<Vec<Digest>, String>>>,
 }
 
-impl<'a> Origin<'a> {
+impl<'a> SourceDigests<'a> {
     /// Takes the files beside the source `document`, or beside a standalone map if `document` is `None`. `read` takes
     /// paths relative to the source.
     pub fn new(document: Option<Document>, read: &'a (dyn Fn(&Path) -> io::Result<Vec<u8>> + Sync)) -> Self {

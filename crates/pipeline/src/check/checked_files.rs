@@ -12,14 +12,14 @@ use crate::input_file::read_file;
 use crate::project::{Input, InputError, Resolved, Selection, SelectionError};
 
 /// A file to check.
-pub struct Target {
+pub struct CheckedFile {
     /// The path.
     pub path: PathBuf,
     /// The path below the argument that led to the file. The source has this path below the source folder.
     pub below: PathBuf,
 }
 
-impl Target {
+impl CheckedFile {
     /// Returns whether the file lies in a folder `<stem>.roughcast`, where `bake` puts the textures of a document.
     pub fn is_of_document(&self) -> bool {
         self.below.parent().is_some_and(|folder| has_extension(folder, "roughcast"))
@@ -40,19 +40,19 @@ impl Target {
 ///
 /// # Errors
 /// When there are none, or when a folder cannot be read.
-pub fn find_targets(argument: &Path) -> io::Result<Vec<Target>> {
+pub fn find_checked_files(argument: &Path) -> io::Result<Vec<CheckedFile>> {
     if !fs::metadata(argument)?.is_dir() {
         let known = ["gltf", "glb", "ktx2"].iter().any(|e| has_extension(argument, e));
         let name = argument.file_name().map(PathBuf::from).filter(|_| known);
         let below = name.ok_or_else(|| io::Error::other("a file that is neither .gltf, .glb nor .ktx2"))?;
-        return Ok(vec![Target { path: argument.to_owned(), below }]);
+        return Ok(vec![CheckedFile { path: argument.to_owned(), below }]);
     }
     let mut targets = Vec::new();
     for entry in WalkDir::new(argument).follow_links(true).sort_by_file_name() {
         let entry = entry?;
         if entry.file_type().is_file() && ["gltf", "glb", "ktx2"].iter().any(|e| has_extension(entry.path(), e)) {
             let below = entry.path().strip_prefix(argument).unwrap_or(entry.path()).to_owned();
-            targets.push(Target { path: entry.into_path(), below });
+            targets.push(CheckedFile { path: entry.into_path(), below });
         }
     }
     if targets.is_empty() { Err(io::Error::other("no .gltf, .glb or .ktx2 files in it")) } else { Ok(targets) }

@@ -32,7 +32,7 @@ pub struct TextureOptions {
     /// signal-to-noise ratio (above 0, up to 6). For example --rdo 0.5: files become a sixth smaller.
     #[arg(long, value_parser = decibels, allow_negative_numbers = true, value_name = "DB")]
     rdo: Option<f64>,
-    /// Shape that the slopes under a texel are taken to have; auto goes by the slopes themselves. [default: auto]
+    /// Assumed distribution of the slopes under a texel; auto measures it. [default: auto]
     #[arg(long, value_enum)]
     distribution: Option<Distribution>,
     /// Payload: UASTC for every engine, BC4/BC5/BC7, or half floats. [default: basis]
@@ -114,8 +114,8 @@ impl DocumentOptions {
 /// Returns the parser of `--quality`. The encoder's crate declares the enum and knows no command line.
 pub fn effort() -> impl TypedValueParser<Value = Effort> {
     let names = [
-        PossibleValue::new("fast").help("The pace of the decoder"),
-        PossibleValue::new("best").help("Lobes fitted to what lies three levels below; all block modes that pay"),
+        PossibleValue::new("fast").help("About as fast as decoding the source images"),
+        PossibleValue::new("best").help("Lobes fitted to those three levels finer; all useful block modes tried"),
     ];
     let effort = |name: String| if name == "best" { Effort::Best } else { Effort::Fast };
     PossibleValuesParser::new(names).map(effort)

@@ -1,0 +1,8 @@
+//! Groups of options that several commands have.
+
+pub mod cache;
+pub mod jobs;
+pub mod remote;
+pub mod selection;
+pub mod texture;
+pub mod view;
