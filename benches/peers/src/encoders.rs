@@ -4,7 +4,7 @@ use std::hint::black_box;
 use std::path::Path;
 
 use roughcast::codec::uastc::{Effort, Metric};
-use roughcast::codec::{PayloadFormat, ORM, uastc};
+use roughcast::codec::{ORM, PayloadFormat, uastc};
 use roughcast::decode::decode;
 use roughcast::image::{DecodeOptions, Image, Samples};
 use roughcast::ktx2::{Ktx2, decode_payload};

@@ -62,11 +62,11 @@ pub enum MapFileError {
         /// The file.
         path: PathBuf,
         /// What is wrong.
-        error: api::Error,
+        error: Box<api::Error>,
     },
     /// The map cannot be baked.
     #[error(transparent)]
-    Bake(#[from] api::Error),
+    Bake(Box<api::Error>),
     /// A file cannot be written.
     #[error(transparent)]
     Publish(#[from] PublishError),
@@ -79,6 +79,12 @@ pub enum MapFileError {
         /// The output.
         path: PathBuf,
     },
+}
+
+impl From<api::Error> for MapFileError {
+    fn from(error: api::Error) -> Self {
+        Self::Bake(Box::new(error))
+    }
 }
 
 /// Bakes a standalone map and writes its textures.
@@ -96,7 +102,7 @@ pub fn bake_map_file(options: &MapOptions) -> Result<WrittenMap, MapFileError> {
     let mut sources = Vec::new();
     let bytes = read_source(image, &mut sources)?;
     let bump_map = read_bump_map(&bytes, &options.texels, &options.decode_options(image, options.layer.clone()))
-        .map_err(|error| MapFileError::Image { path: image.clone(), error })?;
+        .map_err(|error| MapFileError::Image { path: image.clone(), error: error.into() })?;
     let is_jpeg = notes::is_jpeg(&bytes);
     drop(bytes);
     let base = options.base_roughness(&mut sources)?;
@@ -136,7 +142,7 @@ impl MapOptions {
         };
         let bytes = read_source(path, sources)?;
         let base = read_base_roughness(&bytes, factor, &self.decode_options(path, None));
-        base.map(Some).map_err(|error| MapFileError::Image { path: path.clone(), error })
+        base.map(Some).map_err(|error| MapFileError::Image { path: path.clone(), error: error.into() })
     }
 
     /// Returns the keys of the KTX2 file of `texture`: its provenance, unless the settings leave it out.

@@ -114,7 +114,7 @@ impl DocumentOptions {
 /// Returns the parser of `--quality`. The encoder's crate declares the enum and knows no command line.
 pub fn effort() -> impl TypedValueParser<Value = Effort> {
     let names = [
-        PossibleValue::new("fast").help("About as fast as decoding the source images"),
+        PossibleValue::new("fast").help("A few times the time of decoding the source images"),
         PossibleValue::new("best").help("Lobes fitted to those three levels finer; all useful block modes tried"),
     ];
     let effort = |name: String| if name == "best" { Effort::Best } else { Effort::Fast };
