@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use syn::visit::{self, Visit};
 use walkdir::WalkDir;
@@ -255,6 +255,23 @@ fn every_module_of_the_table_exists() {
     let tops: BTreeSet<String> = edges().into_keys().filter_map(|module| module.first().cloned()).collect();
     let table: BTreeSet<String> = layers().into_keys().collect();
     assert_eq!(table, tops);
+}
+
+/// docs/architecture.md says which files to change for what.
+#[test]
+fn every_source_file_that_the_architecture_names_exists() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let text = fs::read_to_string(root.join("docs/architecture.md")).expect("docs/architecture.md");
+    let folders = ["src", "crates", "tests", "benches/studies", "examples"];
+    let files: Vec<PathBuf> = folders
+        .iter()
+        .flat_map(|folder| WalkDir::new(root.join(folder)))
+        .map(|entry| entry.expect("a file").into_path())
+        .collect();
+    // Text in backticks is every second part.
+    let named = text.split('`').skip(1).step_by(2).filter(|name| name.ends_with(".rs"));
+    let missing: Vec<&str> = named.filter(|name| !files.iter().any(|file| file.ends_with(name))).collect();
+    assert!(missing.is_empty(), "docs/architecture.md names files that do not exist: {missing:?}");
 }
 
 /// Returns the modules that `start` reaches by one or more imports.

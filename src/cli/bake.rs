@@ -7,12 +7,12 @@ use std::path::PathBuf;
 use std::time::SystemTime;
 
 use super::options::cache::CacheOptions;
-use super::options::jobs::{JobOptions, JobsError};
+use super::options::job_choice::{JobOptions, JobsError};
 use super::options::remote::{RemoteOptionError, RemoteOptions};
 use super::options::selection::{SelectionOptions, print_problems};
 use super::terminal::outcome::Outcome;
 use super::terminal::summary::summary;
-use super::terminal::work::{Work, Worked};
+use super::work::{Work, Worked};
 use crate::cache::CacheError;
 use crate::output::lock::{Kind, OutputLock};
 use crate::output::{OutputPath, PublishError};

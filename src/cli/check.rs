@@ -10,7 +10,7 @@ use semver::Version;
 use super::options::cache::CacheOptions;
 use super::options::selection::SettingOptions;
 use super::terminal::outcome::Outcome;
-use super::terminal::work::Work;
+use super::work::Work;
 use crate::cache::CacheError;
 use crate::check::{self, Checked, Checker, Code, Sources};
 use crate::codec::EncodeError;

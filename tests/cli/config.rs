@@ -5,6 +5,7 @@ use std::fs;
 use clap::ValueEnum;
 use roughcast::codec::Target;
 use roughcast::gltf::layers::LAYERS;
+use roughcast::lobe::Family;
 use roughcast::project::{Engine, TEMPLATE};
 use serde_json::Value;
 use tempfile::{TempDir, tempdir};
@@ -129,21 +130,25 @@ fn schemas() -> [Value; 2] {
 }
 
 #[test]
-fn schemas_template_and_readme_name_every_engine_target_and_layer() {
+fn schemas_template_and_readme_name_every_engine_target_family_and_layer() {
     let engines: Vec<String> = Engine::names().map(str::to_owned).collect();
     let name = |target: &Target| target.to_possible_value().expect("a name").get_name().to_owned();
     let targets: Vec<String> = Target::value_variants().iter().map(name).collect();
+    let family = |family: &Family| family.to_possible_value().expect("a name").get_name().to_owned();
+    let families: Vec<String> = Family::value_variants().iter().map(family).collect();
     let layers: Vec<String> = LAYERS.iter().map(|row| row.name.to_owned()).collect();
     let [configuration, report] = schemas();
     for (schema, pointer, names) in [
         (&configuration, "/$defs/settings/properties/engine/enum", &engines),
         (&configuration, "/$defs/settings/properties/target/enum", &targets),
         (&report, "/$defs/settings/properties/target/enum", &targets),
+        (&configuration, "/$defs/settings/properties/lobe/enum", &families),
+        (&report, "/$defs/settings/properties/lobe/enum", &families),
         (&report, "/$defs/layer/properties/layer/enum", &layers),
     ] {
         assert_eq!(schema.pointer(pointer), Some(&serde_json::json!(names)), "{pointer}");
     }
-    for name in engines.iter().chain(&targets) {
+    for name in engines.iter().chain(&targets).chain(&families) {
         assert!(TEMPLATE.contains(&format!("\"{name}\"")), "{name} is missing in template.toml");
     }
     let readme = include_str!("../../README.md");

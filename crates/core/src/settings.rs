@@ -1,9 +1,11 @@
 //! What a bake can be asked for. [`Settings::to_json`] lists the settings that change the bytes of a texture.
 
 mod error;
+pub mod limit;
 mod view;
 
-pub use error::{Limit, SettingsError, limit};
+pub use error::SettingsError;
+pub use limit::Limit;
 pub use view::{Finest, View};
 
 use serde::{Deserialize, Serialize};

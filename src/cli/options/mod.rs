@@ -1,7 +1,7 @@
 //! Groups of options that several commands have.
 
 pub mod cache;
-pub mod jobs;
+pub mod job_choice;
 pub mod remote;
 pub mod selection;
 pub mod texture;

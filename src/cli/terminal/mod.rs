@@ -4,4 +4,3 @@ pub mod outcome;
 pub mod progress;
 pub mod streams;
 pub mod summary;
-pub mod work;

@@ -14,7 +14,7 @@ use super::lobes::{AnisotropyInput, BaseInput, LayerInput, PreparedBase};
 use super::offsets::MapOffsets;
 use super::pyramid::PyramidInput;
 use super::reader::Reader;
-use crate::gltf::density::NoDensity;
+use crate::gltf::texel_size::NoDensity;
 use crate::material::notes;
 use crate::note::{self, Note};
 use crate::settings::{Finest, Settings};

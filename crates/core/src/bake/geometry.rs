@@ -2,12 +2,12 @@
 
 use super::reader::Reader;
 use crate::bump::Frame;
-use crate::gltf::density::{NoDensity, density};
 use crate::gltf::geometry::{Layout, layout};
 use crate::gltf::material::Mapping;
 use crate::gltf::meshes::Meshes;
 use crate::gltf::rotation_map::{RotationMap, rotation_map};
 use crate::gltf::scene::{BadNode, Placement, placements};
+use crate::gltf::texel_size::{NoDensity, density};
 use crate::mip::level_sizes;
 use crate::settings::{Finest, Settings, View};
 

@@ -1,6 +1,5 @@
 //! glTF documents: lossless editing, and reading of materials and meshes. This module does not know pixels.
 
-pub mod density;
 pub mod document;
 pub mod extensions;
 pub mod geometry;
@@ -14,6 +13,7 @@ pub mod roughness_pyramid;
 pub mod scene;
 #[cfg(test)]
 mod test_meshes;
+pub mod texel_size;
 pub mod texture;
 mod triangles;
 pub mod uri;

@@ -1,4 +1,4 @@
-//! Clustering of a footprint's parts: few lobes stand for many, so that a survey is quick.
+//! Clustering of a footprint's parts: few lobes stand for many, so that a sample site is made quickly.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;

@@ -1,4 +1,5 @@
-//! Surveys: quick estimates of a whole material's lobe errors, from few texels of each level with small references.
+//! Sample sites: few texels of each level with small references, from which the lobe errors of a whole material are
+//! estimated quickly.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -11,7 +12,7 @@ use crate::metric::decoded::sample_texels;
 use crate::metric::footprint::{Footprint, Part, overlaps};
 use crate::metric::reference::{Reference, even_point};
 
-/// How much a survey samples of each level. A level with few texels has more samples for each texel. Time grows with
+/// How many sites each level has. A level with few texels has more samples for each texel. Time grows with
 /// `half_vectors * parts`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Precision {

@@ -1,6 +1,6 @@
 //! The rule by which one of several candidates is taken.
 
-/// Differences between mean errors that a survey of few texels cannot tell apart.
+/// Differences between mean errors that samples of few texels cannot tell apart.
 const NOISE: f32 = 0.01;
 
 /// Returns the index of the candidate to take; `None` if there is no candidate. `errors` holds, in the order of rising

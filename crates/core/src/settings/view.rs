@@ -2,8 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::error::{SettingsError, limit};
-use crate::gltf::density::Density;
+use super::error::SettingsError;
+use super::limit;
+use crate::gltf::texel_size::Density;
 
 /// A camera that keeps its distance.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

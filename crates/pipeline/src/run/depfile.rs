@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::run::job::Job;
-use crate::run::planned::PlannedAsset;
+use crate::run::plan_assets::PlannedAsset;
 
 /// ASCII punctuation that GNU Make 4.3 and Ninja 1.11 both read as part of a name.
 ///

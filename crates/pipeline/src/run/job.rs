@@ -8,7 +8,7 @@ use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::json;
 
-use crate::bake::{DocumentFacts, document_facts, output_stem_of, portable_stem};
+use crate::bake::{PlannedFiles, output_stem_of, planned_files, portable_stem};
 use crate::digest::{Digest, digest};
 use crate::gltf::document::{Container, Document};
 use crate::input_file::{hash_file, read_file};
@@ -92,7 +92,7 @@ impl Job {
     pub fn new(source: &Path, output: &Path, settings: &Values) -> Result<Self, RunError> {
         let bytes = read_file(source).map_err(RunError::Read)?;
         let document = parsed(&bytes)?;
-        let facts = document_facts(&document)?;
+        let facts = planned_files(&document)?;
         let stem = output_stem_of(source);
         // Removes parts without meaning, such as a slash at the end.
         let output: &Path = &output.components().collect::<PathBuf>();
@@ -198,7 +198,7 @@ fn relative<'de, D: Deserializer<'de>>(deserializer: D) -> Result<PathBuf, D::Er
     Ok(path)
 }
 
-fn outputs(facts: &DocumentFacts, settings: &Settings, stem: &str, folder: &Path) -> Vec<JobOutput> {
+fn outputs(facts: &PlannedFiles, settings: &Settings, stem: &str, folder: &Path) -> Vec<JobOutput> {
     let file = |path: PathBuf| JobOutput { path, kind: OutputKind::File };
     let is_glb = if facts.has_bumps { settings.glb } else { facts.container == Container::Glb };
     let mut outputs = vec![file(folder.join(format!("{stem}.{}", if is_glb { "glb" } else { "gltf" })))];

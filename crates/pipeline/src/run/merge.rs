@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::digest::Digest;
 use crate::report::{PartAsset, PartReport};
 use crate::run::job::Job;
-use crate::run::plan::Plan;
+use crate::run::plan_file::Plan;
 
 /// The format version of merged results.
 pub const MERGE_FORMAT: u32 = 1;

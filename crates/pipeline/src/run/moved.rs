@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::bake::document_facts;
+use crate::bake::planned_files;
 use crate::digest::digest;
 use crate::input_file::read_file;
 use crate::run::error::RunError;
@@ -30,7 +30,7 @@ impl Job {
         if self.inputs.first().and_then(|input| input.blake3) != Some(digest(&bytes)) {
             return Err(RunError::Changed { path: self.source.clone() });
         }
-        let facts = document_facts(&parsed(&bytes)?)?;
+        let facts = planned_files(&parsed(&bytes)?)?;
         let id = self.id.to_string();
         let (from, to) = (Path::new("in").join(&id), Path::new("out").join(&id));
         let source = from.join(self.source.file_name().unwrap_or_default().to_string_lossy().as_ref());

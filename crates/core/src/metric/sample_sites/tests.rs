@@ -78,9 +78,9 @@ fn clusters_keep_directions_apart() {
     }
 }
 
-/// Compares a survey with the errors of all samples.
+/// Compares estimates from sample sites with the errors of all samples.
 #[test]
-fn surveys_agree_with_full_mean_errors() {
+fn sample_sites_agree_with_full_mean_errors() {
     let (surface, sizes) = (surface(), crate::mip::level_sizes(SIDE, SIDE));
     let sites = sample_sites(&sizes, 1..sizes.len(), Family::Ggx, Precision::QUICK, &level0);
     for (level, &size) in sizes.iter().enumerate().skip(1) {
@@ -103,7 +103,7 @@ fn surveys_agree_with_full_mean_errors() {
 }
 
 #[test]
-fn surveys_do_not_depend_on_threads_and_keep_to_the_levels() {
+fn sample_sites_do_not_depend_on_threads_and_keep_to_the_levels() {
     let sizes = crate::mip::level_sizes(SIDE, SIDE);
     let on = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();

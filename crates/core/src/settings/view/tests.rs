@@ -1,10 +1,10 @@
 use proptest::prelude::*;
 use serde_json::json;
 
-use crate::gltf::density::density;
 use crate::gltf::material::Mapping;
 use crate::gltf::meshes::Meshes;
 use crate::gltf::scene::placements;
+use crate::gltf::texel_size::density;
 use crate::math::vector::{Vector, cross, dot};
 use crate::settings::view::*;
 

@@ -10,7 +10,7 @@ use crate::codec::Target;
 use crate::codec::uastc::Effort;
 use crate::lobe::{Distribution, Family};
 use crate::project::{Engine, FrameName};
-use crate::run::plan::Plan;
+use crate::run::plan_file::Plan;
 use crate::settings::{Form, Model, Profile};
 
 /// A small asset. Tests run in the folder of their crate.

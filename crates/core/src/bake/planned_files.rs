@@ -12,7 +12,7 @@ use crate::gltf::material::materials;
 
 /// The facts of a document that are known before its bake.
 #[derive(Clone, Debug, PartialEq)]
-pub struct DocumentFacts {
+pub struct PlannedFiles {
     /// Files that images and buffers name, relative to the document.
     pub files: Vec<PathBuf>,
     /// Files that buffers name. The output names them, too, unless it is a .glb.
@@ -27,12 +27,12 @@ pub struct DocumentFacts {
 ///
 /// # Errors
 /// [`BakeError`] for materials and references that a bake would refuse, too.
-pub fn document_facts(document: &Document) -> Result<DocumentFacts, BakeError> {
+pub fn planned_files(document: &Document) -> Result<PlannedFiles, BakeError> {
     let json: &Json = document.json();
     let root: Value = json.value("")?.unwrap_or_default();
     check_version(&root)?;
     let materials = materials(&root).into_iter().collect::<Result<Vec<_>, _>>()?;
-    Ok(DocumentFacts {
+    Ok(PlannedFiles {
         files: output_document::files(json)?,
         buffers: output_document::buffer_files(json)?,
         has_bumps: materials.iter().any(|material| !material.layers.is_empty()),

@@ -2,8 +2,8 @@
 
 use std::io::{self, Write};
 
-use super::outcome::Outcome;
-use super::progress::ProgressLine;
+use super::terminal::outcome::Outcome;
+use super::terminal::progress::ProgressLine;
 use crate::cache::Cache;
 use crate::output::Guard;
 use crate::remote::{self, Options, ScheduleError};

@@ -8,7 +8,7 @@ use crate::output::Guard;
 use crate::project::{Input, Resolved};
 use crate::run::error::RunError;
 use crate::run::job::Job;
-use crate::run::plan::Plan;
+use crate::run::plan_file::Plan;
 use crate::run::shard::Shard;
 
 /// An asset of a run.
