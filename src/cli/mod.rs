@@ -1,5 +1,6 @@
 //! The command line: one file per command, each with its `Args` and a `run`. `options` holds groups of options that
-//! several commands have, `terminal` what they print with, `work` runs jobs with a progress bar, and `threads` starts the thread pool.
+//! several commands have, `terminal` what they print with, `work` runs jobs with a progress bar, and `threads` starts
+//! the thread pool.
 
 mod bake;
 mod check;

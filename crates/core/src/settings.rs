@@ -114,7 +114,7 @@ pub struct Settings {
     pub lobe: Family,
     /// The payload of textures.
     pub target: Target,
-    /// Search effort of block encoders.
+    /// How well lobes are fitted and how long block encoders search.
     pub quality: Effort,
     /// How much signal-to-noise ratio, in dB, each level of [`Target::Basis`] may lose for fewer bytes: above 0, up to
     /// 6. `None` leaves the blocks as they are.

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use super::baked_asset::BakedAsset;
 use super::compact::compact;
 use super::error::BakeError;
-use super::extension::{EXTENSION, Extension, RangedTexture};
+use super::fill_extension::{EXTENSION, Extension, RangedTexture};
 use super::group_output::{AnisotropyChange, GroupOutput, GroupTexture, PyramidUse};
 use super::ktx2_files::ktx2_files;
 use super::names::Names;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::bake_bump_map::BumpMapProducts;
 use super::bake_layer::LayerProducts;
 use super::decode::Images;
-use super::extension::{BaseLobe, EXTENSION};
+use super::fill_extension::{BaseLobe, EXTENSION};
 use super::group::{BumpMapGroup, GroupLayer};
 use super::products::EncodedTexture;
 use super::pyramid::PyramidLayer;

@@ -1,6 +1,6 @@
 //! Targets that users ask for, and the texel formats that each consists of. [`super::table`] has the facts.
 
-/// The family of payloads to write.
+/// The kind of payload to write.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]

@@ -1,6 +1,6 @@
 //! Families of lobes.
 
-/// A family of lobes.
+/// The formula of the lobe that an engine shades with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// The values of texels of 0 and 1, channel by channel: value = min + texel (max - min).
+/// The values that texels of 0 and 1 stand for, channel by channel: value = min + texel (max - min).
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Range {
     /// Value of a texel of 0.

@@ -1,4 +1,4 @@
-//! Roughening: the base lobe with the lost bumps added, texel by texel.
+//! The base lobe together with the lobes that its bumps roughen it to, texel by texel. `lobes.rs` does the roughening.
 
 use crate::lobe::SquaredAlpha;
 use crate::material::base::{Base, BaseTexel, base_lobe};

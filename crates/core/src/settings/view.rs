@@ -6,7 +6,7 @@ use super::error::SettingsError;
 use super::limit;
 use crate::gltf::texel_size::Density;
 
-/// A camera that keeps its distance.
+/// A camera that never comes nearer to a surface than `nearest`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "camelCase")]
 #[non_exhaustive]

@@ -13,7 +13,7 @@ use super::partial_file::PartialFile;
 use super::provenance::check_document_provenance;
 use super::scope::Scope;
 use super::texture::{Usage, check_texture};
-use super::texture_images::{TextureImages, Textures};
+use super::texture_references::{TextureReferences, Textures};
 use super::variance::{Levels, RangedTexture, check_variance};
 use crate::bake::SourceError;
 use crate::gltf::document::{Container, Document, DocumentError};
@@ -198,7 +198,7 @@ impl Images<'_> {
 
 fn check_core_source(
     texture: usize,
-    sources: TextureImages,
+    sources: TextureReferences,
     partial: &PartialFile,
     mime: Option<&str>,
     findings: &mut Findings,

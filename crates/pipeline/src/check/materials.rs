@@ -8,7 +8,7 @@ use ::gltf::mesh::Semantic;
 use serde_json::Value;
 
 use super::findings::{Code, Findings};
-use super::texture_images::Textures;
+use super::texture_references::Textures;
 use crate::gltf::layers::{LAYERS, member};
 use crate::gltf::rewrite::references;
 use crate::gltf::roughness_pyramid::{EXTENSION, RoughnessPyramid};

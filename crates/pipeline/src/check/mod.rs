@@ -22,7 +22,7 @@ mod settings;
 mod source_digests;
 mod storage;
 mod texture;
-mod texture_images;
+mod texture_references;
 mod variance;
 
 pub use checked_files::{SourceAsset, Sources};

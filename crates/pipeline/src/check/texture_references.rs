@@ -14,14 +14,14 @@ const BASISU: &str = "KHR_texture_basisu";
 
 /// The images of all textures of a document.
 pub struct Textures {
-    list: Vec<TextureImages>,
+    list: Vec<TextureReferences>,
     /// For each image, the textures that name it by `source` or by the extension.
     users: BTreeMap<usize, Vec<usize>>,
 }
 
 /// The images of a texture, both within range.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct TextureImages {
+pub struct TextureReferences {
     /// `source`.
     pub core: Option<usize>,
     /// `source` of `KHR_texture_basisu`.
@@ -52,9 +52,9 @@ impl Textures {
                 (image < count).then_some(image)
             };
             let core = checked(core, "source");
-            TextureImages { core, basisu: checked(basisu, "extensions/KHR_texture_basisu/source") }
+            TextureReferences { core, basisu: checked(basisu, "extensions/KHR_texture_basisu/source") }
         });
-        let list: Vec<TextureImages> = list.collect();
+        let list: Vec<TextureReferences> = list.collect();
         let mut users: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for (index, texture) in list.iter().enumerate() {
             for image in texture.core.into_iter().chain(texture.basisu.filter(|image| texture.core != Some(*image))) {
@@ -70,12 +70,12 @@ impl Textures {
     }
 
     /// Returns the textures that name `image`, each with its index.
-    pub fn users(&self, image: usize) -> impl Iterator<Item = (usize, TextureImages)> {
+    pub fn users(&self, image: usize) -> impl Iterator<Item = (usize, TextureReferences)> {
         self.users.get(&image).into_iter().flatten().map(|texture| (*texture, self.get(*texture)))
     }
 
     /// Returns the images of a texture.
-    pub fn get(&self, texture: usize) -> TextureImages {
+    pub fn get(&self, texture: usize) -> TextureReferences {
         self.list.get(texture).copied().unwrap_or_default()
     }
 
