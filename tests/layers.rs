@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use syn::buffer::{Cursor, TokenBuffer};
 use syn::visit::{self, Visit};
 use walkdir::WalkDir;
 
@@ -15,6 +16,9 @@ type ModulePath = Vec<String>;
 /// there.
 const CRATES: [&str; 3] = ["crates/core/src", "crates/pipeline/src", "src"];
 
+/// The folders of the crates that the table does not list. Each is a tree of modules of its own.
+const CODEC_CRATES: [&str; 2] = ["crates/uastc/src", "crates/simd/src"];
+
 /// What one source file imports and re-exports.
 #[derive(Default)]
 struct Imports {
@@ -22,6 +26,8 @@ struct Imports {
     paths: BTreeSet<ModulePath>,
     /// Names that the file re-exports, with the absolute paths that they stand for.
     re_exports: BTreeMap<String, ModulePath>,
+    /// First names of the paths in the file's own items.
+    used: BTreeSet<String>,
     /// Modules of the standard library that reach outside the process.
     outside: BTreeSet<String>,
 }
@@ -42,6 +48,42 @@ impl Collector<'_> {
             && ["env", "fs", "net", "process"].contains(&module.as_str())
         {
             self.imports.outside.insert(module.clone());
+        }
+    }
+
+    /// Records a path in the file's own items.
+    fn note_path(&mut self, segments: &[String]) {
+        self.note_outside(segments);
+        self.imports.used.extend(segments.first().cloned());
+        if segments.len() > 1
+            && let Some(path) = self.absolute(segments)
+        {
+            self.imports.paths.insert(path);
+        }
+    }
+
+    /// Records the paths among the tokens of a macro. Names after a single dot are fields and methods.
+    fn note_tokens(&mut self, mut cursor: Cursor<'_>) {
+        let mut dots = 0;
+        while !cursor.eof() {
+            if let Some((first, mut rest)) = cursor.ident() {
+                let mut segments = vec![first.to_string()];
+                while let Some((segment, after)) = next_segment(rest) {
+                    segments.push(segment);
+                    rest = after;
+                }
+                if dots != 1 {
+                    self.note_path(&segments);
+                }
+                (dots, cursor) = (0, rest);
+            } else if let Some((inner, _, _, rest)) = cursor.any_group() {
+                self.note_tokens(inner);
+                (dots, cursor) = (0, rest);
+            } else if let Some((_, rest)) = cursor.punct().filter(|(punct, _)| punct.as_char() == '.') {
+                (dots, cursor) = (dots + 1, rest);
+            } else if let Some((_, rest)) = cursor.token_tree() {
+                (dots, cursor) = (0, rest);
+            }
         }
     }
 
@@ -78,6 +120,14 @@ impl Collector<'_> {
     }
 }
 
+/// Reads `::` and a name.
+fn next_segment(cursor: Cursor<'_>) -> Option<(String, Cursor<'_>)> {
+    let (_, rest) = cursor.punct().filter(|(punct, _)| punct.as_char() == ':')?;
+    let (_, rest) = rest.punct().filter(|(punct, _)| punct.as_char() == ':')?;
+    let (segment, rest) = rest.ident()?;
+    Some((segment.to_string(), rest))
+}
+
 fn is_test(attributes: &[syn::Attribute]) -> bool {
     let is_test = |attribute: &syn::Attribute| {
         attribute.path().is_ident("cfg") && attribute.parse_args::<syn::Path>().is_ok_and(|path| path.is_ident("test"))
@@ -98,7 +148,7 @@ impl<'ast> Visit<'ast> for Collector<'_> {
             let is_own_child = path.starts_with(&self.module) && path.len() > self.module.len();
             if !matches!(item.vis, syn::Visibility::Inherited) {
                 self.imports.re_exports.insert(name, path.clone());
-                // A module that re-exports names of its files does not depend on them.
+                // A module that re-exports names of its files does not depend on them, unless its items use the names.
                 if is_own_child {
                     continue;
                 }
@@ -109,13 +159,13 @@ impl<'ast> Visit<'ast> for Collector<'_> {
 
     fn visit_path(&mut self, path: &'ast syn::Path) {
         let segments: Vec<String> = path.segments.iter().map(|segment| segment.ident.to_string()).collect();
-        self.note_outside(&segments);
-        if segments.len() > 1
-            && let Some(path) = self.absolute(&segments)
-        {
-            self.imports.paths.insert(path);
-        }
+        self.note_path(&segments);
         visit::visit_path(self, path);
+    }
+
+    fn visit_macro(&mut self, item: &'ast syn::Macro) {
+        visit::visit_macro(self, item);
+        self.note_tokens(TokenBuffer::new2(item.tokens.clone()).begin());
     }
 
     fn visit_item_mod(&mut self, item: &'ast syn::ItemMod) {
@@ -139,10 +189,11 @@ impl<'ast> Visit<'ast> for Collector<'_> {
     }
 }
 
-/// Returns the imports of every source file except tests, by module.
-fn imports() -> BTreeMap<ModulePath, Imports> {
+/// Returns the imports of every source file of the crates in `folders` except tests, by module. The roots of several
+/// crates are left out, because the crates share one tree of modules. The root of a single crate is the empty path.
+fn imports(folders: &[&str]) -> BTreeMap<ModulePath, Imports> {
     let mut files = BTreeMap::new();
-    let entries = CRATES.iter().flat_map(|folder| {
+    let entries = folders.iter().flat_map(|folder| {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
         WalkDir::new(&root).into_iter().map(move |entry| (root.clone(), entry))
     });
@@ -155,10 +206,11 @@ fn imports() -> BTreeMap<ModulePath, Imports> {
         let below = path.strip_prefix(&root).expect("a path below src").with_extension("");
         let mut module: ModulePath = below.iter().map(|part| part.to_string_lossy().into_owned()).collect();
         let is_test = |part: &String| part == "tests" || part == "test_files";
-        if module.iter().any(is_test) || ["main", "lib"].iter().any(|root| module == [*root]) {
+        let is_root = ["main", "lib"].iter().any(|root| module == [*root]);
+        if module.iter().any(is_test) || (is_root && folders.len() > 1) {
             continue;
         }
-        if module.last().is_some_and(|last| last == "mod") {
+        if is_root || module.last().is_some_and(|last| last == "mod") {
             module.pop();
         }
         files.insert(module, fs::read_to_string(path).expect("a source file"));
@@ -168,7 +220,10 @@ fn imports() -> BTreeMap<ModulePath, Imports> {
         let file = syn::parse_file(&text).unwrap_or_else(|error| panic!("{module:?}: {error}"));
         let mut collector = Collector { module: module.clone(), modules: &modules, imports: Imports::default() };
         collector.visit_file(&file);
-        (module, collector.imports)
+        let mut imports = collector.imports;
+        let used = imports.re_exports.iter().filter(|(name, _)| imports.used.contains(*name));
+        imports.paths.extend(used.map(|(_, path)| path.clone()));
+        (module, imports)
     };
     files.into_iter().map(read).collect()
 }
@@ -183,12 +238,12 @@ fn defining(files: &BTreeMap<ModulePath, Imports>, path: &[String], depth: usize
     }
 }
 
-/// Returns, for each file, the files that define what it imports.
-fn edges() -> BTreeMap<ModulePath, BTreeSet<ModulePath>> {
-    let files = imports();
+/// Returns, for each file of the crates in `folders`, the files that define what it imports.
+fn edges(folders: &[&str]) -> BTreeMap<ModulePath, BTreeSet<ModulePath>> {
+    let files = imports(folders);
     let targets = |module: &ModulePath, imports: &Imports| {
         let targets = imports.paths.iter().map(|path| defining(&files, path, 8));
-        targets.filter(|target| target != module && !target.is_empty()).collect()
+        targets.filter(|target| target != module && files.contains_key(target)).collect()
     };
     files.iter().map(|(module, imports)| (module.clone(), targets(module, imports))).collect()
 }
@@ -214,7 +269,7 @@ fn layers() -> BTreeMap<String, u32> {
 fn modules_import_from_lower_layers_only() {
     let layers = layers();
     let mut wrong = Vec::new();
-    for (module, targets) in edges() {
+    for (module, targets) in edges(&CRATES) {
         let Some(top) = module.first() else { continue };
         let Some(layer) = layers.get(top) else {
             wrong.push(format!("module {top} is not in the table of docs/architecture.md"));
@@ -244,7 +299,8 @@ fn the_core_touches_no_file_system() {
     let core = core_modules();
     assert!(core.contains("bake") && !core.contains("output"), "{core:?}");
     let is_core = |module: &ModulePath| module.first().is_some_and(|top| core.contains(top));
-    let outside = imports().into_iter().filter(|(module, imports)| is_core(module) && !imports.outside.is_empty());
+    let outside =
+        imports(&CRATES).into_iter().filter(|(module, imports)| is_core(module) && !imports.outside.is_empty());
     let outside: Vec<String> =
         outside.map(|(module, imports)| format!("{} uses {:?}", module.join("::"), imports.outside)).collect();
     assert!(outside.is_empty(), "modules without the feature `cli` reach outside the process:\n{}", outside.join("\n"));
@@ -252,7 +308,7 @@ fn the_core_touches_no_file_system() {
 
 #[test]
 fn every_module_of_the_table_exists() {
-    let tops: BTreeSet<String> = edges().into_keys().filter_map(|module| module.first().cloned()).collect();
+    let tops: BTreeSet<String> = edges(&CRATES).into_keys().filter_map(|module| module.first().cloned()).collect();
     let table: BTreeSet<String> = layers().into_keys().collect();
     assert_eq!(table, tops);
 }
@@ -287,19 +343,26 @@ fn reached<'e>(
     reached
 }
 
-#[test]
-fn no_files_import_each_other_in_a_circle() {
-    let edges = edges();
+/// Returns the circles of files that import each other in the crates in `folders`.
+fn circles(folders: &[&str]) -> BTreeSet<String> {
+    let edges = edges(folders);
     let reached: BTreeMap<&ModulePath, BTreeSet<&ModulePath>> =
         edges.keys().map(|module| (module, reached(&edges, module))).collect();
-    let mut circles: BTreeSet<String> = BTreeSet::new();
+    let name = |module: &ModulePath| if module.is_empty() { "the root".to_owned() } else { module.join("::") };
+    let mut circles = BTreeSet::new();
     for (module, targets) in &reached {
         if targets.contains(module) {
             let is_mutual = |other: &&&ModulePath| reached.get(**other).is_some_and(|back| back.contains(*module));
-            let circle: Vec<String> = targets.iter().filter(is_mutual).map(|module| module.join("::")).collect();
-            circles.insert(circle.join(", "));
+            let circle: Vec<String> = targets.iter().filter(is_mutual).map(|module| name(module)).collect();
+            circles.insert(format!("{}: {}", folders.join(", "), circle.join(", ")));
         }
     }
-    let circles: Vec<String> = circles.into_iter().collect();
+    circles
+}
+
+#[test]
+fn no_files_import_each_other_in_a_circle() {
+    let codecs = CODEC_CRATES.iter().flat_map(|folder| circles(&[folder]));
+    let circles: Vec<String> = circles(&CRATES).into_iter().chain(codecs).collect();
     assert!(circles.is_empty(), "these files import each other in circles:\n{}", circles.join("\n"));
 }

@@ -12,9 +12,10 @@ use fearless_simd::{Select, Simd, SimdBase, prelude::*};
 
 use crate::blocks::Blocks;
 use crate::candidate::texel;
-use crate::lanes::{Grid, look_up, set_where, sum};
-use crate::line::{Ramp, decode, quantise, round};
+use crate::lanes::{Grid, look_up, round, set_where, sum};
+use crate::line::{decode, quantise};
 use crate::moments::{count, masked};
+use crate::ramp::Ramp;
 use crate::tables::Range;
 use texel_simd::{LANES, Real, Wide};
 

@@ -6,9 +6,8 @@
 
 use fearless_simd::Simd;
 
-use crate::lanes::{Texels, channels};
-use crate::line::round;
-use crate::pack::{BitWriter, SolidEtc1};
+use crate::bit_writer::BitWriter;
+use crate::lanes::{Texels, channels, round};
 use crate::tables::Mode;
 use texel_simd::{LANES, Real};
 
@@ -264,6 +263,19 @@ const fn least_biases() -> [u8; 729] {
         state += 1;
     }
     table
+}
+
+/// The ETC1 block that a solid block transcodes to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct SolidEtc1 {
+    /// Whether `base` has 5 bits a channel (differential) or 4 (individual).
+    pub five_bits: bool,
+    /// Intensity table, 0..=7.
+    pub table: u8,
+    /// Selector, 0..=3 from the darkest to the brightest.
+    pub selector: u8,
+    /// Base colour.
+    pub base: [u8; 3],
 }
 
 /// Returns the ETC1 block nearest to one colour, among blocks with 5-bit bases and the two tables of smallest offsets.

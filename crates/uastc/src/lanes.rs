@@ -59,6 +59,12 @@ pub(crate) fn all_lanes<S: Simd>(simd: S) -> <Wide<S> as Real>::Mask {
     Wide::splat(simd, 0.0).simd_eq(0.0)
 }
 
+/// Rounds a number below 2^22 to the nearest integer.
+#[inline(always)]
+pub(crate) fn round<F: Real>(v: F) -> F {
+    v + v.splat_like(ROUND) - v.splat_like(ROUND)
+}
+
 /// Sets `number` to `other` where `mask` is set.
 #[inline(always)]
 pub(crate) fn set_where<S: Simd>(number: &mut Wide<S>, other: Wide<S>, mask: <Wide<S> as Real>::Mask) {

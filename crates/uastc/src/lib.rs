@@ -1,5 +1,6 @@
 #![doc = include_str!("../README.md")]
 
+mod bit_writer;
 mod blocks;
 mod candidate;
 mod decode;
@@ -15,6 +16,7 @@ mod normals;
 mod pack;
 mod partition;
 mod polish;
+mod ramp;
 mod rate;
 mod row;
 mod search;

@@ -3,7 +3,8 @@
 //! The bit layout is that of the "UASTC LDR 4x4 Texture Specification", sections "Block layout" and "Endpoint
 //! packing". Fields follow each other from bit 0 of byte 0 upwards.
 
-use crate::hints::Hints;
+use crate::bit_writer::BitWriter;
+use crate::hints::{Hints, SolidEtc1};
 use crate::tables::{Layout, MODE_0, MODE_4, MODE_5, MODE_6, MODE_18, Mode, PATTERNS_3, SOLID_CODE};
 
 /// A block of any mode except the solid mode.
@@ -115,7 +116,7 @@ impl Block {
         }
         self.write_endpoints(layout, &mut out);
         self.write_weights(layout, &mut out);
-        out.bits.to_le_bytes()
+        out.get().to_le_bytes()
     }
 
     #[inline(always)]
@@ -173,7 +174,7 @@ impl Block {
         for anchor in anchors.iter().rev() {
             all = without_bit(all, anchor * bits + bits - 1);
         }
-        out.bits |= all << out.len;
+        out.push_last(all);
     }
 }
 
@@ -219,39 +220,5 @@ pub(crate) fn pack_solid(colour: [u8; 4], etc1: SolidEtc1) -> [u8; 16] {
     for base in etc1.base {
         out.push(base.into(), 5);
     }
-    out.bits.to_le_bytes()
-}
-
-/// The ETC1 block that a solid block transcodes to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct SolidEtc1 {
-    /// Whether `base` has 5 bits a channel (differential) or 4 (individual).
-    pub five_bits: bool,
-    /// Intensity table, 0..=7.
-    pub table: u8,
-    /// Selector, 0..=3 from the darkest to the brightest.
-    pub selector: u8,
-    /// Base colour.
-    pub base: [u8; 3],
-}
-
-/// Collects fields of bits, from the lowest bit upwards.
-#[derive(Default)]
-pub(crate) struct BitWriter {
-    bits: u128,
-    len: u32,
-}
-
-impl BitWriter {
-    /// Appends the `len` low bits of `value`. All other bits of `value` must be 0.
-    #[inline(always)]
-    pub fn push(&mut self, value: u64, len: u32) {
-        self.bits |= u128::from(value) << self.len;
-        self.len += len;
-    }
-
-    /// Returns all bits that were appended.
-    pub fn get(&self) -> u128 {
-        self.bits
-    }
+    out.get().to_le_bytes()
 }

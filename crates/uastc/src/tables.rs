@@ -3,7 +3,7 @@
 //! The source is the "UASTC LDR 4x4 Texture Specification" (BinomialLLC/basis_universal wiki). The endpoint ranges are
 //! those of the Khronos Data Format Specification 1.3, section 23.12 "Endpoint unquantization" (ASTC).
 
-use crate::line::Ramp;
+use crate::ramp::Ramp;
 
 /// Number of modes of the format.
 pub(crate) const MODES: usize = 19;

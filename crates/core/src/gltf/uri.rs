@@ -18,10 +18,7 @@ use std::path::PathBuf;
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, percent_decode_str, utf8_percent_encode};
 
 pub use data::DataUri;
-pub use error::UriError;
-
-/// Longest URI in bytes that is read as a path: the longest path of Linux.
-pub const MAX_PATH_URI: usize = 4096;
+pub use error::{MAX_PATH_URI, UriError};
 
 /// Characters that are percent-encoded: all but `/` and those that RFC 3986 section 2.3 calls unreserved.
 const ENCODED: &AsciiSet = &NON_ALPHANUMERIC.remove(b'-').remove(b'.').remove(b'_').remove(b'~').remove(b'/');

@@ -2,9 +2,9 @@
 
 use fearless_simd::Level as InstructionSet;
 
-use crate::mip::TexelRows;
 use crate::mip::merge::Merge;
 use crate::mip::reduce::{Level, Taps, build, level_size, level_sizes, reduce_row};
+use crate::mip::rows::TexelRows;
 
 /// Levels 1 and coarser of a source. Methods take the source, because the tail does not own it.
 pub struct MipTail<T> {

@@ -3,8 +3,8 @@
 use fearless_simd::{Level as InstructionSet, Simd};
 use rayon::prelude::*;
 
-use crate::mip::TexelRows;
 use crate::mip::merge::{MAX_PARTS, Merge, Numbers, merge_lanes};
+use crate::mip::rows::TexelRows;
 use crate::simd::{LANES, dispatch};
 
 /// The most texels under one coarser texel along one axis.

@@ -1,7 +1,8 @@
 //! Resamples level 0 to another size. Block formats demand multiples of 4, and two maps of one material need one grid.
 
 use crate::mip::merge::Merge;
-use crate::mip::{TexelRows, Wrap};
+use crate::mip::rows::TexelRows;
+use crate::mip::wrap::Wrap;
 
 /// Texels of `source`, resampled to another size.
 #[derive(Clone, Copy)]

@@ -8,7 +8,7 @@ use std::sync::LazyLock;
 
 use serde::{Deserialize, Serialize};
 
-use super::Ours;
+use super::ours::Ours;
 use crate::metric::Peer;
 use crate::render::{Bumps, Material, Texture};
 

@@ -6,15 +6,15 @@
 
 mod chart;
 mod cost;
+mod entry;
 mod files;
 mod labels;
+mod ours;
 mod page;
 mod report;
 mod table;
 #[cfg(test)]
 mod tests;
-
-use serde::Serialize;
 
 use crate::lobe::{Family, SquaredAlpha};
 use crate::math::symmetric::Symmetric2;
@@ -23,7 +23,9 @@ use crate::render::{Bumps, Material, Texture};
 
 pub use chart::file as chart;
 pub use cost::{Axis, Cost};
+pub use entry::{Comparison, Entry, Kind};
 pub use files::{Charts, CompareError, CompareOptions, compare_file};
+pub use ours::Ours;
 pub use page::page;
 pub use report::{COMPARE_FORMAT, ComparisonReport};
 pub use table::csv;
@@ -37,60 +39,6 @@ const ENTRIES: usize = OURS + PEERS + 1;
 const LAST_LEVEL: usize = 7;
 /// First level of the mean error, if the map has that many levels, as in docs/accuracy.md.
 const MEAN_FROM: usize = 2;
-
-/// A bake of ours.
-pub struct Ours {
-    /// Name in the chart.
-    pub name: String,
-    /// The material as an engine reads it.
-    pub material: Material,
-    /// Bytes of the files that the bake wrote.
-    pub file_bytes: u64,
-    /// Seconds that the bake took.
-    pub seconds: f64,
-    /// Whether `--model auto` chooses this model.
-    pub chosen: bool,
-}
-
-/// The origin of an entry.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Kind {
-    /// This tool.
-    Ours,
-    /// Another tool, by its formula.
-    Peer,
-    /// The best possible single lobe.
-    Oracle,
-}
-
-/// A model, its error and its cost.
-#[derive(Clone, Debug, Serialize)]
-#[serde(rename_all = "camelCase")]
-pub struct Entry {
-    /// Name.
-    pub name: String,
-    /// Its origin.
-    pub kind: Kind,
-    /// Whether `--model auto` chooses this model.
-    pub chosen: bool,
-    /// Mean lobe error of levels 2 to 7, or of all levels if the map has no level 2; 0 to 1.
-    pub error: f64,
-    /// Mean lobe error of each level from 0 on.
-    pub level_errors: Vec<f64>,
-    /// Its cost.
-    #[serde(flatten)]
-    pub cost: Cost,
-}
-
-/// All entries of a material.
-#[derive(Clone, Debug, Serialize)]
-pub struct Comparison {
-    /// Its name.
-    pub material: String,
-    /// Our models, then peers, then the oracle.
-    pub entries: Vec<Entry>,
-}
 
 /// Scores our models and the peers at `texels` sampled texels of each level up to 7.
 ///

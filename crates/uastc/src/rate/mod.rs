@@ -18,9 +18,9 @@ use rayon::prelude::*;
 use texel_simd::dispatch;
 
 use self::bits::BitModel;
-use self::points::{decoded_points, source_points};
+use self::points::{decoded_points, grids, source_points};
 use crate::image::{Image, SizeError};
-use crate::lanes::{ScalarGrid, Texels};
+use crate::lanes::Texels;
 use crate::unpack::unpack_rgb;
 use crate::{BLOCK_BYTES, Metric};
 
@@ -172,11 +172,6 @@ fn block_errors(block: &Block, texels: &Texels, metric: Metric, is_inside: impl 
         let each = decoded_points(metric, &levels).errors(&source_points(metric, &source));
         (0..16).filter(|&i| is_inside(i)).map(|i| f64::from(each[i])).sum()
     })
-}
-
-/// Returns red, green and blue of the texels of one block.
-fn grids(texels: &Texels) -> [ScalarGrid; 3] {
-    [0, 1, 2].map(|c| texels.map(|texel| f32::from(texel[c])))
 }
 
 /// The state of a search for the largest lambda within the bound.

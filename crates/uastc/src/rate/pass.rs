@@ -3,8 +3,7 @@
 use fearless_simd::Simd;
 
 use super::bits::{BitModel, MatchState, SHORTEST_MATCH};
-use super::grids;
-use super::points::{decoded_points, source_points};
+use super::points::{decoded_points, grids, source_points};
 use super::recent::{Estimates, RecentBlock, RecentBlocks, SourceMoments};
 use super::refit::{refit_endpoints, refit_weights};
 use crate::Metric;

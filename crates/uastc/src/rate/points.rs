@@ -4,7 +4,7 @@
 
 use crate::Metric;
 use crate::direction::{UNIT, effective_direction, normal};
-use crate::lanes::{ScalarGrid, sum};
+use crate::lanes::{ScalarGrid, Texels, sum};
 
 /// The points of sixteen decoded texels.
 #[derive(Clone, Copy)]
@@ -13,6 +13,11 @@ pub(super) struct DecodedPoints {
     pub points: [ScalarGrid; 3],
     /// The part of the error that does not depend on the source.
     pub loss: ScalarGrid,
+}
+
+/// Returns red, green and blue of the texels of one block.
+pub(super) fn grids(texels: &Texels) -> [ScalarGrid; 3] {
+    [0, 1, 2].map(|c| texels.map(|texel| f32::from(texel[c])))
 }
 
 /// Returns the points of source texels with these `levels`.

@@ -1,6 +1,7 @@
 //! Errors of URIs.
 
-use super::MAX_PATH_URI;
+/// Longest URI in bytes that is read as a path: the longest path of Linux.
+pub const MAX_PATH_URI: usize = 4096;
 
 /// Why a URI is neither data nor a file beside the asset.
 #[derive(Debug, thiserror::Error)]

@@ -1,0 +1,45 @@
+//! Entries of a comparison: a model with its error and its cost.
+
+use serde::Serialize;
+
+use super::cost::Cost;
+
+/// The origin of an entry.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Kind {
+    /// This tool.
+    Ours,
+    /// Another tool, by its formula.
+    Peer,
+    /// The best possible single lobe.
+    Oracle,
+}
+
+/// A model, its error and its cost.
+#[derive(Clone, Debug, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct Entry {
+    /// Name.
+    pub name: String,
+    /// Its origin.
+    pub kind: Kind,
+    /// Whether `--model auto` chooses this model.
+    pub chosen: bool,
+    /// Mean lobe error of levels 2 to 7, or of all levels if the map has no level 2; 0 to 1.
+    pub error: f64,
+    /// Mean lobe error of each level from 0 on.
+    pub level_errors: Vec<f64>,
+    /// Its cost.
+    #[serde(flatten)]
+    pub cost: Cost,
+}
+
+/// All entries of a material.
+#[derive(Clone, Debug, Serialize)]
+pub struct Comparison {
+    /// Its name.
+    pub material: String,
+    /// Our models, then peers, then the oracle.
+    pub entries: Vec<Entry>,
+}
