@@ -1,12 +1,13 @@
 //! Presets for engines: one table.
 
+use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 
 use crate::codec::Target;
 use crate::settings::{Form, Model, Profile};
 
 /// An engine.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum Engine {
     /// three.js: it reflects the surroundings wrongly in ellipses.
@@ -26,7 +27,6 @@ pub enum Engine {
 /// What an engine's own loader and shader need. docs/engines.md has the measurements.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Preset {
-    engine: Engine,
     /// The name in `roughcast.toml` and on the command line.
     pub name: &'static str,
     /// The payload that its loader reads.
@@ -37,34 +37,32 @@ pub struct Preset {
     model: Option<Model>,
 }
 
-/// Returns a row of [`PRESETS`].
-const fn row(engine: Engine, name: &'static str, target: Target, form: Form, model: Option<Model>) -> Preset {
-    Preset { engine, name, target, form, model }
+/// Returns a row of [`Engine::preset`].
+const fn row(name: &'static str, target: Target, form: Form, model: Option<Model>) -> Preset {
+    Preset { name, target, form, model }
 }
-
-const PRESETS: [Preset; 6] = [
-    // Its shader reflects the surroundings wrongly where lobes are ellipses.
-    row(Engine::Three, "three", Target::Basis, Form::Fallback, Some(Model::Isotropic)),
-    row(Engine::Babylon, "babylon", Target::Basis, Form::Fallback, None),
-    row(Engine::Playcanvas, "playcanvas", Target::Basis, Form::Fallback, None),
-    // Its glTF loader has no anisotropy.
-    row(Engine::Filament, "filament", Target::Basis, Form::Fallback, Some(Model::Isotropic)),
-    // Its loader refuses files that need KHR_texture_basisu, and its shader squares the alphas of ellipses once more.
-    row(Engine::Bevy, "bevy", Target::Basis, Form::Dual, Some(Model::Isotropic)),
-    // Its glTF import has no anisotropy.
-    row(Engine::Godot, "godot", Target::Basis, Form::Fallback, Some(Model::Isotropic)),
-];
 
 impl Engine {
     /// Returns the names of all engines.
     pub fn names() -> impl Iterator<Item = &'static str> {
-        PRESETS.iter().map(|preset| preset.name)
+        Self::value_variants().iter().map(|engine| engine.preset().name)
     }
 
     /// Returns the preset of the engine.
     pub fn preset(self) -> &'static Preset {
-        // A test holds that every engine has a row.
-        PRESETS.iter().find(|preset| preset.engine == self).unwrap_or(&PRESETS[0])
+        match self {
+            // Its shader reflects the surroundings wrongly where lobes are ellipses.
+            Self::Three => const { &row("three", Target::Basis, Form::Fallback, Some(Model::Isotropic)) },
+            Self::Babylon => const { &row("babylon", Target::Basis, Form::Fallback, None) },
+            Self::Playcanvas => const { &row("playcanvas", Target::Basis, Form::Fallback, None) },
+            // Its glTF loader has no anisotropy.
+            Self::Filament => const { &row("filament", Target::Basis, Form::Fallback, Some(Model::Isotropic)) },
+            // Its loader refuses files that need KHR_texture_basisu, and its shader squares the alphas of ellipses once
+            // more.
+            Self::Bevy => const { &row("bevy", Target::Basis, Form::Dual, Some(Model::Isotropic)) },
+            // Its glTF import has no anisotropy.
+            Self::Godot => const { &row("godot", Target::Basis, Form::Fallback, Some(Model::Isotropic)) },
+        }
     }
 }
 
