@@ -27,11 +27,5 @@ pub fn printed_cos2(cos2: f32, d: [f32; 2], factor: Factor) -> f32 {
     if squared == 0.0 { 1.0 } else { cos2 / (squared * squared / stretched + cos2) }
 }
 
-/// Returns the angle with lambda_1 alone: lambda_1^2 cos2 / (1 - cos2 + lambda_1^2 cos2).
-pub fn isotropic_cos2(cos2: f32, lambda_1: f32) -> f32 {
-    let scaled = lambda_1 * lambda_1 * cos2;
-    if scaled == 0.0 { f32::from(u8::from(cos2 == 1.0)) } else { scaled / (1.0 - cos2 + scaled) }
-}
-
 #[cfg(test)]
 mod tests;

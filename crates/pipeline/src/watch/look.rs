@@ -24,12 +24,6 @@ impl Look {
         let facts = fs::metadata(path).ok()?;
         Some(Self { bytes: facts.len(), modified: facts.modified().ok(), identity: identity(&facts) })
     }
-
-    /// Returns the look of a file of `bytes` that was modified at `modified`.
-    #[cfg(test)]
-    pub fn new(bytes: u64, modified: SystemTime) -> Self {
-        Self { bytes, modified: Some(modified), identity: (0, 0, 0) }
-    }
 }
 
 #[cfg(unix)]

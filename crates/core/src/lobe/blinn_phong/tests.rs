@@ -1,6 +1,12 @@
 use super::*;
 use crate::math::symmetric::Symmetric2;
 
+/// Returns the angle with lambda_1 alone: lambda_1^2 cos2 / (1 - cos2 + lambda_1^2 cos2).
+fn isotropic_cos2(cos2: f32, lambda_1: f32) -> f32 {
+    let scaled = lambda_1 * lambda_1 * cos2;
+    if scaled == 0.0 { f32::from(u8::from(cos2 == 1.0)) } else { scaled / (1.0 - cos2 + scaled) }
+}
+
 /// Returns half the integral of |p - q| over slopes, where both are normalised exp(-tan^2 / 2) of their angles and q is
 /// the true normal density.
 fn distance(k: Symmetric2, cos2_of: impl Fn(f32, [f32; 2]) -> f32) -> f64 {
