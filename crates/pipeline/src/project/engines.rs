@@ -9,7 +9,7 @@ use crate::settings::{Form, Model, Profile};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum Engine {
-    /// three.js: it reflects the surroundings wrongly in ellipses.
+    /// three.js: its anisotropic lobes reflect the surroundings wrongly.
     Three,
     /// Babylon.js.
     Babylon,
@@ -17,7 +17,7 @@ pub enum Engine {
     Playcanvas,
     /// Filament: its glTF loader has no anisotropy.
     Filament,
-    /// Bevy: refuses files that need KHR_texture_basisu, and its ellipses are too narrow.
+    /// Bevy: refuses files that need KHR_texture_basisu, and its anisotropic lobes are too narrow.
     Bevy,
     /// Godot: its glTF import has no anisotropy.
     Godot,
@@ -43,13 +43,14 @@ const fn row(engine: Engine, name: &'static str, target: Target, form: Form, mod
 }
 
 const PRESETS: [Preset; 6] = [
-    // Its shader reflects the surroundings wrongly where lobes are ellipses.
+    // Its shader reflects the surroundings wrongly where lobes are anisotropic.
     row(Engine::Three, "three", Target::Basis, Form::Fallback, Some(Model::Isotropic)),
     row(Engine::Babylon, "babylon", Target::Basis, Form::Fallback, None),
     row(Engine::Playcanvas, "playcanvas", Target::Basis, Form::Fallback, None),
     // Its glTF loader has no anisotropy.
     row(Engine::Filament, "filament", Target::Basis, Form::Fallback, Some(Model::Isotropic)),
-    // Its loader refuses files that need KHR_texture_basisu, and its shader squares the alphas of ellipses once more.
+    // Its loader refuses files that need KHR_texture_basisu, and its shader squares the alphas of anisotropic lobes
+    // once more.
     row(Engine::Bevy, "bevy", Target::Basis, Form::Dual, Some(Model::Isotropic)),
     // Its glTF import has no anisotropy.
     row(Engine::Godot, "godot", Target::Basis, Form::Fallback, Some(Model::Isotropic)),
