@@ -107,14 +107,14 @@ impl Random {
 fn ripples() -> Image {
     let mut random = Random(7);
     let waves: [[f64; 4]; 24] = from_fn(|_| {
-        let turns = |r: f64| (2.0 * r - 1.0).signum() * (8.0 + (48.0 * r).floor() % 24.0);
-        [turns(random.uniform()), turns(random.uniform()), random.uniform(), 0.1 + 0.1 * random.uniform()]
+        let frequency = |r: f64| (2.0 * r - 1.0).signum() * (8.0 + (48.0 * r).floor() % 24.0);
+        [frequency(random.uniform()), frequency(random.uniform()), random.uniform(), 0.1 + 0.1 * random.uniform()]
     });
     normals(|x, y| {
-        let turns = |[kx, ky, phase, _]: &[f64; 4]| {
+        let angle = |[kx, ky, phase, _]: &[f64; 4]| {
             std::f64::consts::TAU * ((kx * f64::from(x) + ky * f64::from(y)) / f64::from(SIDE) + phase)
         };
-        waves.iter().map(|wave| wave[3] * turns(wave).sin()).sum()
+        waves.iter().map(|wave| wave[3] * angle(wave).sin()).sum()
     })
 }
 

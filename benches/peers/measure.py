@@ -32,7 +32,8 @@ class Contender:
 
 
 def once(contender):
-    """One run: `wall` and `cpu` in seconds, `peak` and what was `written` in MiB, and what the command printed."""
+    """Runs a contender once. Returns `wall` and `cpu` in seconds, `peak` and `written` in MiB, and what the command
+    printed."""
     if contender.out:
         shutil.rmtree(contender.out, ignore_errors=True)
         os.makedirs(contender.out)
@@ -64,8 +65,9 @@ def once(contender):
 
 
 def alternate(contenders, rounds, note=print):
-    """Rounds in which every contender runs once, in turn. By name: medians of `wall` and `cpu`, the largest `peak`, the
-    `least` and `most` wall time, the `runs`; or `failed`, the reason."""
+    """Runs rounds in which every contender runs once, in turn. Returns the results by name: medians of `wall` and
+    `cpu`, the largest `peak`, the `least` and `most` wall time, and the number of `runs`. A contender that failed has
+    only `failed`, the reason."""
     runs = {name: [] for name in contenders}
     failed = {}
     for index in range(rounds):
@@ -81,7 +83,7 @@ def alternate(contenders, rounds, note=print):
 
 
 def summary(runs):
-    """Summary of several runs of one contender."""
+    """Summarises several runs of one contender."""
     walls = [run["wall"] for run in runs]
     return {
         "wall": statistics.median(walls),

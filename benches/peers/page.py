@@ -34,27 +34,27 @@ NAMES = {
 
 
 def page(results):
-    """The whole document."""
+    """Returns the whole document."""
     sections = [head(results)]
     sections += [of(results[name]) for name, of in SECTIONS.items() if name in results]
     return "\n\n".join(filled(block) for block in "\n\n".join(sections).split("\n\n")) + "\n"
 
 
 def filled(block):
-    """A block of the document with prose of at most 120 columns."""
+    """Wraps the prose of a block of the document at 120 columns."""
     if block.startswith(("|", "#", "```", "<", "- ")):
         return block
     return textwrap.fill(block, 120, break_long_words=False, break_on_hyphens=False)
 
 
 def table(header, rows):
-    """A table in Markdown."""
+    """Formats a table in Markdown."""
     lines = [header, ["---"] + ["---:"] * (len(header) - 1), *rows]
     return "\n".join("| " + " | ".join(str(cell) for cell in line) + " |" for line in lines)
 
 
 def timed(times, base, extra=lambda name: [], columns=(), pack="pack"):
-    """A row for each contender: times, the ratio to `base`, memory."""
+    """Returns a table with a row for each contender: times, the ratio to `base`, memory."""
     rows = []
     wall = times.get(base, {}).get("wall")
     for name, run in times.items():
@@ -80,12 +80,12 @@ def timed(times, base, extra=lambda name: [], columns=(), pack="pack"):
 
 
 def seconds(value):
-    """A number with three significant digits."""
+    """Formats a number with three significant digits."""
     return f"{value:.3g}" if value < 100 else f"{value:.0f}"
 
 
 def lobes(errors):
-    """Mean of all levels, and the worst level."""
+    """Formats the mean of all levels and the worst level."""
     return f"{mean(errors):.3f}, {max(errors):.3f}" if errors else "-"
 
 
@@ -99,15 +99,17 @@ def head(results):
             "",
         ]
     lines += [
-        "This page compares Roughcast with tools that do parts of its work, on one machine, in alternating runs.",
-        "`python3 benches/peers/run.py` writes this page in 30 minutes on Linux. It needs Rust, a C++ compiler, Python 3.10 with venv,",
-        "and `ktx` of KTX-Software on the PATH. Without `ktx`, a stand-in is timed. The script installs OpenImageIO from PyPI into a",
-        "scratch environment under `target/peers`, builds, makes the inputs, measures, and prints the tables below.",
-        "`--only PART` measures one of encoders, kernels, decoders, whole, growth, memory again.",
+        "This page compares Roughcast with tools that do parts of its work, on one machine, in alternating runs. "
+        "`python3 benches/peers/run.py` writes this page in 30 minutes on Linux. It needs Rust, a C++ compiler, "
+        "Python 3.10 with venv, and `ktx` of KTX-Software on the PATH. Without `ktx`, a stand-in is timed. The script "
+        "installs OpenImageIO from PyPI into a scratch environment under `target/peers`, builds, makes the inputs, "
+        "measures, and prints the tables below. `--only PART` measures one of encoders, kernels, decoders, whole, "
+        "growth, memory again.",
         "",
-        "Times are medians of the runs, whose number the tables have. CPU seconds are the sum over all threads, and peak memory is the",
-        "resident set of the process. The inputs are PNGs of 8 bits. Normals are tiles of the maps of the [test data](../CONTRIBUTING.md#test-data) (wool, sand, bricks),",
-        "rotated and mirrored so that no two neighbours are equal. Without that folder, normals are synthetic. Roughness is synthetic.",
+        "Times are medians of the runs, whose number the tables have. CPU seconds are the sum over all threads, and "
+        "peak memory is the resident set of the process. The inputs are PNGs of 8 bits. Normals are tiles of the maps "
+        "of the [test data](../CONTRIBUTING.md#test-data) (wool, sand, bricks), rotated and mirrored so that no two "
+        "neighbours are equal. Without that folder, normals are synthetic. Roughness is synthetic.",
         "",
         "## The machine",
         "",
@@ -121,7 +123,7 @@ def head(results):
 
 
 def agreed(fact, results):
-    """A description of the parts, given once if the parts agree."""
+    """Returns a fact about the machines of the parts, once if the parts agree."""
     values = {}
     for name in SECTIONS:
         if name in results:
@@ -146,10 +148,11 @@ def encoders(part):
     lines = [
         f"## UASTC: one level of {square(part['size'])}",
         "",
-        "`--only encoders`. The times are from normals in memory to blocks in memory. basis_universal also wraps its blocks into a file",
-        "in that time, which one call cannot leave out. Its C interface always computes PSNR, SSIM and PSNR-HVS-M as well. The rows",
-        "without the C interface call the C++ function underneath without these statistics, which is faster, and the bounds above are",
-        "for these rows. A bake encodes normals by direction, roughness with occlusion and metal by roughness, and everything else by",
+        "`--only encoders`. The times are from normals in memory to blocks in memory. basis_universal also wraps its "
+        "blocks into a file in that time, which one call cannot leave out. Its C interface always computes PSNR, SSIM "
+        "and PSNR-HVS-M as well. The rows without the C interface call the C++ function underneath without these "
+        "statistics, which is faster, and the bounds above are for these rows. A bake encodes normals by direction, "
+        "roughness with occlusion and metal by roughness, and everything else by",
         'colour. Rows "of roughness" encode the roughness map of the bakes below. Its occlusion and metal are',
         "constant, which makes its blocks fast to encode.",
         "Lobe errors are means over real normal maps, levels 1 to 4, alpha 0.2, baked to anisotropic lobes",
@@ -158,8 +161,9 @@ def encoders(part):
         "",
         timed(part["times"], "level 0", more, ["Mtexel/s", "lobe error"]),
         "",
-        "Differences between decoded texels and their source: PSNR of red, green and blue in dB for the encoders that fit colours, 99 for",
-        "equal images; root mean square angles of normals in degrees for the encoders that fit directions.",
+        "Differences between decoded texels and their source: PSNR of red, green and blue in dB for the encoders that "
+        "fit colours, 99 for equal images; root mean square angles of normals in degrees for the encoders that fit "
+        "directions.",
         "",
     ]
     if "failed" in part["quality"]:
@@ -191,14 +195,15 @@ def encoders(part):
     ]
     lines += [
         "",
-        "PSNR of green, the channel of roughness, for the encoder of roughness (occlusion and metal have a quarter of the weight):",
+        "PSNR of green, the channel of roughness, for the encoder of roughness (occlusion and metal have a quarter of "
+        "the weight):",
         "",
     ]
     return "\n".join([*lines, table(header, [*rows, ["mean", *means(green, "green")]])])
 
 
 def rate(part, name):
-    """Million texels of the largest level per second."""
+    """Returns the millions of texels of the largest level per second."""
     wall = part["times"][name].get("wall")
     return f"{part['size'] ** 2 / 1e6 / wall:.1f}" if wall else "-"
 
@@ -219,12 +224,13 @@ def kernels(part):
         [
             f"## From a normal map to its pyramid: {square(part['size'])}",
             "",
-            "`--only kernels`. The times are from 8-bit texels in memory to the means and covariances K (20 bytes a texel) of all coarser",
-            "levels, or to these and the moments of shape (56 bytes). They are of the second run of a process, on two threads. All but the",
-            "first copy write to new memory, as a bake does, which the system clears page by page. No lobe is fitted, so there is no lobe",
-            "error.",
+            "`--only kernels`. The times are from 8-bit texels in memory to the means and covariances K (20 bytes a "
+            "texel) of all coarser levels, or to these and the moments of shape (56 bytes). They are of the second "
+            "run of a process, on two threads. All but the first copy write to new memory, as a bake does, which the "
+            "system clears page by page. No lobe is fitted, so there is no lobe error.",
             *[
-                "Compared with the copy in place, the copy to new memory takes {:.1f} times the time, means and K {:.1f} times.".format(
+                "Compared with the copy in place, the copy to new memory takes {:.1f} times the time, means and K "
+                "{:.1f} times.".format(
                     *in_place
                 )
             ]
@@ -240,9 +246,9 @@ def decoders(part):
         [
             f"## Decoders: {square(part['size'])} normals",
             "",
-            "`--only decoders`. The times are from a file in memory to 8-bit texels. Roughcast decodes PNG with `png` (through `image`) and",
-            "JPEG with `zune-jpeg`, to which `image` moved from `jpeg-decoder` in 0.25. Decoding is exact, and JPEG is exact within rounding,",
-            "so lobe errors do not depend on the decoder.",
+            "`--only decoders`. The times are from a file in memory to 8-bit texels. Roughcast decodes PNG with `png` "
+            "(through `image`) and JPEG with `zune-jpeg`, to which `image` moved from `jpeg-decoder` in 0.25. "
+            "Decoding is exact, and JPEG is exact within rounding, so lobe errors do not depend on the decoder.",
             "",
             timed(part["times"], "PNG, png"),
         ]
@@ -263,11 +269,13 @@ def whole(part):
         [
             f"## A whole bake: one material, normal and roughness of {square(part['size'])}",
             "",
-            "`--only whole`. The times are from PNGs on disk to files on disk, mips included. `maketx` and the first `ktx create` process the",
-            "normal map only. Lobe errors (mean of all levels, worst level) are the estimates by which the default bake chose its model, from",
-            "decoded blocks: of isotropic lobes, of the chosen model, and of plain mips with the material's roughness. The errors of plain",
-            "mips are in the rows of `ktx create`, which makes such mips, but they are of Roughcast's blocks. `maketx` writes data for",
-            "renderers that roughen lobes themselves. Mtexel/s are texels of level 0 of one map; the table of kernels above has copies.",
+            "`--only whole`. The times are from PNGs on disk to files on disk, mips included. `maketx` and the first "
+            "`ktx create` process the normal map only. Lobe errors (mean of all levels, worst level) are the "
+            "estimates by which the default bake chose its model, from decoded blocks: of isotropic lobes, of the "
+            "chosen model, and of plain mips with the material's roughness. The errors of plain mips are in the rows "
+            "of `ktx create`, which makes such mips, but they are of Roughcast's blocks. `maketx` writes data for "
+            "renderers that roughen lobes themselves. Mtexel/s are texels of level 0 of one map; the table of kernels "
+            "above has copies.",
             "",
             timed(part["times"], "two textures", more, ["Mtexel/s", "written MiB", "lobe error"], pack),
         ]
@@ -275,36 +283,12 @@ def whole(part):
 
 
 PACK = (
-    "stand-in for `ktx create --generate-mipmap --encode uastc --uastc-quality 0 --zstd 5` "
-    "(boxes, basis_universal level 0, zstd 3)"
+    "stand-in for `ktx create --generate-mipmap --encode uastc --uastc-quality 0 --zstd 5` (boxes, basis_universal "
+    "level 0, zstd 3)"
 )
 
 
 def growth(part):
-    def cells(run, more=()):
-        if "failed" in run:
-            return [run["failed"]] + [""] * (2 + len(more))
-        return [seconds(run["wall"]), seconds(run["cpu"]), f"{run['peak']:.0f}", *more]
-
-    sizes = []
-    for size, point in part["sizes"].items():
-        found = point["errors"]
-        other = [seconds(point[name]["wall"]) if "wall" in point.get(name, {}) else "-" for name in ("maketx", "pack")]
-        two, default = point["two textures"], point["default"]
-        sizes.append(
-            [
-                square(size),
-                *cells(two, [lobes(found.get("isotropic"))]),
-                *cells(default, [lobes(found.get("default"))]),
-                *other,
-                two.get("runs", 0),
-            ]
-        )
-    counts = []
-    for count, point in part["counts"].items():
-        two, default = point["two textures"], point.get("default", {"failed": "-"})
-        busy = lambda run: [f"{share(run):.1f}" if "cpu" in run else ""]
-        counts.append([count, *cells(two, busy(two)), *cells(default, busy(default)), two.get("runs", 0)])
     header = [
         f"{form}: {what}" for form in ("two textures", "default") for what in ("wall s", "CPU s", "peak MiB", "{}")
     ]
@@ -313,7 +297,8 @@ def growth(part):
         [
             "## How cost grows",
             "",
-            "`--only growth`. One material of growing size. Other tools process its normal map, up to 8192 x 8192. Lobe errors: mean of all levels, worst level.",
+            "`--only growth`. One material of growing size. Other tools process its normal map, up to 8192 x 8192. "
+            "Lobe errors: mean of all levels, worst level.",
             "",
             "![Time of bakes against the side of maps and against the number of materials](pictures/growth.svg)",
             "",
@@ -325,15 +310,16 @@ def growth(part):
                     f"{'`ktx create`' if part['ktx'] else 'its stand-in'}: wall s",
                     "runs",
                 ],
-                sizes,
+                size_rows(part),
             ),
             "",
-            "Materials of 512 x 512, each in its own document, in one bake; busy is the share of both cores. Every material has the texels and",
-            "the lobe errors of the row 512 x 512 above.",
+            "Materials of 512 x 512, each in its own document, in one bake; busy is the share of both cores. Every "
+            "material has the texels and the lobe errors of the row 512 x 512 above.",
             "",
-            table(["", *with_last("busy %"), "runs"], counts),
+            table(["", *with_last("busy %"), "runs"], count_rows(part)),
             "",
-            "Ten materials of 4096 x 4096 in one bake, which runs as many at a time as fit into a memory budget of 1 GiB (`crates/pipeline/src/run/budget.rs`), at least one: "
+            "Ten materials of 4096 x 4096 in one bake, which runs as many at a time as fit into a memory budget of 1 "
+            "GiB (`crates/pipeline/src/run/budget.rs`), at least one: "
             + "; ".join(
                 f"{form} {run['peak']:.0f} MiB, {seconds(run['wall'])} s"
                 for form, run in part["ten"].items()
@@ -342,6 +328,42 @@ def growth(part):
             + ".",
         ]
     )
+
+
+def cells(run, more=()):
+    """Returns the cells of a run in the tables of growth."""
+    if "failed" in run:
+        return [run["failed"]] + [""] * (2 + len(more))
+    return [seconds(run["wall"]), seconds(run["cpu"]), f"{run['peak']:.0f}", *more]
+
+
+def size_rows(part):
+    """Returns a row for each size of a map."""
+    rows = []
+    for size, point in part["sizes"].items():
+        found = point["errors"]
+        other = [seconds(point[name]["wall"]) if "wall" in point.get(name, {}) else "-" for name in ("maketx", "pack")]
+        two, default = point["two textures"], point["default"]
+        rows.append(
+            [
+                square(size),
+                *cells(two, [lobes(found.get("isotropic"))]),
+                *cells(default, [lobes(found.get("default"))]),
+                *other,
+                two.get("runs", 0),
+            ]
+        )
+    return rows
+
+
+def count_rows(part):
+    """Returns a row for each number of materials."""
+    rows = []
+    for count, point in part["counts"].items():
+        two, default = point["two textures"], point.get("default", {"failed": "-"})
+        busy = lambda run: [f"{share(run):.1f}" if "cpu" in run else ""]
+        rows.append([count, *cells(two, busy(two)), *cells(default, busy(default)), two.get("runs", 0)])
+    return rows
 
 
 def memory(part):
@@ -355,8 +377,9 @@ def memory(part):
             "`--only memory`. `roughcast map --roughness-factor 0.4`, with `--model isotropic` or `anisotropic`: "
             + "; ".join(runs)
             + ". Above, assets",
-            "also have a roughness map of three channels and equal size, and by default PNGs of level 0 for engines without KTX2.",
-            "An explicit model is not compared with others. The lobe errors of these normals are in the last row of sizes above.",
+            "also have a roughness map of three channels and equal size, and by default PNGs of level 0 for engines "
+            "without KTX2. An explicit model is not compared with others. The lobe errors of these normals are in the "
+            "last row of sizes above.",
         ]
     )
 

@@ -25,11 +25,11 @@ class Bench:
         self.report = tools.work / "report.json"
 
     def sizes(self):
-        """Sides of the maps of growing materials."""
+        """Returns the sides of the maps of growing materials."""
         return [256, 512, 1024, 2048] + ([] if self.quick else [4096, 8192, 16384])
 
     def folder(self, size=None, count=None):
-        """The folder of assets with maps of `size`, as many as any part needs."""
+        """Returns the folder of assets with maps of `size`, as many as any part needs."""
         size = size or self.size
         most = {512: 100 if self.quick else 1000, self.size: 10}
         return inputs(self.tools, self.maps, size, most.get(size, 1))
@@ -66,7 +66,7 @@ class Bench:
         return Contender([*argv, self.normal(size), "-o", f"{self.out}/slopes.exr"], out=self.out)
 
     def packed(self, image, target):
-        """The command line of `ktx create` where it is installed, else of our stand-in."""
+        """Returns the command line of `ktx create` where it is installed, else that of our stand-in."""
         if self.tools.ktx:
             argv = [self.tools.ktx, "create", "--format", "R8G8B8_UNORM", "--assign-tf", "linear", "--generate-mipmap"]
             argv += ["--encode", "uastc", "--uastc-quality", "0", "--zstd", "5", "--threads", "2"]
@@ -83,11 +83,11 @@ class Bench:
         return Contender(["sh", "-c", f"{normal} && {surface}"], out=self.out)
 
     def inner(self, *argv, rounds=None):
-        """A subcommand of this folder's crate, which times itself."""
+        """Returns the contender that runs a subcommand of this folder's crate. The subcommand times itself."""
         return Contender([self.tools.peers, *argv], times_itself=True, rounds=rounds)
 
     def real(self, *names):
-        """Files of the data whose names hold one of `names`, or our own inputs where there is no data."""
+        """Returns files of the data whose names hold one of `names`, or our own inputs where there is no data."""
         if not self.data:
             return [self.normal()]
         files = sorted(path for path in self.data.rglob("*") if path.suffix in (".png", ".jpg"))
@@ -95,7 +95,7 @@ class Bench:
 
 
 def encoders(bench):
-    """UASTC: time of one level, then quality on real maps."""
+    """Measures UASTC encoders: the time of one level, then the quality on real maps."""
     names = [
         "fast",
         "level 0",
@@ -126,7 +126,7 @@ def encoders(bench):
 
 
 def printed(bench, *argv):
-    """What a subcommand prints, or why it failed."""
+    """Returns what a subcommand prints, or why it failed."""
     try:
         run = once(bench.inner(*argv))
     except Failed as reason:
@@ -135,14 +135,14 @@ def printed(bench, *argv):
 
 
 def kernels(bench):
-    """The pyramid's kernel and copies."""
+    """Measures the pyramid's kernel and copies."""
     names = ["copy in place", "copy of moments", "moments", "copy of shape", "shape"]
     contenders = {name: bench.inner("kernel", name, bench.normal()) for name in names}
     return {"size": bench.size, "times": alternate(contenders, bench.rounds if bench.quick else 9)}
 
 
 def decoders(bench):
-    """PNG and JPEG decoders."""
+    """Measures PNG and JPEG decoders."""
     jpeg = f"{bench.tools.work}/normal-{bench.size}.jpg"
     os.path.exists(jpeg) or once(bench.inner("inputs", "jpeg", bench.normal(), jpeg))
     contenders = {
@@ -155,7 +155,7 @@ def decoders(bench):
 
 
 def whole(bench):
-    """A whole bake of one material, from files to files."""
+    """Measures a whole bake of one material, from files to files."""
     both = [bench.normal(), bench.surface()]
     with_report = [*DEFAULT, "--report", str(bench.report)]
     contenders = {
@@ -172,8 +172,9 @@ def whole(bench):
 
 
 def errors(bench):
-    """Lobe errors by level, decoded from blocks, of each model in full size and of the chosen model (`default`), and
-    the errors that the default bake had estimated before its choice. Nothing where the run failed."""
+    """Returns lobe errors by level, decoded from blocks, of each model in full size and of the chosen model
+    (`default`), and the errors that the default bake had estimated before its choice. Returns nothing where the run
+    failed."""
     if not bench.report.exists():
         return {}
     choice = json.loads(bench.report.read_text())["assets"][0]["layers"][0]["choice"]
@@ -185,7 +186,7 @@ def errors(bench):
 
 
 def growth(bench):
-    """Time and memory against size and number of materials."""
+    """Measures time and memory against size and number of materials."""
     counts = [1, 10, 100] + ([] if bench.quick else [200, 1000])
     result = {"sizes": {}, "counts": {}, "ktx": bool(bench.tools.ktx)}
     for size in bench.sizes():
@@ -211,7 +212,7 @@ def growth(bench):
 
 
 def memory(bench):
-    """Time and memory of the largest normal map."""
+    """Measures time and memory of the largest normal map."""
     size = max(bench.sizes())
     forms = {
         "two textures": bench.map(size, ["--model", "isotropic"]),

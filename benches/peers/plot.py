@@ -32,7 +32,7 @@ LINES = {"two textures": "two", "default": "default", "maketx": "maketx", "pack"
 
 
 def growth(results):
-    """The SVG of the part `growth`."""
+    """Draws the part `growth` as an SVG."""
     charts = [
         ("Time against the side of one material's maps", "texels", results["sizes"]),
         ("Time against materials of 512 x 512", "materials", results["counts"]),
@@ -49,7 +49,7 @@ def growth(results):
 
 
 def style():
-    """Colours of both schemes, and the classes that have them."""
+    """Returns the colours of both schemes, and the classes that have them."""
     names = lambda scheme: ";".join(f"--{name}:{value}" for name, value in COLOURS[scheme].items())
     lines = "".join(
         f".{c}{{stroke:var(--{c});stroke-width:1.8}}text.{c}{{fill:var(--{c});stroke:none}}" for c in LINES.values()
@@ -62,8 +62,7 @@ def style():
 
 
 def chart(title, unit, points, names):
-    """One chart. `points` are summaries by name, then by size or number. Lines have their own names unless `names`
-    has another."""
+    """Draws one chart. `points` are summaries by name, then by size or number. `names` replaces names of lines."""
     xs = sorted(int(x) for x in points)
     series = []
     for name, kind in LINES.items():

@@ -63,18 +63,18 @@ def build(tools):
 
 
 def cxx_flags():
-    """Flags of basis_universal's own CMakeLists.txt, which its crate leaves out: no assertions, and SSE 4.1."""
+    """Returns flags of basis_universal's own CMakeLists.txt, which its crate leaves out: no assertions, and SSE 4.1."""
     sse = ["-DBASISU_SUPPORT_SSE=1", "-msse4.1"] if is_x86() else []
     return " ".join(["-DNDEBUG", *sse])
 
 
 def is_x86():
-    """Whether this machine has SSE."""
+    """Returns whether this machine has SSE."""
     return platform.machine() in ("x86_64", "AMD64")
 
 
 def inputs(tools, data, size, count):
-    """The folder of `count` assets with maps of `size` texels a side, made when it is missing."""
+    """Returns the folder of `count` assets with maps of `size` texels a side. Makes the folder when it is missing."""
     folder = tools.work / "inputs" / f"{size}{'' if data else '-synthetic'}"
     done = folder / f"{count}.done"
     if not done.exists():
@@ -112,7 +112,7 @@ def commit():
 
 
 def processor():
-    """Name of the processor."""
+    """Returns the name of the processor."""
     try:
         lines = Path("/proc/cpuinfo").read_text().split("\n")
     except OSError:

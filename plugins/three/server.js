@@ -23,9 +23,9 @@ const TYPES = {
 
 /**
  * Serves folders by the first part of the path: { three: '/a/folder' } is /three/. A link that leads out of its folder
- * is not found. Pages that listen to /events get an event from each `tell`.
+ * is not found. Pages that listen to /events get an event from each `reportBake`.
  *
- * @returns {Promise<{url: string, tell: () => void, close: () => Promise<void>}>}
+ * @returns {Promise<{url: string, reportBake: () => void, close: () => Promise<void>}>}
  */
 export async function serve(folders) {
   const roots = new Map();
@@ -40,7 +40,7 @@ export async function serve(folders) {
   });
   return {
     url: `http://127.0.0.1:${server.address().port}`,
-    tell: () => listeners.forEach((response) => response.write('data: baked\n\n')),
+    reportBake: () => listeners.forEach((response) => response.write('data: baked\n\n')),
     close: () => new Promise((resolve) => server.close(resolve) && server.closeAllConnections()),
   };
 }

@@ -81,7 +81,7 @@ try {
   });
   console.log(`${server.url}/page/index.html`);
   if (given.values.events)
-    createInterface({ input: process.stdin }).on('line', (line) => reportsOutputs(line) && server.tell());
+    createInterface({ input: process.stdin }).on('line', (line) => reportsOutputs(line) && server.reportBake());
 } catch (error) {
   console.error(`view: ${error.message}`);
   process.exit(1);

@@ -31,6 +31,16 @@ fn main() -> Result<(), Box<dyn Error>> {
         std::fs::write(path, chart::chart())?;
         return Ok(());
     }
+    let (kept, inputs) = print_kinds();
+    print_traffic(kept, inputs);
+    print_plans(inputs);
+    print_farms();
+    print_variants();
+    Ok(())
+}
+
+/// Prints the costs of a job of each kind. Returns the mean bytes of a job's cached outputs, and of its inputs.
+fn print_kinds() -> (f64, f64) {
     let mean =
         |value: &dyn Fn(&jobs::Kind) -> f64| jobs::KINDS.iter().map(|kind| kind.share * value(kind)).sum::<f64>();
     let (bake, inputs, kept) = (mean(&|k| k.bake), mean(&|k| k.inputs), mean(&|k| k.kept));
@@ -41,6 +51,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("| {name} | {share} | {bake} | {cached} | {inputs:.2} | {kept:.2} |");
     }
     println!("| mean | | {bake:.2} | | {:.2} | {:.2} |\n", inputs / 1e6, kept / 1e6);
+    (kept, inputs)
+}
+
+/// Prints the bytes that cold and warm runs read from and write to the cache.
+fn print_traffic(kept: f64, inputs: f64) {
     println!("| materials | cache | read, cold | written, cold | read, warm |\n|---|---|---|---|---|");
     for count in COUNTS {
         let bytes = |each: f64| size(each * count as f64);
@@ -53,6 +68,10 @@ fn main() -> Result<(), Box<dyn Error>> {
             bytes(inputs + kept)
         );
     }
+}
+
+/// Prints the cost of plans by the number of materials.
+fn print_plans(inputs: f64) {
     println!("\n| materials | planning | plan | reading the plan, each machine | memory |\n|---|---|---|---|---|");
     for count in COUNTS {
         let (bytes, seconds, memory) = PLAN;
@@ -61,6 +80,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         let (plan, memory) = (size(all(bytes)), size(all(memory)));
         println!("| {} | {planning} | {plan} | {} | {memory} |", number(count), time(all(seconds)));
     }
+}
+
+/// Prints the time of each number of materials on each number of workers.
+fn print_farms() {
     for (title, cache) in [("cold", Cache::Cold), ("warm store", Cache::Warm), ("1 % changed", Cache::Changed)] {
         print!("\n| {title} |");
         WORKERS.iter().for_each(|workers| print!(" {} |", number(*workers as u64)));
@@ -74,6 +97,10 @@ fn main() -> Result<(), Box<dyn Error>> {
             println!();
         }
     }
+}
+
+/// Prints the time of a million materials under other assumptions.
+fn print_variants() {
     println!("\n| 10^6 materials, cold, 1000 workers | time | busy |\n|---|---|---|");
     for (what, farm) in [
         ("as assumed", FARM),
@@ -95,7 +122,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         let (workers, store, scheduler) = (share(workers), share(store), share(scheduler));
         println!("| {what} | {} | workers {workers}, store {store}, scheduler {scheduler} |", time(seconds));
     }
-    Ok(())
 }
 
 /// Returns what limits a run: the store (S), the scheduler that assigns actions (D), the workers' links (L), or the

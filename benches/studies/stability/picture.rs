@@ -28,9 +28,9 @@ impl Canvas {
         let left = panel as u32 * (self.side + GAP);
         for i in 0..self.side * self.side {
             let (x, y) = (i % self.side, i / self.side);
-            let place = [x, y].map(|c| (f64::from(c) + 0.5) / f64::from(self.side));
+            let point = [x, y].map(|c| (f64::from(c) + 0.5) / f64::from(self.side));
             let at = 4 * (y * self.width + left + x) as usize;
-            for (byte, value) in self.rgba[at..].iter_mut().zip(colour(place)) {
+            for (byte, value) in self.rgba[at..].iter_mut().zip(colour(point)) {
                 *byte = (255.0 * value.clamp(0.0, 1.0)).round() as u8;
             }
         }

@@ -41,13 +41,13 @@ pub fn print(folder: &Path) -> Result<(), Box<dyn Error>> {
         let at = |c: f64| ((c * f64::from(axes.width)) as u32).min(axes.width - 1);
         direction(&axes, at(x), at(y))
     };
-    canvas.fill(0, |place| {
-        let [x, y] = texel(place);
+    canvas.fill(0, |point| {
+        let [x, y] = texel(point);
         [0.5 * x + 0.5, 0.5 * y + 0.5, 0.5]
     });
-    canvas.fill(1, |place| [filtered_length(&axes, place); 3]);
+    canvas.fill(1, |point| [filtered_length(&axes, point); 3]);
     write(folder, "stability-signs.png", canvas)?;
-    round_lobes();
+    nearly_isotropic_lobes();
     Ok(())
 }
 
@@ -66,8 +66,8 @@ fn direction(axes: &Image, x: u32, y: u32) -> [f64; 2] {
 }
 
 /// Returns the length of the direction as a sampler filters it at a point of the unit square.
-fn filtered_length(axes: &Image, place: [f64; 2]) -> f64 {
-    let at = place.map(|c| (c * f64::from(axes.width) - 0.5).clamp(0.0, f64::from(axes.width - 1)));
+fn filtered_length(axes: &Image, point: [f64; 2]) -> f64 {
+    let at = point.map(|c| (c * f64::from(axes.width) - 0.5).clamp(0.0, f64::from(axes.width - 1)));
     let (first, share) = (at.map(|c| c as u32), at.map(f64::fract));
     let mut sum = [0.0; 2];
     for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
@@ -90,15 +90,15 @@ fn disagreement(axes: &Image) -> (f64, f64) {
         let here = direction(axes, x, y);
         let away = |[u, v]: [f64; 2]| here[0] * u + here[1] * v < 0.0;
         opposed += u32::from(away(direction(axes, x + 1, y)) || away(direction(axes, x, y + 1)));
-        let place = [x, y].map(|c| (f64::from(c) + 1.0) / f64::from(n));
-        short += u32::from(filtered_length(axes, place) < 0.5);
+        let point = [x, y].map(|c| (f64::from(c) + 1.0) / f64::from(n));
+        short += u32::from(filtered_length(axes, point) < 0.5);
     }
     let all = f64::from((n - 1) * (n - 1));
     (f64::from(opposed) / all, f64::from(short) / all)
 }
 
 /// Prints the scatter of the directions of lobes that are isotropic but for noise, as eigenvectors and as stored.
-fn round_lobes() {
+fn nearly_isotropic_lobes() {
     head(
         "Directions of nearly isotropic lobes",
         &["axis ratio of the noise", "mean length of eigenvectors", "of stored directions"],

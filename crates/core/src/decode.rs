@@ -16,7 +16,7 @@ pub enum DecodeError {
 }
 
 impl DecodeError {
-    /// Tells whether decoding may succeed when there is more memory.
+    /// Returns whether decoding may succeed when there is more memory.
     pub fn is_out_of_memory(&self) -> bool {
         match self {
             Self::Raster(error) => error.is_out_of_memory(),

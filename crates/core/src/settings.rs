@@ -58,7 +58,7 @@ pub enum Model {
     None,
     /// One number per texel.
     Isotropic,
-    /// An ellipse per texel.
+    /// An anisotropic lobe per texel.
     Anisotropic,
 }
 

@@ -59,7 +59,7 @@ pub fn hash_file(path: &Path) -> io::Result<(Digest, u64)> {
     digest_of(file.take(MAX_FILE_BYTES))
 }
 
-/// Tells whether the file at `path` has the digest `blake3`.
+/// Returns whether the file at `path` has the digest `blake3`.
 pub fn holds(path: &Path, blake3: Digest) -> bool {
     hash_file(path).is_ok_and(|(found, _)| found == blake3)
 }

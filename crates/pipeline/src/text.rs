@@ -1,7 +1,7 @@
 //! Text from files, made safe for terminals and CI logs.
 
 use std::borrow::Cow;
-use std::fmt::Write;
+use std::fmt::{Debug, Write};
 
 /// Returns `text` on one line, without characters that a terminal or a CI log acts on. Control characters, line and
 /// paragraph separators, and marks that reorder text are escaped as `\u{..}`, as Rust writes them.
@@ -34,8 +34,13 @@ pub fn xml_escaped(text: &str) -> String {
     quick_xml::escape::escape(xml_text(text)).into_owned()
 }
 
-/// Tells whether a terminal or a log acts on `c` instead of showing it: C0, DEL, C1, line and paragraph separators, and
-/// the overrides and isolates of Unicode's bidirectional algorithm (UAX #9).
+/// Returns the name of a variant, or `unspecified` if there is none.
+pub fn name_of<T: Debug>(variant: Option<&T>) -> String {
+    variant.map_or_else(|| "unspecified".to_owned(), |variant| format!("{variant:?}"))
+}
+
+/// Returns whether a terminal or a log acts on `c` instead of showing it: C0, DEL, C1, line and paragraph separators,
+/// and the overrides and isolates of Unicode's bidirectional algorithm (UAX #9).
 fn is_active(c: char) -> bool {
     c.is_control() || matches!(c, '\u{2028}' | '\u{2029}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }

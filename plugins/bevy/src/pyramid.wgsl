@@ -126,7 +126,8 @@ fn roughen(input: ptr<function, PbrInput>, frame: Frame, uv: vec2<f32>) {
     (*input).anisotropy_T = normalize(t - dot(t, (*input).N) * (*input).N);
     (*input).anisotropy_B = cross((*input).N, (*input).anisotropy_T);
 #else
-    // Different scales of u and v make the lobe anisotropic. This shader has isotropic lobes only, so it takes the mean.
+    // Different scales of u and v make the lobe anisotropic. This shader has isotropic lobes only, so it takes the
+    // mean.
     let squared = alpha * alpha + pyramid.correction_factor * (k.x + k.z);
     (*input).material.perceptual_roughness = sqrt(sqrt(min(squared, 1.0)));
 #endif

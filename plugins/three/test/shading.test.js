@@ -58,12 +58,12 @@ const [D, K] = [
   [0.05, 0.01, 0.01],
 ];
 const C = 0.8;
-const folded = ([uu, uv, vv]) => [ALPHA ** 2 + 2 * C * uu, 2 * C * uv, ALPHA ** 2 + 2 * C * vv];
+const roughened = ([uu, uv, vv]) => [ALPHA ** 2 + 2 * C * uu, 2 * C * uv, ALPHA ** 2 + 2 * C * vv];
 const FLAT = { own: OWN, offset: [0, 0], lost: D, correctionFactor: C, frame: 'unit' };
 
 test('D gives the anisotropic lobe of a physical material', options, async () => {
   for (const type of ['MeshStandardMaterial', 'MeshPhysicalMaterial']) {
-    await assertAlike({ ...FLAT, type }, { own: lobe(folded(K)), normal: [0, 0, 1] });
+    await assertAlike({ ...FLAT, type }, { own: lobe(roughened(K)), normal: [0, 0, 1] });
   }
 });
 
@@ -90,7 +90,7 @@ test('bumps lose no light to each other', options, async () => {
   const metal = { metalness: 1, color: 0xffffff };
   for (const lost of [D, [0.3]]) {
     const squared = ALPHA ** 2 + 2 * C * 0.3 ** 2;
-    const whole = lost === D ? lobe(folded(K)) : { ...OWN, roughness: squared ** 0.25 };
+    const whole = lost === D ? lobe(roughened(K)) : { ...OWN, roughness: squared ** 0.25 };
     const drawn = await page.evaluate((o) => window.pyramid(o), {
       ...FLAT,
       plane: PLANE,
@@ -110,7 +110,7 @@ test('bumps lose no light to each other', options, async () => {
 
 const SLOPE = [0.3, -0.2];
 const BUMPY = { ...FLAT, offset: SLOPE, lost: [0.2] };
-const ROUND = { own: { ...OWN, roughness: (ALPHA ** 2 + 2 * C * 0.04) ** 0.25 }, normal: normal(SLOPE) };
+const ISOTROPIC = { own: { ...OWN, roughness: (ALPHA ** 2 + 2 * C * 0.04) ** 0.25 }, normal: normal(SLOPE) };
 
 test('offsets tilt the normal, with and without tangents, from behind and in mirrored nodes', options, async () => {
   for (const change of [
@@ -121,7 +121,7 @@ test('offsets tilt the normal, with and without tangents, from behind and in mir
     { mirrored: true, tangents: false },
   ]) {
     const plane = { ...PLANE, ...change };
-    await assertAlike({ ...BUMPY, plane }, { ...ROUND, plane });
+    await assertAlike({ ...BUMPY, plane }, { ...ISOTROPIC, plane });
   }
 });
 
@@ -132,9 +132,9 @@ test('natural offsets are heights per repeat', options, async () => {
     const natural = { ...BUMPY, offset, frame: 'natural', lost: null, plane: { ...plane, tangents } };
     await assertAlike(natural, { own: OWN, normal: normal(SLOPE), plane: { ...plane, tangents } });
     // D also is per repeat: its rows are divided by 2 and 4.
-    const ellipse = { ...FLAT, frame: 'natural', lost: [D[0], D[1], 2 * D[2]], plane: { ...plane, tangents } };
-    await assertAlike(ellipse, {
-      own: lobe(folded(K.map((k) => k / 4))),
+    const anisotropic = { ...FLAT, frame: 'natural', lost: [D[0], D[1], 2 * D[2]], plane: { ...plane, tangents } };
+    await assertAlike(anisotropic, {
+      own: lobe(roughened(K.map((k) => k / 4))),
       normal: [0, 0, 1],
       plane: { ...plane, tangents },
     });
@@ -144,12 +144,12 @@ test('natural offsets are heights per repeat', options, async () => {
 test('a main direction needs no tangents', options, async () => {
   // On the plane z = 0, m = x has e1 = m x n = -y and e2 = n x e1 = x.
   const main = { ...BUMPY, frame: 'mainDirection', mainDirection: [1, 0, 0], offset: [-SLOPE[1], SLOPE[0]] };
-  const turned = { ...FLAT, frame: 'mainDirection', mainDirection: [1, 0, 0] };
+  const rotated = { ...FLAT, frame: 'mainDirection', mainDirection: [1, 0, 0] };
   // With tangents, three.js computes B of a mirrored mesh from the mirrored T and N, which flips the bumps of its own
   // normal maps.
   for (const change of [{}, { tangents: false }, { behind: true }, { mirrored: true, tangents: false }]) {
     const plane = { ...PLANE, ...change };
-    await assertAlike({ ...main, plane }, { ...ROUND, plane });
-    await assertAlike({ ...turned, plane }, { own: lobe(folded([K[2], -K[1], K[0]])), normal: [0, 0, 1], plane });
+    await assertAlike({ ...main, plane }, { ...ISOTROPIC, plane });
+    await assertAlike({ ...rotated, plane }, { own: lobe(roughened([K[2], -K[1], K[0]])), normal: [0, 0, 1], plane });
   }
 });

@@ -58,7 +58,7 @@ fn the_number_of_threads_is_limited() {
 #[cfg(unix)]
 #[test]
 fn an_asset_may_have_a_name_that_no_uri_can_contain() {
-    let judged = |name: &str, textures: &str| {
+    let checked = |name: &str, textures: &str| {
         let folder = tempdir().expect("a folder");
         fs::create_dir(folder.path().join("A")).expect("a folder");
         fs::copy(fixtures().join("waves/waves.glb"), folder.path().join("A").join(name)).expect("a file");
@@ -68,7 +68,7 @@ fn an_asset_may_have_a_name_that_no_uri_can_contain() {
         let check = run(folder.path(), "check O --source A");
         (check.code, check.out.lines().count(), check.err)
     };
-    let usual = judged("waves.glb", "waves.roughcast");
-    assert_eq!(judged("a:b.glb", "a_b.roughcast"), usual);
-    assert_eq!(judged("c\\d:.glb", "c_d_.roughcast"), usual);
+    let usual = checked("waves.glb", "waves.roughcast");
+    assert_eq!(checked("a:b.glb", "a_b.roughcast"), usual);
+    assert_eq!(checked("c\\d:.glb", "c_d_.roughcast"), usual);
 }

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::error::ContainerError;
 use crate::gltf::extensions::are_known;
-use crate::gltf::json::{Json, JsonError};
+use crate::gltf::json::{Json, JsonError, escaped};
 
 /// Bytes that stay keep their offset modulo this number. No accessor component and no table of an extension needs a
 /// larger alignment.
@@ -256,10 +256,6 @@ fn image_views(json: &Json) -> Result<Vec<usize>, JsonError> {
     let images: Value = json.value("/images")?.unwrap_or(json!([]));
     let views = images.as_array().into_iter().flatten().filter_map(|image| image.get("bufferView")?.as_u64());
     Ok(views.filter_map(|view| usize::try_from(view).ok()).collect())
-}
-
-fn escaped(name: &str) -> String {
-    name.replace('~', "~0").replace('/', "~1")
 }
 
 #[cfg(test)]

@@ -27,8 +27,8 @@ const KNOWN: [&str; 15] = [
     EXTENSION,
 ];
 
-/// Tells whether all extensions of `root` are known to refer to images and buffer views as the core of glTF does, which
-/// allows to renumber them.
+/// Returns whether all extensions of `root` are known to refer to images and buffer views as the core of glTF does.
+/// Images and buffer views can then be renumbered.
 pub fn are_known(root: &Value) -> bool {
     let used = root.get("extensionsUsed").and_then(Value::as_array).into_iter().flatten().filter_map(Value::as_str);
     let is_known = |name: &str| name.starts_with("KHR_materials_") || KNOWN.contains(&name);

@@ -35,6 +35,11 @@ use style::Style;
 
 const BYTE_ORDER_MARK: &str = "\u{feff}";
 
+/// Returns a member's name as a step of a JSON Pointer (RFC 6901).
+pub(crate) fn escaped(name: &str) -> String {
+    name.replace('~', "~0").replace('/', "~1")
+}
+
 /// A JSON document that is written back byte for byte, except for its edits.
 ///
 /// If an object repeats a key, the last member counts, as for `serde_json`.

@@ -70,7 +70,7 @@ impl<'r> Meshes<'r> {
         self.users.get(&material).map_or(&[], Vec::as_slice)
     }
 
-    /// Tells whether an animation changes the scale or the rotation of a texture transform of material `material`.
+    /// Returns whether an animation changes the scale or the rotation of a texture transform of material `material`.
     pub fn has_moving_coordinates(&self, material: usize) -> bool {
         self.moving.contains(&material)
     }

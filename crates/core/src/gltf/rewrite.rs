@@ -11,11 +11,9 @@ use std::collections::BTreeSet;
 use serde_json::{Map, Value, json};
 
 use super::extensions::{declare, names, undeclare};
-use super::json::{Json, JsonError};
+use super::json::{Json, JsonError, escaped};
 use freed::Freed;
 use images::{Placed, place_images, remove_images};
-
-use texture::escaped;
 
 pub use texture::{NewImage, NewTexture, Slot, references};
 
@@ -142,7 +140,7 @@ fn undeclare_extensions<'v>(json: &mut Json, replaced: impl Iterator<Item = &'v 
     undeclare(json, "/extensionsRequired", |name| gone.contains(name) || (is_optional && name == BASISU))
 }
 
-/// Tells whether `texture` has an image only through `KHR_texture_basisu`.
+/// Returns whether `texture` has an image only through `KHR_texture_basisu`.
 fn is_strict(texture: &Value) -> bool {
     texture.get("source").is_none() && sources_of(texture).any(|name| name == BASISU)
 }

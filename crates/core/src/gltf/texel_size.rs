@@ -4,6 +4,7 @@ use super::material::Mapping;
 use super::meshes::{Meshes, Primitive};
 use super::scene::{BadNode, Metric, Placement, Unsteady, product};
 use super::triangles::{Accessors, Vertex, length, minus, tangents};
+use crate::math::symmetric::{MohrCircle, determinant};
 use crate::math::vector::cross;
 
 /// Why the size of a material's texels is not known.
@@ -147,10 +148,10 @@ impl Sides {
     /// s2 by p / s1 texels. The level is log2 of the shorter length, but at least of the longer length over the largest
     /// anisotropy (Vulkan 1.3, "LOD Operation"): log2(p / min(s1, 16 s2)).
     fn stretch_squared(&self) -> f64 {
-        let (mean, half) = (0.5 * (self.aa + self.bb), 0.5 * (self.aa - self.bb));
-        let deviation = (half * half + self.ab * self.ab).sqrt();
+        let circle = MohrCircle::from([self.aa, self.ab, self.bb]);
+        let [major, minor] = circle.eigenvalues();
         // The minor axis is no less than the rounding error of the difference.
-        let (major, minor) = (mean + deviation, (mean - deviation).max(4.0 * f64::EPSILON * mean));
+        let minor = minor.max(4.0 * f64::EPSILON * circle.mean);
         let bound = MAX_ANISOTROPY_SQUARED * minor;
         // f64::min would drop NaN.
         if bound < major { bound } else { major }
@@ -158,7 +159,7 @@ impl Sides {
 
     /// Returns the area of the texel.
     fn area(&self) -> f64 {
-        (self.aa * self.bb - self.ab * self.ab).max(0.0).sqrt()
+        determinant([self.aa, self.ab, self.bb]).max(0.0).sqrt()
     }
 }
 

@@ -72,7 +72,7 @@ impl SquaredAlpha {
     ///
     /// This isotropic lobe has the peak of `self`. The distance from `self` is symmetric about this alpha, because
     /// stretching slopes by a matrix changes no distance between densities (test
-    /// `the_closest_circle_has_the_determinant`).
+    /// `the_closest_isotropic_lobe_has_the_determinant`).
     #[inline(always)]
     pub fn closest_isotropic(self) -> Alpha {
         Alpha(self.0.determinant().sqrt().sqrt())

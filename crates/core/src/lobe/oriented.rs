@@ -2,6 +2,7 @@
 
 use super::SquaredAlpha;
 use crate::bump::{Offset, normal_from_offset, slopes};
+use crate::math::vector::cross;
 use crate::simd::Real;
 
 /// A lobe about a unit normal: the reflection of one texel of a level.
@@ -37,12 +38,7 @@ pub(super) fn frame<F: Real>(n: [F; 3]) -> [[F; 3]; 3] {
     let scale = one / (one - n[0] * n[0]).max(n[0].splat_like(1e-7)).sqrt();
     let minus_x = n[0].splat_like(0.0) - n[0];
     let t = [(one - n[0] * n[0]) * scale, minus_x * n[1] * scale, minus_x * n[2] * scale];
-    [t, [n[1] * t[2] - n[2] * t[1], n[2] * t[0] - n[0] * t[2], n[0] * t[1] - n[1] * t[0]], n]
-}
-
-#[inline(always)]
-pub(super) fn dot<F: Real>(a: [F; 3], b: [F; 3]) -> F {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    [t, cross(n, t), n]
 }
 
 #[cfg(test)]

@@ -41,14 +41,14 @@ impl Region {
     /// let exact = d.covariance();
     /// assert!((k.uu - exact.uu).abs() < 1e-3 && (k.uv - exact.uv).abs() < 1e-3 && (k.vv - exact.vv).abs() < 1e-3);
     /// ```
-    pub fn offset(self, factor: Factor, [share, turn]: [f32; 2]) -> Offset {
+    pub fn offset(self, factor: Factor, [share, angle]: [f32; 2]) -> Offset {
         let share = f64::from(share.clamp(0.0, 1.0));
         let radius = match self {
             // G. Box, M. Muller, 1958. The largest f32 below 1 is 1 - 2^-24.
             Self::Normal => (-2.0 * libm::log((1.0 - share).max(1.0 / f64::from(1 << 24)))).sqrt(),
             Self::Ellipse => 2.0 * share.sqrt(),
         };
-        let (sin, cos) = libm::sincos(std::f64::consts::TAU * f64::from(turn.clamp(0.0, 1.0)));
+        let (sin, cos) = libm::sincos(std::f64::consts::TAU * f64::from(angle.clamp(0.0, 1.0)));
         let (x, y) = ((radius * cos) as f32, (radius * sin) as f32);
         Offset { u: factor.d1 * x + factor.d2 * y, v: factor.d3 * y }
     }

@@ -55,7 +55,7 @@ fn closed_distances_match_the_integral() {
 }
 
 #[test]
-fn the_closest_circle_has_the_determinant() {
+fn the_closest_isotropic_lobe_has_the_determinant() {
     let a = SquaredAlpha(Symmetric2::diagonal(0.09, 0.01));
     let best = a.closest_isotropic().0;
     assert!((best - 0.03f32.sqrt()).abs() < 1e-6);
@@ -88,9 +88,9 @@ fn directions_agree_with_the_reference() {
     assert!(forward[0] > 0.0);
     assert_eq!(backward, [-forward[0], -forward[1]]);
     // An isotropic lobe has no direction, so the direction is that of the reference.
-    let round = Anisotropy::of(SquaredAlpha::isotropic(Alpha(0.4)), [0.6, -0.8]);
-    assert!((round.direction[0] - 0.6).abs() < 1e-6 && (round.direction[1] + 0.8).abs() < 1e-6);
-    assert_eq!(round.strength, 0.0);
+    let isotropic = Anisotropy::of(SquaredAlpha::isotropic(Alpha(0.4)), [0.6, -0.8]);
+    assert!((isotropic.direction[0] - 0.6).abs() < 1e-6 && (isotropic.direction[1] + 0.8).abs() < 1e-6);
+    assert_eq!(isotropic.strength, 0.0);
 }
 
 #[test]
@@ -133,8 +133,8 @@ fn the_correction_factor_is_the_best() {
         };
         let spread = Symmetric2::diagonal((sigma * sigma) as f32, (sigma * sigma) as f32);
         let moments = ShapedMoments::normal(Moments { mean: Offset::default(), covariance: spread });
-        let own = SquaredAlpha::isotropic(Alpha(alpha as f32));
-        let ours = f64::from(distribution.correct(&moments, own, Family::Ggx).covariance.uu) / (sigma * sigma);
+        let base = SquaredAlpha::isotropic(Alpha(alpha as f32));
+        let ours = f64::from(distribution.correct(&moments, base, Family::Ggx).covariance.uu) / (sigma * sigma);
         let best = (10..30).map(|i| 0.05 * f64::from(i)).min_by(|a, b| error(*a).total_cmp(&error(*b))).unwrap();
         assert!((best - ours).abs() < 0.051, "{distribution:?}: {best}");
     }
@@ -144,10 +144,10 @@ fn the_correction_factor_is_the_best() {
 #[test]
 fn beckmann_lobes_of_normal_bumps_need_no_correction() {
     for ratio in [0.25, 0.5, 1.0, 2.0, 5.0, 20.0] {
-        let own = SquaredAlpha::isotropic(Alpha(0.1));
+        let base = SquaredAlpha::isotropic(Alpha(0.1));
         let covariance = Symmetric2::diagonal(0.01 * ratio * ratio, 0.01 * ratio * ratio);
         let moments = ShapedMoments::normal(Moments { mean: Offset::default(), covariance });
-        let corrected = Distribution::Normal.correct(&moments, own, Family::Beckmann).covariance;
+        let corrected = Distribution::Normal.correct(&moments, base, Family::Beckmann).covariance;
         let c = corrected.uu / covariance.uu;
         assert!((c - 1.0).abs() < 0.03, "{ratio}: {c}");
     }

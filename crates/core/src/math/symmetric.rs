@@ -68,7 +68,7 @@ impl Symmetric2 {
     /// Returns the determinant, clamped to 0, so that rounding cannot make that of a rank-1 matrix negative.
     #[inline(always)]
     pub fn determinant(self) -> f32 {
-        (self.uu * self.vv - self.uv * self.uv).max(0.0)
+        determinant([self.uu, self.uv, self.vv]).max(0.0)
     }
 
     /// Returns the eigenvalues and the major axis. Uses no function except square roots, which IEEE 754 rounds alike on
@@ -82,6 +82,12 @@ impl Symmetric2 {
         let [major, minor] = circle.eigenvalues();
         Eigen { major, minor: minor.max(0.0), axis }
     }
+}
+
+/// Returns the determinant of the matrix with elements uu, uv and vv, which rounding can make negative.
+#[inline(always)]
+pub(crate) fn determinant<F: Copy + Mul<Output = F> + Sub<Output = F>>([uu, uv, vv]: [F; 3]) -> F {
+    uu * vv - uv * uv
 }
 
 /// Mohr's circle of the matrix `[[uu, uv], [uv, vv]]`: eigenvalues and axes of numbers and of vectors of numbers.

@@ -1,11 +1,13 @@
 //! Three-dimensional vectors: half-vectors and normals in (T, B, N).
 
+use std::ops::{Add, Mul, Sub};
+
 /// A vector in (T, B, N).
 pub type Vector = [f64; 3];
 
 /// Returns the dot product of two vectors.
-#[inline]
-pub fn dot(a: Vector, b: Vector) -> f64 {
+#[inline(always)]
+pub fn dot<F: Copy + Add<Output = F> + Mul<Output = F>>(a: [F; 3], b: [F; 3]) -> F {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
@@ -29,6 +31,7 @@ pub fn frame(n: Vector) -> [Vector; 3] {
 }
 
 /// Returns the right-handed cross product.
-pub fn cross(a: Vector, b: Vector) -> Vector {
+#[inline(always)]
+pub fn cross<F: Copy + Mul<Output = F> + Sub<Output = F>>(a: [F; 3], b: [F; 3]) -> [F; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }

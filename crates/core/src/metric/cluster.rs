@@ -9,9 +9,9 @@ use crate::metric::footprint::{Footprint, Part, add_products, slope};
 /// Coordinates of a part in the space in which parts are clustered.
 const DIMENSIONS: usize = 5;
 
-/// A part as a point to be clustered. Its coordinates are the slopes in widths of the mean lobe, the logarithm of its
-/// own lobe's width, and the elongation of its own lobe. A step of 1 counts alike in each coordinate. The struct is
-/// small because splitting moves it many times.
+/// A part as a point to be clustered. Its coordinates are the slopes in widths of the mean lobe, the logarithm of the
+/// width of the part's lobe, and the elongation of the part's lobe. A step of 1 counts alike in each coordinate. The
+/// struct is small because splitting moves it many times.
 struct ClusterPoint {
     position: [f32; DIMENSIONS],
     weight: f32,

@@ -8,7 +8,7 @@ use std::f64::consts::{PI, TAU};
 
 pub use crate::lobe::Family;
 
-use crate::math::symmetric::MohrCircle;
+use crate::math::symmetric::{self, MohrCircle};
 use crate::math::vector::{Vector, combine, dot, frame, normalised};
 
 /// A lobe about a normal, prepared for evaluation.
@@ -34,7 +34,7 @@ impl Lobe {
     pub fn new(family: Family, normal: Vector, a: [f64; 3]) -> Self {
         let normal = normalised(normal);
         let [uu, uv, vv] = with_min_alpha(a);
-        let determinant = uu * vv - uv * uv;
+        let determinant = symmetric::determinant([uu, uv, vv]);
         let inverse = [vv / determinant, -uv / determinant, uu / determinant];
         let [t, b, n] = frame(normal);
         let element = |i: usize, j: usize| {

@@ -1,6 +1,6 @@
 //! The best single lobe that an engine can show, found by numerical search.
 
-use crate::math::symmetric::MohrCircle;
+use crate::math::symmetric::{self, MohrCircle};
 use crate::metric::density::Lobe;
 use crate::metric::reference::Reference;
 
@@ -58,7 +58,7 @@ fn likeliest(reference: &Reference) -> Parameters {
     let count = slopes.len().max(1) as f64;
     let (mut mean, mut a) = ([0.0; 2], [1.0_f64, 0.0, 1.0]);
     for _ in 0..30 {
-        let determinant = (a[0] * a[2] - a[1] * a[1]).max(1e-12);
+        let determinant = symmetric::determinant(a).max(1e-12);
         let (mut total, mut sum, mut products) = (0.0, [0.0; 2], [0.0; 3]);
         for [u, v] in &slopes {
             let (x, y) = (u - mean[0], v - mean[1]);

@@ -10,7 +10,7 @@ use crate::metric::footprint::{Footprint, slope};
 /// standard deviations apart have such a valley.
 const VALLEY: f64 = 0.8;
 
-/// Tells whether the density of half-vectors has a valley between two groups of slopes, split along their main axis.
+/// Returns whether the density of half-vectors has a valley between two groups of slopes, split along their main axis.
 /// Groups that the base lobe blurs into one peak count as one.
 pub fn is_two_peaked(family: Family, footprint: &Footprint) -> bool {
     let m = footprint.moments();

@@ -4,7 +4,7 @@
 use half::f16;
 
 use crate::lobe::Family;
-use crate::math::symmetric::MohrCircle;
+use crate::math::symmetric::{self, MohrCircle};
 use crate::metric::density::Lobe;
 use crate::metric::footprint::FootprintMoments;
 
@@ -69,7 +69,7 @@ impl Peer {
         }
     }
 
-    /// Tells whether the peer makes isotropic lobes of isotropic base lobes.
+    /// Returns whether the peer makes isotropic lobes of isotropic base lobes.
     pub fn is_isotropic(self) -> bool {
         !matches!(self, Self::D | Self::LeanHalf | Self::LeanFloat)
     }
@@ -78,7 +78,7 @@ impl Peer {
     /// with the determinant of the mean base lobe.
     pub fn lobe(self, family: Family, m: &FootprintMoments) -> Lobe {
         let [uu, uv, vv] = m.base;
-        let a2 = (uu * vv - uv * uv).max(0.0).sqrt();
+        let a2 = symmetric::determinant(m.base).max(0.0).sqrt();
         let roughened = |[ku, kv, kw]: [f64; 3]| at_most_one([uu + 2.0 * ku, uv + 2.0 * kv, vv + 2.0 * kw]);
         match self {
             Self::D => Lobe::new(family, m.slope_normal(), roughened(m.covariance)),

@@ -70,7 +70,7 @@ fn total_variance_is_kept_on_large_sizes() {
 
 /// Computes the slow oracle: each texel of a level of the given size by an area integral over level 0, in f64.
 fn oracle(source: &Level<Moments>, width: u32, height: u32) -> Vec<([f64; 2], [f64; 3])> {
-    // The area of a coarse texel is that of its finer texels, so areas follow the chain of polyphase boxes.
+    // The area of a coarse texel is that of its finer texels, so areas follow the polyphase boxes from level to level.
     let share = |fine: u32, coarse: u32| -> Vec<Vec<f64>> {
         let mut table: Vec<Vec<f64>> =
             (0..fine).map(|i| (0..fine).map(|j| f64::from(u8::from(i == j))).collect()).collect();
@@ -153,7 +153,7 @@ fn covariances_are_positive_semidefinite() {
 #[test]
 fn pyramids_rotate_and_mirror_with_their_map() {
     let source = level(12, 12, 5);
-    let turned = Level {
+    let rotated = Level {
         texels: (0..144)
             .map(|i| {
                 let t = source.texels[(i % 12) * 12 + 11 - i / 12];
@@ -162,7 +162,7 @@ fn pyramids_rotate_and_mirror_with_their_map() {
             .collect(),
         ..source.clone()
     };
-    for (a, b) in build(&source).iter().zip(build(&turned)) {
+    for (a, b) in build(&source).iter().zip(build(&rotated)) {
         let n = a.width as usize;
         for i in 0..n * n {
             let (a, b) = (a.texels[(i % n) * n + n - 1 - i / n], b.texels[i]);

@@ -147,7 +147,7 @@ impl DiskCache {
     }
 }
 
-/// Tells whether the file's name is a digest and its folder's name is the beginning of this digest.
+/// Returns whether the file's name is a digest and its folder's name is the beginning of this digest.
 fn is_cache_file(path: &Path) -> bool {
     let name = |path: &Path| path.file_name().and_then(|name| name.to_str()).map(str::to_owned);
     let (Some(file), Some(folder)) = (name(path), path.parent().and_then(name)) else { return false };

@@ -90,7 +90,7 @@ pub enum CacheError {
 }
 
 impl CacheError {
-    /// Tells whether the error is about the cache as a whole rather than about the outputs of one job.
+    /// Returns whether the error is about the cache as a whole rather than about the outputs of one job.
     pub fn is_general(&self) -> bool {
         matches!(self, Self::Unreachable { .. } | Self::ReadOnly { .. })
     }

@@ -48,7 +48,7 @@ impl TryFrom<&Path> for RelativePath {
     }
 }
 
-/// Tells whether `name` is a valid file name on this system.
+/// Returns whether `name` is a valid file name on this system.
 fn is_name(name: &str) -> bool {
     // Windows splits names at `\`, reads `C:` as a drive and `a:b` as a stream, and drops dots and spaces at the end.
     let is_portable = !name.contains(['\\', ':']) && !name.ends_with(['.', ' ']);

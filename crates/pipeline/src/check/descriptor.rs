@@ -5,6 +5,7 @@ use ktx2::{ColorModel, TransferFunction};
 
 use super::findings::{Code, Findings};
 use crate::ktx2::Ktx2;
+use crate::text::name_of;
 
 const PLACE: &str = "data format descriptor";
 
@@ -35,7 +36,7 @@ pub fn check_descriptor(file: &Ktx2<'_>, findings: &mut Findings) {
         findings.add(Code::Descriptor, PLACE, format!("{what} for {}; bake again", file.format_name()));
     }
     if found.transfer_function != Some(TransferFunction::Linear) {
-        let found = name(found.transfer_function.as_ref());
+        let found = name_of(found.transfer_function.as_ref());
         let message = format!("expected Linear, found {found}: engines would decode the data as colours; bake again");
         findings.add(Code::Transfer, PLACE, message);
     }
@@ -51,7 +52,7 @@ fn is_plane(found: u8, expected: u8, supercompressed: bool) -> bool {
 
 fn mismatch(expected: &Basic, found: &Basic, supercompressed: bool) -> Option<String> {
     if found.color_model != expected.color_model {
-        let (expected, found) = (name(expected.color_model.as_ref()), name(found.color_model.as_ref()));
+        let (expected, found) = (name_of(expected.color_model.as_ref()), name_of(found.color_model.as_ref()));
         return Some(format!("expected colour model {expected}, found {found}"));
     }
     if found.texel_block_dimensions != expected.texel_block_dimensions {
@@ -76,7 +77,7 @@ fn basis_mismatch(found: &Basic, supercompressed: bool) -> Option<String> {
     let (bits, plane) = match found.color_model {
         Some(ColorModel::UASTC) => (128, 16),
         Some(ColorModel::ETC1S) => (64, 0),
-        model => return Some(format!("expected a Basis Universal colour model, found {}", name(model.as_ref()))),
+        model => return Some(format!("expected a Basis Universal colour model, found {}", name_of(model.as_ref()))),
     };
     if found.texel_block_dimensions.map(|size| size.get()) != [4, 4, 1, 1] {
         return Some(format!("expected texel blocks of [4, 4, 1, 1], found {:?}", found.texel_block_dimensions));
@@ -88,8 +89,4 @@ fn basis_mismatch(found: &Basic, supercompressed: bool) -> Option<String> {
     let count = if bits == 128 { 1..=1 } else { 1..=2 };
     let fits = count.contains(&samples.len()) && samples.iter().all(|s| s.bit_length.get() == bits);
     (!fits).then(|| format!("expected samples of {bits} bits, found {} samples of other sizes", samples.len()))
-}
-
-fn name<T: std::fmt::Debug>(value: Option<&T>) -> String {
-    value.map_or_else(|| "unspecified".to_owned(), |v| format!("{v:?}"))
 }

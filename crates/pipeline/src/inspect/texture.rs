@@ -5,6 +5,7 @@ use ktx2::dfd::{Basic, ChannelTypeQualifiers, DataFormatFlags};
 use serde::Serialize;
 
 use crate::ktx2::{Ktx2, PROVENANCE_KEY, Provenance, ReadError, provenance};
+use crate::text::name_of;
 
 /// A KTX2 file.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -143,18 +144,14 @@ fn descriptor(basic: &Basic) -> DescriptorFacts {
         float: sample.channel_type_qualifiers.contains(ChannelTypeQualifiers::FLOAT),
     });
     DescriptorFacts {
-        model: name(basic.color_model.as_ref()),
-        primaries: name(basic.color_primaries.as_ref()),
-        transfer: name(basic.transfer_function.as_ref()),
+        model: name_of(basic.color_model.as_ref()),
+        primaries: name_of(basic.color_primaries.as_ref()),
+        transfer: name_of(basic.transfer_function.as_ref()),
         alpha_premultiplied: basic.flags.contains(DataFormatFlags::ALPHA_PREMULTIPLIED),
         block: [width.get(), height.get()],
         block_bytes: basic.bytes_planes[0],
         samples: samples.collect(),
     }
-}
-
-fn name<T: std::fmt::Debug>(value: Option<&T>) -> String {
-    value.map_or_else(|| "unspecified".to_owned(), |v| format!("{v:?}"))
 }
 
 /// Length limit of a printed value, in characters.

@@ -16,7 +16,7 @@ mod write;
 pub use case::case_folded;
 pub use error::PublishError;
 pub use guard::Guard;
-pub use path::OutputPath;
+pub use path::{OutputPath, folder_of};
 pub use real::real;
 pub use reserve::{Outputs, Reserved};
 pub use sweep::is_abandoned;

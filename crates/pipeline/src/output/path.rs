@@ -8,6 +8,11 @@ use super::real::real;
 use super::write::{Staged, publish, write_new, write_unsynced};
 use crate::digest::Digest;
 
+/// Returns the folder of `path`, which is empty for a name without a folder.
+pub fn folder_of(path: &Path) -> &Path {
+    path.parent().unwrap_or(Path::new(""))
+}
+
 /// A path that may be written. [`super::Guard`] makes one after it has checked the path.
 #[derive(Debug)]
 pub struct OutputPath {
@@ -26,7 +31,7 @@ impl OutputPath {
     /// # Errors
     /// The system's, and an error for a link below `root` that leads out of `root`.
     pub fn below(root: &Path, path: &Path) -> io::Result<Self> {
-        let folder = path.parent().unwrap_or(Path::new(""));
+        let folder = folder_of(path);
         let leads_to = real(folder)?;
         if leads_to.starts_with(real(root)?) {
             return Ok(Self::new(path));

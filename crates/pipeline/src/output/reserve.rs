@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::error::PublishError;
 use super::guard::Guard;
-use super::path::OutputPath;
+use super::path::{OutputPath, folder_of};
 use super::write::{Staged, publish};
 use crate::input_file::check_file;
 
@@ -96,8 +96,4 @@ impl Guard {
 fn missing(path: &Path) -> impl Iterator<Item = PathBuf> {
     let folders = path.ancestors().skip(1).take_while(|folder| !folder.as_os_str().is_empty() && !folder.exists());
     folders.map(Path::to_owned)
-}
-
-fn folder_of(path: &Path) -> &Path {
-    path.parent().unwrap_or(Path::new(""))
 }

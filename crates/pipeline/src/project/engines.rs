@@ -10,7 +10,7 @@ use crate::settings::{Form, Model, Profile};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum Engine {
-    /// three.js: it reflects the surroundings wrongly in ellipses.
+    /// three.js: its anisotropic lobes reflect the surroundings wrongly.
     Three,
     /// Babylon.js.
     Babylon,
@@ -18,7 +18,7 @@ pub enum Engine {
     Playcanvas,
     /// Filament: its glTF loader has no anisotropy.
     Filament,
-    /// Bevy: refuses files that need KHR_texture_basisu, and its ellipses are too narrow.
+    /// Bevy: refuses files that need KHR_texture_basisu, and its anisotropic lobes are too narrow.
     Bevy,
     /// Godot: its glTF import has no anisotropy.
     Godot,
@@ -51,14 +51,14 @@ impl Engine {
     /// Returns the preset of the engine.
     pub fn preset(self) -> &'static Preset {
         match self {
-            // Its shader reflects the surroundings wrongly where lobes are ellipses.
+            // Its shader reflects the surroundings wrongly where lobes are anisotropic.
             Self::Three => const { &row("three", Target::Basis, Form::Fallback, Some(Model::Isotropic)) },
             Self::Babylon => const { &row("babylon", Target::Basis, Form::Fallback, None) },
             Self::Playcanvas => const { &row("playcanvas", Target::Basis, Form::Fallback, None) },
             // Its glTF loader has no anisotropy.
             Self::Filament => const { &row("filament", Target::Basis, Form::Fallback, Some(Model::Isotropic)) },
-            // Its loader refuses files that need KHR_texture_basisu, and its shader squares the alphas of ellipses once
-            // more.
+            // Its loader refuses files that need KHR_texture_basisu, and its shader squares the alphas of anisotropic
+            // lobes once more.
             Self::Bevy => const { &row("bevy", Target::Basis, Form::Dual, Some(Model::Isotropic)) },
             // Its glTF import has no anisotropy.
             Self::Godot => const { &row("godot", Target::Basis, Form::Fallback, Some(Model::Isotropic)) },

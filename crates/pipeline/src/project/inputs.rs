@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use walkdir::WalkDir;
 
 use crate::bake::output_stem;
-use crate::output::case_folded;
+use crate::output::{case_folded, folder_of};
 
 /// An asset to bake.
 #[derive(Clone, Debug, PartialEq)]
@@ -226,10 +226,6 @@ fn input(path: &Path, folder: PathBuf) -> Result<Input, InputError> {
     let stem = path.file_stem().and_then(|s| s.to_str());
     let stem = stem.ok_or_else(|| InputError::NotUtf8 { path: path.to_owned() })?;
     Ok(Input { path: path.to_owned(), folder, stem: output_stem(stem) })
-}
-
-fn folder_of(path: &Path) -> &Path {
-    path.parent().unwrap_or(Path::new(""))
 }
 
 fn is_asset(path: &Path) -> bool {

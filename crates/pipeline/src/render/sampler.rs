@@ -39,17 +39,17 @@ pub struct Texture {
 }
 
 impl Texture {
-    /// Makes a texture from level 0 and the `coarser` levels, each of at least one texel.
-    pub fn new(first: Level<Texel>, coarser: Vec<Level<Texel>>) -> Self {
-        let mut levels = vec![first];
-        levels.extend(coarser);
+    /// Makes a texture from level 0 and the levels of the `mip_tail`, each of at least one texel.
+    pub fn new(level_0: Level<Texel>, mip_tail: Vec<Level<Texel>>) -> Self {
+        let mut levels = vec![level_0];
+        levels.extend(mip_tail);
         Self { levels }
     }
 
-    /// Makes a texture with box-filtered coarser levels, as engines do for images without levels.
-    pub fn with_mips(level: Level<Texel>) -> Self {
-        let coarser = build(&level);
-        Self::new(level, coarser)
+    /// Makes a texture with a box-filtered mip tail, as engines do for images without mips.
+    pub fn with_mips(level_0: Level<Texel>) -> Self {
+        let mip_tail = build(&level_0);
+        Self::new(level_0, mip_tail)
     }
 
     /// Returns the number of levels.
@@ -60,8 +60,8 @@ impl Texture {
     /// Returns the texel of level 0 at `uv`.
     pub fn nearest(&self, uv: [f64; 2]) -> [f64; 4] {
         let level = &self.levels[0];
-        let place = [uv[0] * f64::from(level.width), uv[1] * f64::from(level.height)];
-        texel(level, place[0].floor(), place[1].floor()).map(f64::from)
+        let point = [uv[0] * f64::from(level.width), uv[1] * f64::from(level.height)];
+        texel(level, point[0].floor(), point[1].floor()).map(f64::from)
     }
 
     /// Returns columns and rows of `level`. Levels beyond the last have the size of the last.
@@ -74,8 +74,8 @@ impl Texture {
     pub fn nearest_of_size(&self, (width, height): (u32, u32), uv: [f64; 2]) -> [f64; 4] {
         let fits = |l: &&Level<Texel>| l.width <= width && l.height <= height;
         let level = self.levels.iter().find(fits).unwrap_or(&self.levels[self.levels.len() - 1]);
-        let place = [uv[0] * f64::from(level.width), uv[1] * f64::from(level.height)];
-        texel(level, place[0].floor(), place[1].floor()).map(f64::from)
+        let point = [uv[0] * f64::from(level.width), uv[1] * f64::from(level.height)];
+        texel(level, point[0].floor(), point[1].floor()).map(f64::from)
     }
 
     /// Returns the mean over `footprint` about `uv`.
@@ -84,8 +84,8 @@ impl Texture {
         let mut sum = [0.0; 4];
         for tap in 0..count {
             let t = f64::from(tap + 1) / f64::from(count + 1) - 0.5;
-            let place = [uv[0] + t * step[0], uv[1] + t * step[1]];
-            for (sum, value) in sum.iter_mut().zip(self.trilinear(place, level)) {
+            let point = [uv[0] + t * step[0], uv[1] + t * step[1]];
+            for (sum, value) in sum.iter_mut().zip(self.trilinear(point, level)) {
                 *sum += value / f64::from(count);
             }
         }

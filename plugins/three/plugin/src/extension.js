@@ -20,7 +20,8 @@ export function readExtension(definition) {
     throw new TypeError(`${EXTENSION}: expected an object, found ${JSON.stringify(definition)}`);
   }
   if (definition.formatVersion !== FORMAT_VERSION) {
-    throw wrong('formatVersion', `${FORMAT_VERSION} (other versions need another version of the plugin)`, definition.formatVersion);
+    const expected = `${FORMAT_VERSION} (other versions need another version of the plugin)`;
+    throw wrong('formatVersion', expected, definition.formatVersion);
   }
   const frame = oneOf(definition, 'frame', FRAMES);
   const correctionFactor = definition.correctionFactor;

@@ -33,7 +33,7 @@ fn one_period_of_a_wave_has_no_seam_when_repeated() {
 }
 
 #[test]
-fn a_mirrored_ramp_halves_its_slope_at_the_fold() {
+fn a_mirrored_ramp_halves_its_slope_at_the_mirror() {
     let offsets = slopes(&[0.0, 1.0, 2.0, 3.0], 4, Wrap::Mirror);
     assert_eq!(offsets.iter().map(|o| o.u).collect::<Vec<_>>(), [0.5, 1.0, 1.0, 0.5]);
 }
@@ -46,10 +46,10 @@ fn heights_rising_towards_row_0_have_a_positive_slope_along_b() {
     }
 }
 
-/// Waves of a relief of a 4096th, in 8 and 16 bits, and in floats on top of a mountain: what their slopes differ by
-/// from the exact ones. Eight bits hold none of it.
+/// Measures the error of the slopes of waves with a depth of 1/4096: in 8 and 16 bits, and in floats on top of a
+/// mountain. Eight bits hold nothing of the waves.
 #[test]
-fn tiny_relief_survives_in_sixteen_bits_and_noise_tells_how_well() {
+fn tiny_depths_survive_in_sixteen_bits_with_the_predicted_noise() {
     let n = 128u32;
     let wave = |x: u32, base: f64| base + f64::sin(0.37 * f64::from(x)) / 8192.0;
     let exact = |x: u32| 0.5 * (wave(x + 1, 0.0) - wave(x.wrapping_sub(1), 0.0));

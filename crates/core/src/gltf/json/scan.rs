@@ -37,12 +37,12 @@ pub(super) fn entries(text: &str) -> Result<Option<Vec<Span>>, JsonError> {
     Ok(Some(spans))
 }
 
-/// Tells whether the value that `text` spells may be inside `depth` objects and arrays.
+/// Returns whether the value that `text` spells may be inside `depth` objects and arrays.
 pub(super) fn fits(text: &str, depth: usize) -> bool {
     depth <= MAX_DEPTH && Scanner { text, at: 0 }.value(depth, None).is_ok()
 }
 
-/// Tells whether `c` is one of JSON's four white space characters.
+/// Returns whether `c` is one of JSON's four white space characters.
 pub(super) fn is_blank(c: char) -> bool {
     matches!(c, ' ' | '\t' | '\n' | '\r')
 }

@@ -41,7 +41,7 @@ impl Style {
         })
     }
 
-    /// Tells whether the entries of a container have their own lines.
+    /// Returns whether the entries of a container have their own lines.
     pub fn wraps(&self, object: bool, scalars: bool) -> bool {
         self.newline.is_some() && (object || !scalars || self.wrap_scalars)
     }
@@ -106,7 +106,7 @@ impl Style {
     }
 }
 
-/// Tells whether `value` spells neither an object nor an array.
+/// Returns whether `value` spells neither an object nor an array.
 pub(super) fn is_scalar(value: &str) -> bool {
     !value.starts_with(['{', '['])
 }
@@ -126,7 +126,7 @@ pub(super) fn colon(head: &str) -> &str {
     head.rsplit_once('"').map_or(":", |(_, colon)| colon)
 }
 
-/// Tells whether the first array that begins with a scalar has this scalar on its own line.
+/// Returns whether the first array that begins with a scalar has this scalar on its own line.
 fn wraps_scalars(text: &str) -> bool {
     let mut rest = text;
     while let Some(at) = rest.find(['"', '[']) {

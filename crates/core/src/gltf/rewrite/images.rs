@@ -5,9 +5,9 @@ use std::collections::BTreeSet;
 use serde_json::{Value, json};
 
 use super::freed::{Freed, images_of};
-use super::texture::{NewImage, NewTexture, escaped};
+use super::texture::{NewImage, NewTexture};
 use crate::gltf::extensions::are_known;
-use crate::gltf::json::{Json, JsonError};
+use crate::gltf::json::{Json, JsonError, escaped};
 
 /// Indices of the images of a new texture.
 pub struct Placed {

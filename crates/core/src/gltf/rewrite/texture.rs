@@ -2,6 +2,7 @@
 
 use serde_json::Value;
 
+use crate::gltf::json::escaped;
 use crate::gltf::material::Mapping;
 
 /// An image to add to the document.
@@ -40,11 +41,6 @@ pub struct Slot {
     pub pointer: String,
     /// Texture coordinates of a new slot.
     pub mapping: Mapping,
-}
-
-/// Returns a member's name as a step of a JSON Pointer.
-pub(super) fn escaped(name: &str) -> String {
-    name.replace('~', "~0").replace('/', "~1")
 }
 
 /// Returns pointers of all objects that may be a `textureInfo`, with the texture that each names. Every object with an

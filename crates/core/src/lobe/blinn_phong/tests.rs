@@ -28,8 +28,8 @@ fn distance(k: Symmetric2, cos2_of: impl Fn(f32, [f32; 2]) -> f32) -> f64 {
     0.5 * p.iter().zip(&q).map(|(p, q)| (p / sum_p - q / sum_q).abs()).sum::<f64>()
 }
 
-/// The paper's erratum 3: the printed |d|^4/|Dd|^2 is right for circles only; at an axis ratio of 10 it is hardly
-/// better than lambda_1 alone. The ellipse's own radius is exact.
+/// The paper's erratum 3: the printed |d|^4/|Dd|^2 is right for isotropic lobes only. At an axis ratio of 10, the
+/// printed form is hardly better than lambda_1 alone. The radius of the ellipse itself is exact.
 #[test]
 fn erratum_3_the_printed_angle_is_wrong_unless_isotropic() {
     // D is triangular, so the printed form depends on the direction too.
@@ -39,19 +39,19 @@ fn erratum_3_the_printed_angle_is_wrong_unless_isotropic() {
     {
         let k = Symmetric2::from_axes(0.01 * ratio * ratio, 0.01, direction);
         let factor = Factor::of(k);
-        let own = distance(k, |cos2, d| elliptical_cos2(cos2, d, factor));
+        let elliptical = distance(k, |cos2, d| elliptical_cos2(cos2, d, factor));
         let printed = distance(k, |cos2, d| printed_cos2(cos2, d, factor));
-        let circle = distance(k, |cos2, _| isotropic_cos2(cos2, crate::lobe::factor::lambda_1(k)));
-        assert!(own < 1e-3, "{ratio}: {own}");
+        let isotropic = distance(k, |cos2, _| isotropic_cos2(cos2, crate::lobe::factor::lambda_1(k)));
+        assert!(elliptical < 1e-3, "{ratio}: {elliptical}");
         assert!(printed_range.contains(&printed), "{ratio} {direction:?}: {printed}");
         if ratio == 10.0 {
-            assert!((0.75..0.85).contains(&circle), "{circle}");
+            assert!((0.75..0.85).contains(&isotropic), "{isotropic}");
         }
     }
 }
 
 #[test]
-fn all_forms_agree_on_circles() {
+fn all_forms_agree_on_isotropic_lobes() {
     let factor = Factor { d1: 0.3, d2: 0.0, d3: 0.3 };
     let (cos2, d) = (0.84, [0.24, 0.32]);
     let expected = isotropic_cos2(cos2, 0.3);

@@ -17,8 +17,9 @@ use slopes::{Matrix, Slopes};
 use start::Start;
 
 use super::SquaredAlpha;
-use super::oriented::{LEAST_COSINE, OrientedLobe, dot, frame};
+use super::oriented::{LEAST_COSINE, OrientedLobe, frame};
 use crate::math::symmetric::Symmetric2;
+use crate::math::vector::dot;
 use crate::mip::{MAX_PARTS, Merge};
 use crate::simd::Real;
 

@@ -4,7 +4,8 @@ use std::sync::LazyLock;
 
 use super::part::Part;
 use super::slopes::{MIN_SQUARED_ALPHA, Matrix, Slopes};
-use crate::lobe::oriented::{LEAST_COSINE, dot, frame};
+use crate::lobe::oriented::{LEAST_COSINE, frame};
+use crate::math::vector::dot;
 use crate::mip::MAX_PARTS;
 use crate::simd::Real;
 
@@ -23,8 +24,8 @@ static FIRST: LazyLock<[[[f32; 2]; RADII.len()]; MAX_PARTS]> = LazyLock::new(|| 
     std::array::from_fn(|part| {
         std::array::from_fn(|ring| {
             // Rings are rotated against each other by half a spoke, and parts by the golden ratio.
-            let turn = (0.5 * ring as f64 + 0.381_966_011 * part as f64) / SPOKES as f64;
-            let (sin, cos) = libm::sincos(std::f64::consts::TAU * turn);
+            let rotation = (0.5 * ring as f64 + 0.381_966_011 * part as f64) / SPOKES as f64;
+            let (sin, cos) = libm::sincos(std::f64::consts::TAU * rotation);
             [(f64::from(RADII[ring]) * cos) as f32, (f64::from(RADII[ring]) * sin) as f32]
         })
     })
@@ -57,12 +58,12 @@ pub fn half_vectors<'r, F: Real>(
         }
         for (&[cos, sin], points) in first.iter().zip(points.as_chunks_mut::<SPOKES>().0) {
             let (cos, sin) = (zero.splat_like(cos), zero.splat_like(sin));
-            let (mut leg, mut turned) = ([zero; 3], [zero; 3]);
+            let (mut leg, mut rotated) = ([zero; 3], [zero; 3]);
             for i in 0..3 {
                 leg[i] = cos * along[i] + sin * across[i];
-                turned[i] = cos * across[i] - sin * along[i];
+                rotated[i] = cos * across[i] - sin * along[i];
             }
-            for (spoke, leg) in [leg, turned].into_iter().enumerate() {
+            for (spoke, leg) in [leg, rotated].into_iter().enumerate() {
                 let (ahead, behind) = ((up[2] + leg[2]).max(least_cosine), (up[2] - leg[2]).max(least_cosine));
                 // One division serves both half-vectors.
                 let share = one / (ahead * behind);

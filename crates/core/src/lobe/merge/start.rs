@@ -2,8 +2,9 @@
 
 use super::part::{Part, add};
 use super::slopes::{Matrix, Slopes};
-use crate::lobe::oriented::{LEAST_COSINE, dot};
+use crate::lobe::oriented::LEAST_COSINE;
 use crate::math::symmetric::MohrCircle;
+use crate::math::vector::dot;
 use crate::simd::Real;
 
 /// Ratio of the covariance of the normals to the squared alpha, below which the merged lobe is A + 2 K within 1 % of A,

@@ -37,8 +37,8 @@ fn equal_lobes_merge_to_themselves() {
     let part = lobe([0.5, 0.2], [0.09, 0.02, 0.04]);
     let about = frame(part.normal);
     let wide = Slopes { mean: [0.0; 2], a: Matrix { uu: 0.2, uv: 0.0, vv: 0.2 } };
-    let mut room = [[[0.0; 2]; POINTS]; 4];
-    let points = half_vectors(&mut room, &[Part::of(part.numbers()); 4], about);
+    let mut memory = [[[0.0; 2]; POINTS]; 4];
+    let points = half_vectors(&mut memory, &[Part::of(part.numbers()); 4], about);
     let slopes = by_points(points, wide, 3);
     assert_alike(OrientedLobe::of(tilted(about, slopes).numbers()), part, 0.01);
 }
@@ -63,8 +63,8 @@ fn the_steps_suffice() {
         let parts = [0, 1, 2, 3].map(|i| lobe([0, 1].map(|j| number(8 * seed + 2 * i + j)), [0.04, 0.01, 0.02]));
         let parts = parts.map(|part| Part::of(part.numbers()));
         let about = frame([0.0, 0.0, 1.0]);
-        let mut room = [[[0.0; 2]; POINTS]; 4];
-        let points = half_vectors(&mut room, &parts, about);
+        let mut memory = [[[0.0; 2]; POINTS]; 4];
+        let points = half_vectors(&mut memory, &parts, about);
         let start = Start::<_, 4>::of(&shares, &parts, about);
         let after = |steps| likeliest(&start, &shares, &parts, points, steps);
         let ours = after(WHOLE_STEPS);
@@ -130,7 +130,7 @@ fn one_steep_texel_hardly_moves_the_lobe() {
     assert!(offset.u.abs() < 0.1 && offset.v.abs() < 0.1, "{merged:?}");
 }
 
-/// Mirroring the parts mirrors the lobe; so does turning them by a right angle.
+/// Mirroring the parts mirrors the lobe; so does rotating them by a right angle.
 #[test]
 fn merging_is_symmetric() {
     let parts = rough_parts();
@@ -143,20 +143,20 @@ fn merging_is_symmetric() {
         },
         |l| {
             let Offset { u, v } = l.offset();
-            // The frames of a normal and of the turned one are not turned alike: go by slopes about N.
+            // A rotation of the normal does not rotate its frame alike, so the test rotates slopes about N.
             let [[t0, t1, _], [b0, b1, _], _] = frame(l.normal);
             let n = OrientedLobe::new(Offset { u: -v, v: u }, SquaredAlpha::default()).normal;
-            let [own_t, own_b, _] = frame(n);
-            let turned = |x: f32, y: f32| [-y, x];
-            let (t, b) = (turned(t0, t1), turned(b0, b1));
+            let [rotated_t, rotated_b, _] = frame(n);
+            let rotated = |x: f32, y: f32| [-y, x];
+            let (t, b) = (rotated(t0, t1), rotated(b0, b1));
             let along = |axis: [f32; 3], with: [f32; 2], z: f32| axis[0] * with[0] + axis[1] * with[1] + axis[2] * z;
             let (tz, bz) = (frame(l.normal)[0][2], frame(l.normal)[1][2]);
-            let j = [own_t, own_b].map(|axis| [along(axis, t, tz), along(axis, b, bz)]);
+            let j = [rotated_t, rotated_b].map(|axis| [along(axis, t, tz), along(axis, b, bz)]);
             let a = l.squared_alpha.0;
             let form =
                 |p: [f32; 2], q: [f32; 2]| p[0] * q[0] * a.uu + (p[0] * q[1] + p[1] * q[0]) * a.uv + p[1] * q[1] * a.vv;
-            let turned_a = Symmetric2::new(form(j[0], j[0]), form(j[0], j[1]), form(j[1], j[1]));
-            OrientedLobe { normal: n, squared_alpha: SquaredAlpha(turned_a) }
+            let rotated_a = Symmetric2::new(form(j[0], j[0]), form(j[0], j[1]), form(j[1], j[1]));
+            OrientedLobe { normal: n, squared_alpha: SquaredAlpha(rotated_a) }
         },
     ];
     for map in maps {

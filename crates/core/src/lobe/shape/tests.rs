@@ -36,16 +36,16 @@ fn a_normal_distribution_has_kurtosis_3_along_any_axis() {
     assert_eq!(shape.skewness, [0.0; 2]);
 }
 
-/// Turning the points turns the axes and changes nothing else.
+/// Rotating the points rotates the axes and changes nothing else.
 #[test]
-fn shape_turns_with_the_points() {
+fn shape_rotates_with_the_points() {
     let points = [[0.0, 0.1], [0.4, 0.2], [-0.3, 0.9], [1.5, -0.2], [0.1, 0.1]];
     let (cos, sin) = (0.6, 0.8);
     let straight = of_points(&points);
-    let turned = of_points(&points.map(|[x, y]| [x * cos - y * sin, x * sin + y * cos]));
+    let rotated = of_points(&points.map(|[x, y]| [x * cos - y * sin, x * sin + y * cos]));
     for k in 0..2 {
-        assert_near(straight.variance[k], turned.variance[k]);
-        assert_near(straight.kurtosis[k], turned.kurtosis[k]);
-        assert_near(straight.skewness[k].abs(), turned.skewness[k].abs());
+        assert_near(straight.variance[k], rotated.variance[k]);
+        assert_near(straight.kurtosis[k], rotated.kurtosis[k]);
+        assert_near(straight.skewness[k].abs(), rotated.skewness[k].abs());
     }
 }

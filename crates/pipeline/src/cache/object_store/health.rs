@@ -21,13 +21,13 @@ pub struct Health {
 }
 
 impl Health {
-    /// Tells whether the store may be read.
+    /// Returns whether the store may be read.
     pub fn is_available(&self) -> bool {
         let until = self.paused_until.lock().map_or(None, |until| *until);
         until.is_none_or(|until| until <= Instant::now())
     }
 
-    /// Tells whether the store may be written.
+    /// Returns whether the store may be written.
     pub fn is_writable(&self) -> bool {
         !self.is_read_only.load(Ordering::Relaxed) && self.is_available()
     }

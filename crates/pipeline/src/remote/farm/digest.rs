@@ -87,7 +87,7 @@ impl Blob {
         Self { digest, content: Content::File(path.to_owned()) }
     }
 
-    /// Tells whether the blob is a file, which other actions may need too. Other blobs are made for one action.
+    /// Returns whether the blob is a file, which other actions may need too. Other blobs are made for one action.
     pub fn is_file(&self) -> bool {
         matches!(self.content, Content::File(_))
     }

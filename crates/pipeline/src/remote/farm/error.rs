@@ -132,12 +132,12 @@ impl RemoteError {
         }
     }
 
-    /// Tells whether the server lost blobs that it had, which must then be sent again.
+    /// Returns whether the server lost blobs that it had, which must then be sent again.
     pub fn is_missing(&self) -> bool {
         matches!(self, Self::Status { code: Code::FailedPrecondition | Code::NotFound, .. })
     }
 
-    /// Tells whether the server cannot be reached.
+    /// Returns whether the server cannot be reached.
     pub fn is_unreachable(&self) -> bool {
         matches!(self, Self::Unreachable { .. })
     }

@@ -44,7 +44,7 @@ pub fn groups<'a>(jobs: &[(usize, &'a Job)]) -> Vec<Group<'a>> {
     groups
 }
 
-/// Tells whether the id ends in zero, as a hexadecimal number.
+/// Returns whether the id ends in zero, as a hexadecimal number.
 fn ends_a_group(job: &Job) -> bool {
     job.id.as_bytes().last().is_some_and(|byte| byte & 0xf == 0)
 }
