@@ -235,3 +235,6 @@ fn beside(output: &Path, content: Content) -> PathBuf {
     let stem = output_stem_of(output);
     output.with_file_name(format!("{stem}.{}.ktx2", content.name()))
 }
+
+#[cfg(test)]
+mod tests;

@@ -67,3 +67,6 @@ impl RecordedSettings {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;
