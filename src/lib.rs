@@ -128,24 +128,34 @@ pub use roughcast_pipeline::{
 };
 
 #[doc(inline)]
+pub use self::image::{Image, MapError, Samples};
+#[doc(inline)]
 pub use api::{
     BakedMap, BakedTexture, Error, bake_asset, bake_asset_with_progress, bake_map, read_height_map, read_normal_map,
     read_roughness_map,
 };
 #[doc(inline)]
-pub use bake::{BakedAsset, BaseRoughness, Files, NewFile};
+pub use bake::{BakeError, BakedAsset, BaseRoughness, Files, NewFile};
 #[doc(inline)]
-pub use bump::{Frame, NormalLayout};
-#[doc(inline)]
-pub use codec::Target;
+pub use bump::{Frame, FrameKind, HeightMap, NormalLayout, NormalMap};
 #[doc(inline)]
 pub use codec::uastc::Effort;
 #[doc(inline)]
-pub use gltf::document::Container;
+pub use codec::{EncodeError, Target};
+#[doc(inline)]
+pub use decode::DecodeError;
+#[doc(inline)]
+pub use digest::Digest;
+#[doc(inline)]
+pub use gltf::document::{Container, DocumentError};
+#[doc(inline)]
+pub use gltf::material::LayerKind;
 #[doc(inline)]
 pub use lobe::{Distribution, Family};
 #[doc(inline)]
 pub use material::{BumpMap, Range};
+#[doc(inline)]
+pub use memory::OutOfMemory;
 #[doc(inline)]
 pub use mip::Wrap;
 #[doc(inline)]
@@ -155,4 +165,4 @@ pub use report::{
     AssetReport as Report, Candidate, Choice, Content, LayerReport, Miss, Reason as MissReason, TextureReport,
 };
 #[doc(inline)]
-pub use settings::{Finest, Form, Model, Profile, Settings, SettingsError, View};
+pub use settings::{Finest, Form, Model, Profile, RecordedSettings, Settings, SettingsError, View};

@@ -19,7 +19,7 @@ use crate::output::{OutputPath, PublishError};
 use crate::project::{InputError, NamedServer, Selected, SelectionError};
 use crate::report::{AssetOutcome, RunReport, Status};
 use crate::run::{DepfileError, PlannedAsset, guard, plan_assets, split_depfile};
-use crate::settings::Settings;
+use crate::settings::{RecordedSettings, Settings};
 use crate::text::printable;
 
 /// Bake glTF assets: KTX2 textures with the lost roughness in their mips, and a glTF that refers to them.
@@ -219,7 +219,7 @@ fn report(order: Order, refused: Refused, worked: Worked) -> io::Result<String> 
         AssetOutcome::failed(name, job.ok().map(|job| job.id), 0.0, error.to_string(), false)
     });
     let assets = errors.chain(refused).chain(worked.assets).collect();
-    let report = RunReport::new(order.settings.to_json(order.settings.model), assets, worked.remote);
+    let report = RunReport::new(RecordedSettings::new(&order.settings, order.settings.model), assets, worked.remote);
     Ok(serde_json::to_string_pretty(&report).map_err(io::Error::other)? + "\n")
 }
 

@@ -1,15 +1,16 @@
-//! What a bake can be asked for. [`Settings::to_json`] lists the settings that change the bytes of a texture.
+//! What a bake can be asked for. [`RecordedSettings`] lists the settings that change the bytes of a texture.
 
 mod error;
 pub mod limit;
+mod recorded;
 mod view;
 
 pub use error::SettingsError;
 pub use limit::Limit;
+pub use recorded::RecordedSettings;
 pub use view::{Finest, View};
 
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
 
 use crate::bump::Frame;
 use crate::codec::Target;
@@ -98,7 +99,8 @@ pub enum Form {
 
 /// Settings of a bake. Build them from [`Settings::default`] with the `with_` functions or by assigning to fields.
 ///
-/// A bake refuses values that [`Settings::validate`] refuses.
+/// A `with_` function checks a value that can be out of range. A field takes any value, and a bake refuses the values
+/// that [`Settings::validate`] refuses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Settings {
@@ -158,14 +160,14 @@ impl Default for Settings {
     }
 }
 
-/// Declares a function that sets one field and returns the settings.
+/// Declares a function that sets one field, every value of which is valid, and returns the settings.
 macro_rules! setters {
     ($($name:ident: $field:ident, $type:ty;)*) => {
         $(
             #[doc = concat!("Sets [`Settings::", stringify!($field), "`].")]
             #[must_use]
             pub fn $name(self, $field: $type) -> Self {
-                Self { $field: $field.into(), ..self }
+                Self { $field, ..self }
             }
         )*
     };
@@ -175,19 +177,58 @@ impl Settings {
     setters! {
         with_profile: profile, Profile;
         with_model: model, Model;
-        with_max_error: max_error, f32;
         with_distribution: distribution, Distribution;
         with_lobe: lobe, Family;
         with_target: target, Target;
         with_quality: quality, Effort;
-        with_rdo: rdo, f64;
         with_gltf: gltf, Form;
         with_glb: glb, bool;
-        with_frame: frame, Frame;
-        with_height_scale: height_scale, f32;
-        with_view: view, View;
         with_max_texels: max_texels, u64;
         with_provenance: provenance, bool;
+    }
+
+    /// Sets [`Settings::max_error`].
+    ///
+    /// # Errors
+    /// [`SettingsError::Range`] for a value that is out of range.
+    pub fn with_max_error(self, max_error: f32) -> Result<Self, SettingsError> {
+        limit::MAX_ERROR.check(f64::from(max_error))?;
+        Ok(Self { max_error, ..self })
+    }
+
+    /// Sets [`Settings::rdo`].
+    ///
+    /// # Errors
+    /// [`SettingsError::Range`] for a value that is out of range.
+    pub fn with_rdo(self, rdo: f64) -> Result<Self, SettingsError> {
+        Ok(Self { rdo: Some(limit::RDO.check(rdo)?), ..self })
+    }
+
+    /// Sets [`Settings::frame`].
+    ///
+    /// # Errors
+    /// [`SettingsError::Range`] for a main direction whose length is not 1.
+    pub fn with_frame(self, frame: Frame) -> Result<Self, SettingsError> {
+        check_frame(frame)?;
+        Ok(Self { frame, ..self })
+    }
+
+    /// Sets [`Settings::height_scale`].
+    ///
+    /// # Errors
+    /// [`SettingsError::Range`] for a value that is out of range.
+    pub fn with_height_scale(self, height_scale: f32) -> Result<Self, SettingsError> {
+        limit::HEIGHT_SCALE.check(f64::from(height_scale))?;
+        Ok(Self { height_scale: Some(height_scale), ..self })
+    }
+
+    /// Sets [`Settings::view`].
+    ///
+    /// # Errors
+    /// [`SettingsError::Range`] for the first value of `view` that is out of range.
+    pub fn with_view(self, view: View) -> Result<Self, SettingsError> {
+        view.validate()?;
+        Ok(Self { view: Some(view), ..self })
     }
 
     /// Checks every value and what the values mean together.
@@ -201,53 +242,20 @@ impl Settings {
         limit::MAX_ERROR.check(f64::from(self.max_error))?;
         self.rdo.map(|loss| limit::RDO.check(loss)).transpose()?;
         self.height_scale.map(|scale| limit::HEIGHT_SCALE.check(f64::from(scale))).transpose()?;
-        if let Frame::MainDirection(m) = self.frame {
-            let length = m.iter().map(|x| x * x).sum::<f32>().sqrt();
-            // Normalising in single precision leaves a length within 3e-7 of 1. NaN is no unit length.
-            let is_unit = (length - 1.0).abs() < 1e-5;
-            if !is_unit {
-                return Err(SettingsError::Range {
-                    name: "main-direction",
-                    expected: "a direction of length 1",
-                    found: format!("{m:?}"),
-                });
-            }
-        }
+        check_frame(self.frame)?;
         self.view.map_or(Ok(()), |view| view.validate())
     }
+}
 
-    /// Returns what decides on the bytes of a texture that models `model`, for its provenance. If the bake chose the
-    /// model, `asked` holds the model that was asked for.
-    pub fn to_json(&self, model: Model) -> Value {
-        let frame = match self.frame {
-            Frame::Natural => json!("natural"),
-            Frame::Unit => json!("unit"),
-            Frame::MainDirection(m) => json!({ "mainDirection": m.map(f64::from) }),
-        };
-        let mut settings = json!({
-            "profile": self.profile,
-            "model": model,
-            "maxError": f64::from(self.max_error),
-            "distribution": self.distribution,
-            "lobe": self.lobe,
-            "target": self.target,
-            "quality": match self.quality {
-                Effort::Fast => "fast",
-                Effort::Best => "best",
-            },
-            "gltf": self.gltf,
-            "frame": frame,
-            "heightScale": self.height_scale.map(f64::from),
-        });
-        if model != self.model {
-            settings["asked"] = json!(self.model);
-        }
-        if let Some(loss) = self.rdo {
-            settings["rdo"] = json!(loss);
-        }
-        if let Some(view) = self.view {
-            settings["view"] = json!(view);
-        }
-        settings
+/// Checks the length of a main direction.
+fn check_frame(frame: Frame) -> Result<(), SettingsError> {
+    let Frame::MainDirection(m) = frame else { return Ok(()) };
+    let length = m.iter().map(|x| x * x).sum::<f32>().sqrt();
+    // Normalising in single precision leaves a length within 3e-7 of 1. The comparison is false for NaN.
+    if (length - 1.0).abs() < 1e-5 {
+        Ok(())
+    } else {
+        let (name, expected) = ("main-direction", "a direction of length 1");
+        Err(SettingsError::Range { name, expected, found: format!("{m:?}") })
     }
 }

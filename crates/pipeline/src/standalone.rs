@@ -3,19 +3,21 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use serde_json::{Value, json};
+use serde::Serialize;
 
 use crate::api::{self, BumpTexels, encode_map, read_base_roughness, read_bump_map};
 use crate::bake::{BaseRoughness, EncodedTexture, output_stem_of};
+use crate::bump::NormalLayout;
 use crate::digest::digest;
 use crate::image::DecodeOptions;
 use crate::input_file::read_file;
 use crate::ktx2::{Key, Provenance, SourceDigest};
-use crate::material::notes;
+use crate::material::{Range, notes};
+use crate::mip::Wrap;
 use crate::note;
 use crate::output::{Guard, PublishError};
 use crate::report::{Content, MapReport};
-use crate::settings::{Model, Settings};
+use crate::settings::{Model, RecordedSettings, Settings};
 
 /// A standalone map, and where it is written.
 #[derive(Clone, Debug)]
@@ -150,9 +152,11 @@ impl MapOptions {
         if !self.settings.provenance {
             return Vec::new();
         }
-        let mut settings = self.settings.to_json(model);
-        settings["range"] = json!(texture.range);
-        settings["map"] = self.recorded();
+        let settings = MapSettings {
+            bake: RecordedSettings::new(&self.settings, model),
+            range: texture.range.as_ref().map(RecordedRange::new),
+            map: self.recorded(),
+        };
         Provenance {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             content: texture.content.name().to_owned(),
@@ -164,17 +168,58 @@ impl MapOptions {
     }
 
     /// Returns how the images are read, for the provenance.
-    fn recorded(&self) -> Value {
-        let mut recorded = match self.texels {
-            BumpTexels::Heights { scale, wrap } => json!({ "height": true, "heightScale": scale, "wrap": wrap }),
+    fn recorded(&self) -> RecordedMap<'_> {
+        let texels = match self.texels {
+            BumpTexels::Heights { scale, wrap } => {
+                RecordedTexels::Heights { height: true, height_scale: f64::from(scale), wrap }
+            }
             BumpTexels::Normals { layout, is_green_down } => {
-                json!({ "channels": format!("{layout:?}").to_lowercase(), "greenDown": is_green_down })
+                RecordedTexels::Normals { channels: layout, green_down: is_green_down }
             }
         };
-        recorded["layer"] = json!(self.layer);
-        recorded["roughnessFactor"] = json!(self.roughness_factor);
-        recorded
+        RecordedMap { texels, layer: self.layer.as_deref(), roughness_factor: self.roughness_factor.map(f64::from) }
     }
+}
+
+/// What the provenance of a standalone map's textures records as settings.
+#[derive(Serialize)]
+struct MapSettings<'a> {
+    #[serde(flatten)]
+    bake: RecordedSettings,
+    range: Option<RecordedRange>,
+    map: RecordedMap<'a>,
+}
+
+/// A [`Range`] with the digits of double precision, as all numbers of recorded settings are written.
+#[derive(Serialize)]
+struct RecordedRange {
+    min: Vec<f64>,
+    max: Vec<f64>,
+}
+
+impl RecordedRange {
+    fn new(range: &Range) -> Self {
+        let widened = |values: &[f32]| values.iter().copied().map(f64::from).collect();
+        Self { min: widened(&range.min), max: widened(&range.max) }
+    }
+}
+
+/// How the images of a standalone map are read.
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+struct RecordedMap<'a> {
+    #[serde(flatten)]
+    texels: RecordedTexels,
+    layer: Option<&'a str>,
+    roughness_factor: Option<f64>,
+}
+
+/// What the texels of the image are: [`BumpTexels`] under the names of the flags.
+#[derive(Serialize)]
+#[serde(untagged, rename_all_fields = "camelCase")]
+enum RecordedTexels {
+    Heights { height: bool, height_scale: f64, wrap: [Wrap; 2] },
+    Normals { channels: NormalLayout, green_down: bool },
 }
 
 /// Reads a file and adds its digest to `sources`.
@@ -190,3 +235,6 @@ fn beside(output: &Path, content: Content) -> PathBuf {
     let stem = output_stem_of(output);
     output.with_file_name(format!("{stem}.{}.ktx2", content.name()))
 }
+
+#[cfg(test)]
+mod tests;

@@ -12,6 +12,16 @@ pub enum Effort {
     Best,
 }
 
+impl Effort {
+    /// Returns the name, which is that of the value in configuration files too.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Fast => "fast",
+            Self::Best => "best",
+        }
+    }
+}
+
 /// How errors are measured. The encoder minimises the sum of the errors over the texels of a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]

@@ -5,10 +5,11 @@ use std::fmt::Display;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
+use crate::bump::FrameKind;
 use crate::codec::Target;
 use crate::codec::uastc::Effort;
 use crate::lobe::Distribution;
-use crate::project::{Engine, FrameName, Values};
+use crate::project::{Engine, Values};
 use crate::settings::{Form, Limit, Model, Profile, Settings, limit};
 
 /// How textures are baked and encoded.
@@ -62,7 +63,7 @@ pub struct DocumentOptions {
     glb: Option<bool>,
     /// Frame of the offsets of the pyramid profile. [default: unit]
     #[arg(long, value_enum)]
-    frame: Option<FrameName>,
+    frame: Option<FrameKind>,
     /// Direction m of --frame main-direction, in the space of the mesh. [default: 0,1,0]
     #[arg(long, value_parser = direction, value_name = "X,Y,Z", allow_hyphen_values = true)]
     main_direction: Option<[f64; 3]>,
@@ -114,10 +115,11 @@ impl DocumentOptions {
 /// Returns the parser of `--quality`. The encoder's crate declares the enum and knows no command line.
 pub fn effort() -> impl TypedValueParser<Value = Effort> {
     let names = [
-        PossibleValue::new("fast").help("A few times the time of decoding the source images"),
-        PossibleValue::new("best").help("Lobes fitted to those three levels finer; all useful block modes tried"),
+        PossibleValue::new(Effort::Fast.name()).help("A few times the time of decoding the source images"),
+        PossibleValue::new(Effort::Best.name())
+            .help("Lobes fitted to those three levels finer; all useful block modes tried"),
     ];
-    let effort = |name: String| if name == "best" { Effort::Best } else { Effort::Fast };
+    let effort = |name: String| if name == Effort::Best.name() { Effort::Best } else { Effort::Fast };
     PossibleValuesParser::new(names).map(effort)
 }
 

@@ -4,9 +4,7 @@ use serde_json::Map;
 
 use crate::bump::Frame;
 use crate::gltf::material::{Layer, Mapping, TextureUse};
-use crate::gltf::roughness_pyramid::{
-    Anisotropy, FORMAT_VERSION, FrameName, RoughnessModel, RoughnessPyramid, TextureInfo,
-};
+use crate::gltf::roughness_pyramid::{Anisotropy, FORMAT_VERSION, RoughnessModel, RoughnessPyramid, TextureInfo};
 use crate::material::Range;
 
 pub use crate::gltf::roughness_pyramid::EXTENSION;
@@ -75,11 +73,6 @@ impl Extension {
             3 => RoughnessModel::CovarianceFactor,
             _ => RoughnessModel::StandardDeviation,
         };
-        let (frame, main_direction) = match frame {
-            Frame::Natural => (FrameName::Natural, None),
-            Frame::Unit => (FrameName::Unit, None),
-            Frame::MainDirection(m) => (FrameName::MainDirection, Some(m)),
-        };
         Self {
             format_version: FORMAT_VERSION,
             offset_texture: info(offset.texture),
@@ -90,8 +83,8 @@ impl Extension {
             roughness_min: roughness.as_ref().map(|r| r.range.min.clone()),
             roughness_max: roughness.map(|r| r.range.max),
             correction_factor,
-            frame,
-            main_direction,
+            frame: frame.kind(),
+            main_direction: frame.main_direction(),
             base_lobe,
             extensions: None,
             extras: None,

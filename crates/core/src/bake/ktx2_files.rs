@@ -10,7 +10,7 @@ use crate::codec::EncodeError;
 use crate::digest::Digest;
 use crate::gltf::texture::ImageLocation;
 use crate::ktx2::{Provenance, SourceDigest};
-use crate::settings::Settings;
+use crate::settings::{RecordedSettings, Settings};
 
 /// Makes the KTX2 files of `textures`, in parallel.
 ///
@@ -28,13 +28,13 @@ pub fn ktx2_files(
     textures.into_par_iter().map(with_file).collect()
 }
 
-fn provenance(texture: &GroupTexture, settings: &Settings) -> Provenance {
+fn provenance(texture: &GroupTexture, settings: &Settings) -> Provenance<RecordedSettings> {
     let source =
         |(location, blake3): &(Arc<ImageLocation>, Digest)| SourceDigest { uri: describe(location), blake3: *blake3 };
     Provenance {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         content: texture.texture.content.name().to_owned(),
-        settings: settings.to_json(texture.texture.model),
+        settings: RecordedSettings::new(settings, texture.texture.model),
         lobe_errors: texture.texture.lobe_errors.clone(),
         sources: texture.sources.iter().map(source).collect(),
     }

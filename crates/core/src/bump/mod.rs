@@ -15,7 +15,7 @@ pub use height_map::HeightMap;
 pub use normal_map::{NormalLayout, NormalMap};
 pub use shaped::{Shaped, ShapedMoments};
 
-pub use frame::{Frame, FrameTransform};
+pub use frame::{Frame, FrameKind, FrameTransform};
 pub use height::HeightOffsets;
 pub use moments::Moments;
 pub(crate) use normal::slopes;

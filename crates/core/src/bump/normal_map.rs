@@ -6,8 +6,9 @@ use crate::image::{Image, MapError, Samples, each};
 use crate::simd::dispatch;
 
 /// Which channels of an image hold the normal.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum NormalLayout {
     /// x and y if the image has two channels, or if its third channel is 0 in all texels (as BC5 and RG textures

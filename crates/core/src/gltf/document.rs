@@ -20,6 +20,7 @@ pub use kind::check_version;
 
 /// The two container formats of a glTF asset.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Container {
     /// JSON text, `.gltf`.
     Gltf,

@@ -7,6 +7,8 @@
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::{Map, Value};
 
+use crate::bump::FrameKind;
+
 /// Name of the extension.
 pub const EXTENSION: &str = "ROUGHCAST_materials_roughness_pyramid";
 
@@ -44,7 +46,8 @@ pub struct RoughnessPyramid<N = f64> {
     /// The correction factor c.
     pub correction_factor: N,
     /// The frame of the offsets.
-    pub frame: FrameName,
+    #[serde(with = "frame_name")]
+    pub frame: FrameKind,
     /// The direction m, in the space of the mesh.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub main_direction: Option<[N; 3]>,
@@ -142,16 +145,30 @@ impl RoughnessModel {
     }
 }
 
-/// `frame`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "camelCase")]
-pub enum FrameName {
-    /// Offsets in mesh units.
-    Natural,
-    /// glTF's tangent frame.
-    Unit,
-    /// A frame from a direction m.
-    MainDirection,
+/// Reads and writes a [`FrameKind`] under the name that the extension has for it.
+mod frame_name {
+    use serde::de::Error;
+    use serde::{Deserialize, Deserializer, Serializer};
+
+    use crate::bump::FrameKind;
+
+    const NAMES: [&str; 3] = ["natural", "unit", "mainDirection"];
+
+    pub fn serialize<S: Serializer>(kind: &FrameKind, serializer: S) -> Result<S::Ok, S::Error> {
+        let [natural, unit, main_direction] = NAMES;
+        serializer.serialize_str(match kind {
+            FrameKind::Natural => natural,
+            FrameKind::Unit => unit,
+            FrameKind::MainDirection => main_direction,
+        })
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<FrameKind, D::Error> {
+        let name = String::deserialize(deserializer)?;
+        let kinds = [FrameKind::Natural, FrameKind::Unit, FrameKind::MainDirection];
+        let kind = NAMES.into_iter().zip(kinds).find(|(known, _)| *known == name);
+        kind.map(|(_, kind)| kind).ok_or_else(|| D::Error::unknown_variant(&name, &NAMES))
+    }
 }
 
 impl RoughnessPyramid {
@@ -200,8 +217,8 @@ impl RoughnessPyramid {
             }
         }
         match (self.frame, self.main_direction) {
-            (FrameName::MainDirection, None) => Err("the frame mainDirection without a mainDirection".to_owned()),
-            (FrameName::Natural | FrameName::Unit, Some(_)) => Err("a mainDirection with another frame".to_owned()),
+            (FrameKind::MainDirection, None) => Err("the frame mainDirection without a mainDirection".to_owned()),
+            (FrameKind::Natural | FrameKind::Unit, Some(_)) => Err("a mainDirection with another frame".to_owned()),
             _ => Ok(()),
         }
     }

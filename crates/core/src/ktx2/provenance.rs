@@ -10,15 +10,16 @@ use crate::ktx2::write::Key;
 /// The key of the provenance. A texture with this key was baked.
 pub const PROVENANCE_KEY: &str = "roughcast";
 
-/// The value of the key.
+/// The value of the key. A bake writes typed settings. They are read as a [`Value`], since another version of the tool
+/// may have recorded other settings, which `check` compares and `inspect` prints.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Provenance {
+pub struct Provenance<S = Value> {
     /// Version of the tool.
     pub version: String,
     /// What the texels are: `normal`, `roughness`, `anisotropy`, `offset`, `factor` or `lambda1`.
     pub content: String,
     /// All settings that change the bytes.
-    pub settings: Value,
+    pub settings: S,
     /// Mean lobe error of the material for each level of its bump map, from the finest level that can be sampled. Empty
     /// if errors were not measured.
     #[serde(default, rename = "lobeErrors", skip_serializing_if = "Vec::is_empty")]
@@ -36,11 +37,11 @@ pub struct SourceDigest {
     pub blake3: Digest,
 }
 
-impl Provenance {
+impl<S: Serialize> Provenance<S> {
     /// Returns the keys to write: the writer's name, which KTX asks for, and the provenance.
     pub fn keys(&self) -> Vec<Key> {
         // JSON refuses maps whose keys are no strings, and values that refuse to be serialised; there are neither here.
-        let value = serde_json::to_string(self).expect("strings, numbers and JSON values");
+        let value = serde_json::to_string(self).expect("strings, numbers and settings");
         vec![
             Key { key: "KTXwriter".to_owned(), value: format!("roughcast {}", self.version) },
             Key { key: PROVENANCE_KEY.to_owned(), value },

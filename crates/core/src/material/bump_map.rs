@@ -7,6 +7,7 @@ use crate::mip::{TexelRows, Wrap};
 use crate::simd::map_row;
 
 /// A decoded normal or height map.
+#[non_exhaustive]
 pub enum BumpMap {
     /// Tangent-space normals.
     Normals(NormalMap),

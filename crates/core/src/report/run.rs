@@ -3,11 +3,11 @@
 use std::ops::Not;
 
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
 
 use super::AssetReport;
 use super::format::{FormatError, check_format};
 use crate::digest::Digest;
+use crate::settings::RecordedSettings;
 
 /// The format version of reports.
 pub const REPORT_FORMAT: u32 = 1;
@@ -21,7 +21,7 @@ pub struct RunReport {
     /// The version of the tool.
     pub version: &'static str,
     /// The settings of the run, as the provenance of textures has them.
-    pub settings: Value,
+    pub settings: RecordedSettings,
     /// What became of each input, in order.
     pub assets: Vec<AssetOutcome>,
     /// What a server did; absent without a server.
@@ -31,7 +31,7 @@ pub struct RunReport {
 
 impl RunReport {
     /// Returns a report of this version of the tool.
-    pub fn new(settings: Value, assets: Vec<AssetOutcome>, remote: Option<Counts>) -> Self {
+    pub fn new(settings: RecordedSettings, assets: Vec<AssetOutcome>, remote: Option<Counts>) -> Self {
         Self { format_version: REPORT_FORMAT, version: env!("CARGO_PKG_VERSION"), settings, assets, remote }
     }
 }
@@ -55,7 +55,7 @@ pub struct AssetOutcome {
     pub remote: Option<Origin>,
     /// The settings of the asset, where they differ from those of the run.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub settings: Option<Value>,
+    pub settings: Option<RecordedSettings>,
     /// Seconds from reading to writing.
     pub seconds: f64,
     /// Bytes written.

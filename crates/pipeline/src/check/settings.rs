@@ -1,9 +1,9 @@
 //! Comparison of recorded settings with the settings of a bake today.
 
-use serde_json::{Map, Value};
+use serde_json::{Map, Value, json};
 
 use super::findings::{Code, Findings};
-use crate::settings::Settings;
+use crate::settings::{RecordedSettings, Settings};
 
 /// Compares the `recorded` settings of a texture with `expected`, by their names in `roughcast.toml`.
 pub fn check_settings(recorded: &Value, expected: &Settings, place: &str, findings: &mut Findings) {
@@ -11,7 +11,9 @@ pub fn check_settings(recorded: &Value, expected: &Settings, place: &str, findin
     if recorded.get("map").is_some() {
         return;
     }
-    let (recorded, expected) = (named(recorded), named(&expected.to_json(expected.model)));
+    let expected = json!(RecordedSettings::new(expected, expected.model));
+    // Other versions may have recorded other settings, so both sides are compared by name.
+    let (recorded, expected) = (named(recorded), named(&expected));
     let names = expected.keys().chain(recorded.keys().filter(|name| !expected.contains_key(*name)));
     let text = |settings: &Map<String, Value>, name: &str| match settings.get(name) {
         None | Some(Value::Null) => format!("{name} unset"),

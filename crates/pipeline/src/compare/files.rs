@@ -18,7 +18,7 @@ use crate::gltf::material::{Layer, LayerKind, MaterialError, materials};
 use crate::output::PublishError;
 use crate::readback::{Input, ReadBackError, file_name, read_back};
 use crate::render::{Material, SceneName};
-use crate::settings::{Form, Model, Settings};
+use crate::settings::{Form, Model, Settings, SettingsError};
 
 /// What is compared, and where the charts are written.
 #[derive(Clone, Debug)]
@@ -65,6 +65,9 @@ pub enum CompareError {
     /// A material is damaged.
     #[error(transparent)]
     Material(#[from] MaterialError),
+    /// A setting is out of its range.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
     /// The input cannot be baked.
     #[error(transparent)]
     Bake(#[from] BakeError),
@@ -141,7 +144,7 @@ fn compare_material(
     let settings = Settings::default()
         .with_gltf(Form::Strict)
         .with_target(Target::Basis)
-        .with_max_error(options.max_error)
+        .with_max_error(options.max_error)?
         .with_max_texels(options.max_texels)
         .with_provenance(false);
     let material = |baked: &BakedAsset| -> Result<(String, Material), ReadBackError> {
@@ -149,10 +152,9 @@ fn compare_material(
     };
     let plain = bake_asset(source, &settings.with_model(Model::None).with_target(Target::Float), &|_| {})?;
     let (name, truth) = material(&plain)?;
-    let models = [(Model::None, "none"), (Model::Isotropic, "isotropic"), (Model::Anisotropic, "anisotropic")];
-    let named = |(model, name): (Model, &str)| {
-        [(Effort::Fast, "fast"), (Effort::Best, "best")]
-            .map(|(effort, quality)| (model, effort, format!("ours, {name}, {quality}")))
+    let models = [Model::None, Model::Isotropic, Model::Anisotropic];
+    let named = |model: Model| {
+        [Effort::Fast, Effort::Best].map(|effort| (model, effort, format!("ours, {}, {}", model.name(), effort.name())))
     };
     let auto = (Model::Auto, options.quality, "ours, auto".to_owned());
     let mut ours = Vec::with_capacity(OURS);

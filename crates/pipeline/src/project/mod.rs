@@ -26,4 +26,4 @@ pub use remote::RemoteValues;
 pub use resolve::{ConfigSource, Resolved, resolve};
 pub use selection::{ConfigChoice, Selected, Selection, SelectionError};
 pub use trust::{NamedServer, is_harmless};
-pub use values::{FrameName, Values};
+pub use values::Values;

@@ -3,7 +3,7 @@
 use serde::ser::SerializeMap;
 use serde::{Deserialize, Serialize, Serializer};
 
-use crate::bump::Frame;
+use crate::bump::{Frame, FrameKind};
 use crate::codec::Target;
 use crate::codec::uastc::Effort;
 use crate::lobe::{Distribution, Family};
@@ -108,7 +108,7 @@ values! {
     engine: Engine,
     gltf: Form,
     glb: bool,
-    frame: FrameName,
+    frame: FrameKind,
     main_direction: [f64; 3],
     height_scale: f64,
     nearest: f64,
@@ -128,18 +128,6 @@ fn text(value: &impl Serialize) -> String {
     serde_json::to_string(value).unwrap_or_default()
 }
 
-/// A frame by its name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
-#[serde(rename_all = "kebab-case")]
-pub enum FrameName {
-    /// Offsets in mesh units per repeat: bumps keep their height when the map is scaled.
-    Natural,
-    /// Slopes in glTF's tangent frame.
-    Unit,
-    /// Slopes along e1 = m x n and e2 = n x e1: no tangents at run time.
-    MainDirection,
-}
-
 impl Values {
     /// Returns the defaults; settings without a default are unset.
     pub fn defaults() -> Self {
@@ -157,7 +145,7 @@ impl Values {
             provenance: Some(defaults.provenance),
             gltf: Some(defaults.gltf),
             glb: Some(defaults.glb),
-            frame: Some(FrameName::Unit),
+            frame: Some(defaults.frame.kind()),
             main_direction: Some([0.0, 1.0, 0.0]),
             fov: Some(View::DEFAULT_FOV),
             aspect: Some(View::DEFAULT_ASPECT),
@@ -202,10 +190,10 @@ impl Values {
 
     /// Returns the frame, whose direction is normalised.
     fn frame(&self) -> Result<Frame, SettingsError> {
-        match self.frame {
-            None | Some(FrameName::Unit) => Ok(Frame::Unit),
-            Some(FrameName::Natural) => Ok(Frame::Natural),
-            Some(FrameName::MainDirection) => {
+        match self.frame.unwrap_or_default() {
+            FrameKind::Unit => Ok(Frame::Unit),
+            FrameKind::Natural => Ok(Frame::Natural),
+            FrameKind::MainDirection => {
                 let m = self.main_direction.unwrap_or([0.0, 1.0, 0.0]).map(|x| x as f32);
                 let length = m.iter().map(|x| x * x).sum::<f32>().sqrt();
                 if length.is_finite() && length > 0.0 {

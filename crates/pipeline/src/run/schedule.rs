@@ -16,7 +16,7 @@ use crate::run::plan_assets::PlannedAsset;
 use crate::run::remote_outcome::{JobFailure, Wait};
 use crate::run::restore::Lookup;
 use crate::run::run_job::{Done, Prepared, finish, prepare};
-use crate::settings::Settings;
+use crate::settings::{RecordedSettings, Settings};
 
 /// Receives the progress of a run, from any thread.
 pub trait Progress: Sync {
@@ -135,7 +135,7 @@ impl Scheduler<'_> {
         match result {
             Ok((job, origin, settings, done)) => AssetOutcome {
                 job: Some(job.id),
-                settings: (settings != *self.settings).then(|| settings.to_json(settings.model)),
+                settings: (settings != *self.settings).then(|| RecordedSettings::new(&settings, settings.model)),
                 ..done.outcome(name.clone(), origin, seconds)
             },
             Err(JobFailure { message, is_transient }) => {

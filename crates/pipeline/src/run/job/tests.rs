@@ -6,10 +6,11 @@ use proptest::prelude::*;
 use proptest::sample::select;
 
 use super::*;
+use crate::bump::FrameKind;
 use crate::codec::Target;
 use crate::codec::uastc::Effort;
 use crate::lobe::{Distribution, Family};
-use crate::project::{Engine, FrameName};
+use crate::project::Engine;
 use crate::run::plan_file::Plan;
 use crate::settings::{Form, Model, Profile};
 
@@ -49,7 +50,7 @@ prop_compose! {
         engine in variants::<Engine>(),
         gltf in variants::<Form>(),
         is_glb in any::<Option<bool>>(),
-        frame in variants::<FrameName>(),
+        frame in variants::<FrameKind>(),
         main_direction in option::of([0.1..1.0, -1.0..1.0, -9.0..9.0]),
         height_scale in option::of(-10.0..10.0),
         view in option::of((0.1..1000.0, 1..5000_u32)),

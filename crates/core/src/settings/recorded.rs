@@ -1,0 +1,72 @@
+//! Settings as reports and the provenance of textures record them.
+
+use serde::Serialize;
+
+use super::{Form, Model, Profile, Settings, View};
+use crate::bump::Frame;
+use crate::codec::Target;
+use crate::codec::uastc::Effort;
+use crate::lobe::{Distribution, Family};
+
+/// The settings that change the bytes of a texture. They are written in the order of the fields.
+///
+/// Numbers of single precision are held in double precision, whose digits provenance and reports have.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "camelCase")]
+#[non_exhaustive]
+pub struct RecordedSettings {
+    /// [`Settings::profile`].
+    pub profile: Profile,
+    /// The model of the texture.
+    pub model: Model,
+    /// [`Settings::max_error`].
+    pub max_error: f64,
+    /// [`Settings::distribution`].
+    pub distribution: Distribution,
+    /// [`Settings::lobe`].
+    pub lobe: Family,
+    /// [`Settings::target`].
+    pub target: Target,
+    /// [`Settings::quality`].
+    pub quality: Effort,
+    /// [`Settings::gltf`].
+    pub gltf: Form,
+    /// [`Settings::frame`].
+    pub frame: Frame,
+    /// [`Settings::height_scale`], `null` if it is not set.
+    pub height_scale: Option<f64>,
+    /// [`Settings::model`], if the texture has another model; absent otherwise.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub asked: Option<Model>,
+    /// [`Settings::rdo`]; absent if it is not set.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rdo: Option<f64>,
+    /// [`Settings::view`]; absent if it is not set.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub view: Option<View>,
+}
+
+impl RecordedSettings {
+    /// Returns what is recorded of `settings` for a texture that models `model`. If the bake chose the model, `asked`
+    /// holds the model that was asked for.
+    pub fn new(settings: &Settings, model: Model) -> Self {
+        Self {
+            profile: settings.profile,
+            model,
+            max_error: f64::from(settings.max_error),
+            distribution: settings.distribution,
+            lobe: settings.lobe,
+            target: settings.target,
+            quality: settings.quality,
+            gltf: settings.gltf,
+            frame: settings.frame,
+            height_scale: settings.height_scale.map(f64::from),
+            asked: (model != settings.model).then_some(settings.model),
+            rdo: settings.rdo,
+            view: settings.view,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;
