@@ -61,7 +61,12 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
         }
     };
     for (path, _) in args.reports.iter().zip(&reports).filter(|(_, report)| plan.is_foreign(report)) {
-        writeln!(err, "warning: {}: expected a report of this plan, found none of its jobs there", path.display())?;
+        writeln!(
+            err,
+            "warning: {}: expected a report of this plan, found none of its jobs there; leave the report out, or name \
+             its plan",
+            path.display()
+        )?;
     }
     let merged = Merged::new(&plan, &reports, !args.no_outputs);
     // A permanent failure does not outweigh missing jobs here: exit code 1 means that all other jobs are done.

@@ -141,6 +141,7 @@ fn wrong_files_give_one_clear_error() {
     }
     done(folder, "bake assets/heights -o elsewhere -q --max-error 0.2 --report other.json");
     let foreign = run(folder, "plan merge plan.json 0.json 1.json 2.json other.json");
-    let warning = "warning: other.json: expected a report of this plan, found none of its jobs there\n";
+    let warning = "warning: other.json: expected a report of this plan, found none of its jobs there; \
+                   leave the report out, or name its plan\n";
     assert_eq!((foreign.code, foreign.err.as_str()), (0, warning));
 }

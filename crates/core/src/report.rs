@@ -146,15 +146,37 @@ impl Choice {
         };
         let why: Vec<String> = reasons.iter().map(why).collect();
         let (levels, verb) = if self.misses.len() == 1 { ("level", "misses") } else { ("levels", "miss") };
+        let is_avoidable = reasons.iter().any(|reason| reason.is_avoidable());
         let text = format!(
-            "{levels} {all} {verb} --max-error {} (worst {:.2}, at level {}; the best lobe has {:.2} there): {}",
+            "{levels} {all} {verb} --max-error {} (worst {:.2}, at level {}; the best lobe has {:.2} there): {}{}",
             settings.max_error,
             worst.error,
             worst.level,
             worst.oracle,
-            why.join("; ")
+            why.join("; "),
+            if is_avoidable { self.remedies(&reasons, settings, worst.level) } else { String::new() }
         );
-        Some(note::missed_bound(text, reasons.iter().any(|reason| reason.is_avoidable())))
+        Some(note::missed_bound(text, is_avoidable))
+    }
+
+    /// Returns what the user can do about `reasons`, as the end of a sentence. `level` has the largest error.
+    fn remedies(&self, reasons: &[Reason], settings: &Settings, level: usize) -> String {
+        let closer = if settings.model == Model::Auto { None } else { self.closer_model(level) };
+        let remedies: Vec<String> = reasons.iter().filter_map(|reason| reason.remedy(settings, closer)).collect();
+        if remedies.is_empty() {
+            "; a larger --max-error accepts them".to_owned()
+        } else {
+            format!("; to come closer, use {}", remedies.join(", and "))
+        }
+    }
+
+    /// Returns the model with the smallest error at `level`, if that is another model than the chosen one.
+    fn closer_model(&self, level: usize) -> Option<Model> {
+        let error = |c: &Candidate| level.checked_sub(self.finest).and_then(|i| c.errors.get(i)).copied();
+        let taken = self.taken()?;
+        let known = self.candidates.iter().filter_map(|c| Some((c.model, error(c)?)));
+        let (model, smallest) = known.min_by(|a, b| a.1.total_cmp(&b.1))?;
+        (model != taken.model && smallest < error(taken)?).then_some(model)
     }
 }
 
@@ -237,6 +259,8 @@ impl Content {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::codec::Target;
+    use crate::codec::uastc::Effort;
 
     #[test]
     fn missed_bounds_ask_for_action_where_a_setting_comes_closer() {
@@ -252,6 +276,31 @@ mod tests {
         }
         for reason in [Reason::AlphaAboveOne, Reason::TwoPeaked, Reason::Steep, Reason::NoSingleLobe] {
             assert!(!asks(reason), "{reason:?}");
+        }
+    }
+
+    #[test]
+    fn missed_bounds_name_each_remedy_once() {
+        let candidate = |model, error| Candidate { model, first: 0, bytes: 0, errors: vec![error; 3] };
+        let miss = |level, reason| Miss { level, error: 0.2, oracle: 0.1, reason };
+        let choice = Choice {
+            finest: 0,
+            candidates: vec![candidate(Model::Isotropic, 0.2), candidate(Model::Anisotropic, 0.15)],
+            chosen: 0,
+            misses: vec![miss(0, Reason::Encoding), miss(1, Reason::Encoding), miss(2, Reason::Fit)],
+        };
+        let settings = Settings::default();
+        for (settings, end) in [
+            (settings, "; to come closer, use --target float, and --quality best"),
+            (
+                settings.with_model(Model::Isotropic),
+                "; to come closer, use --target float, and --model anisotropic if the engine shows it correctly",
+            ),
+            (settings.with_target(Target::Float), "; to come closer, use --quality best"),
+            (settings.with_target(Target::Float).with_quality(Effort::Best), "(2); a larger --max-error accepts them"),
+        ] {
+            let text = choice.note(&settings).expect("a note").text;
+            assert!(text.ends_with(end), "{text}");
         }
     }
 }

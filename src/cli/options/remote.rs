@@ -87,13 +87,13 @@ impl fmt::Debug for Secret {
 #[derive(Debug, thiserror::Error)]
 pub enum RemoteOptionError {
     /// A line that is no header. The line may be a secret.
-    #[error("{origin}: expected NAME=VALUE, found a line without a name (not shown, it may be a secret)")]
+    #[error("{origin}: expected NAME=VALUE, found a line without a name (not shown, it may be a secret); correct it")]
     Header {
         /// The file, variable or flag of the line.
         origin: String,
     },
     /// A file that cannot be read.
-    #[error("--remote-header-file: expected a readable file at {}, found: {error}", path.display())]
+    #[error("--remote-header-file: expected a readable file at {}, found: {error}; check the path", path.display())]
     Read {
         /// The file.
         path: PathBuf,

@@ -53,7 +53,10 @@ pub enum DecodeError {
         limit: u64,
     },
     /// The EXR file has no such layer or channel.
-    #[error("there is no layer or channel \"{asked}\": the file has {}", listed(available.iter().map(String::as_str)))]
+    #[error(
+        "there is no layer or channel \"{asked}\": the file has {}; name one of them",
+        listed(available.iter().map(String::as_str))
+    )]
     MissingLayer {
         /// The layer that was asked for.
         asked: String,

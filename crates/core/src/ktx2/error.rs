@@ -66,7 +66,9 @@ pub enum ReadError {
     #[error(transparent)]
     OutOfMemory(#[from] OutOfMemory),
     /// The file has no level of this index.
-    #[error("expected a level below {count} of the KTX2 file, found level {asked} requested")]
+    #[error(
+        "expected a level below {count} of the KTX2 file, found level {asked} requested; request one of its levels"
+    )]
     NoLevel {
         /// Index of the level.
         asked: u32,

@@ -2,6 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::codec::Target;
+use crate::codec::uastc::Effort;
+use crate::settings::{Model, Settings};
+
 /// What was measured at a level that exceeds the error bound. Errors are means over the sampled texels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Evidence {
@@ -65,12 +69,28 @@ impl Evidence {
 }
 
 impl Reason {
-    /// Returns whether another setting may come closer to the bound. For the other reasons the best lobe exceeds the
-    /// bound, too, or no engine can show that lobe.
+    /// Returns whether another setting or another layer may come closer to the bound. For the other reasons the best
+    /// lobe exceeds the bound, too, or no engine can show that lobe.
     pub fn is_avoidable(self) -> bool {
         match self {
             Self::Encoding | Self::Isotropic | Self::Fit => true,
             Self::AlphaAboveOne | Self::TwoPeaked | Self::Steep | Self::NoSingleLobe => false,
+        }
+    }
+
+    /// Returns what comes closer to the bound, as the object of "use"; `None` if nothing is left to try. `closer` is a
+    /// model that the layer can have and that is closer than the requested model.
+    pub(super) fn remedy(self, settings: &Settings, closer: Option<Model>) -> Option<String> {
+        match self {
+            Self::Encoding => (settings.target != Target::Float).then(|| "--target float".to_owned()),
+            Self::Isotropic => {
+                Some("the base layer for these bumps, since only that layer can be anisotropic".to_owned())
+            }
+            Self::Fit => match closer {
+                Some(model) => Some(format!("--model {} if the engine shows it correctly", model.name())),
+                None => (settings.quality != Effort::Best).then(|| "--quality best".to_owned()),
+            },
+            Self::AlphaAboveOne | Self::TwoPeaked | Self::Steep | Self::NoSingleLobe => None,
         }
     }
 

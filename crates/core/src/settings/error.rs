@@ -5,7 +5,7 @@
 #[non_exhaustive]
 pub enum SettingsError {
     /// A value is outside its range.
-    #[error("{name}: expected {expected}, found {found}")]
+    #[error("{name}: expected {expected}, found {found}; give a value in the range")]
     Range {
         /// The setting.
         name: &'static str,

@@ -18,7 +18,11 @@ pub enum CacheError {
         path: PathBuf,
     },
     /// The file system returned an error.
-    #[error("{}: expected a cache that can be read and written, found: {error}", path.display())]
+    #[error(
+        "{}: expected a cache that can be read and written, found: {error}; free space, change the permissions or choose \
+         another --cache",
+        path.display()
+    )]
     Io {
         /// The file.
         path: PathBuf,
@@ -61,7 +65,7 @@ pub enum CacheError {
         reason: String,
     },
     /// More than one folder, or more than one URL.
-    #[error("--cache: expected one folder and one URL at most, found {first} and {second}")]
+    #[error("--cache: expected one folder and one URL at most, found {first} and {second}; leave one of them out")]
     TwoOfAKind {
         /// The first.
         first: String,

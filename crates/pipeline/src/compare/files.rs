@@ -72,7 +72,7 @@ pub enum CompareError {
     #[error(transparent)]
     Bake(#[from] BakeError),
     /// The table cannot be made.
-    #[error("expected to write compare.csv, found: {0}")]
+    #[error("expected to write compare.csv, found: {0}; free memory and try again")]
     Table(io::Error),
     /// A file cannot be written.
     #[error(transparent)]

@@ -27,7 +27,7 @@ pub enum ExtractError {
     #[error(transparent)]
     Read(#[from] ReadError),
     /// The image cannot be written.
-    #[error("expected to encode level {level} as {extension}, found: {reason}")]
+    #[error("expected to encode level {level} as {extension}, found: {reason}; free memory and try again")]
     Encode {
         /// Index of the level.
         level: u32,

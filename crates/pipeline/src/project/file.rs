@@ -44,7 +44,7 @@ struct Override {
 #[non_exhaustive]
 pub enum ConfigError {
     /// The file is not TOML.
-    #[error("line {line}: expected TOML, found: {reason}")]
+    #[error("line {line}: expected TOML, found: {reason}; fix the line")]
     Syntax {
         /// Line, from 1.
         line: usize,
@@ -65,7 +65,9 @@ pub enum ConfigError {
         suggestion: Option<String>,
     },
     /// A value has the wrong type or is out of range.
-    #[error("line {line}: {key}: expected another value, found: {reason}")]
+    #[error(
+        "line {line}: {key}: expected another value, found: {reason}; `roughcast init` writes examples of all values"
+    )]
     Value {
         /// Line, from 1.
         line: usize,
@@ -157,8 +159,8 @@ impl Reader<'_> {
             let json = to_json(value.get_ref()).ok_or_else(|| self.wrong(name, value, "no finite value"))?;
             let single: Values =
                 serde_json::from_value(json!({ name: json })).map_err(|e| self.wrong(name, value, &e.to_string()))?;
-            if let Err(error @ SettingsError::Range { .. }) = single.settings() {
-                return Err(self.wrong(name, value, &error.to_string()));
+            if let Err(SettingsError::Range { expected, found, .. }) = single.settings() {
+                return Err(self.wrong(name, value, &format!("{found} instead of {expected}")));
             }
             values = values.overridden_by(&single);
         }

@@ -35,7 +35,7 @@ pub enum GlobError {
         depth: usize,
     },
     /// The text is not a glob.
-    #[error("expected a glob such as \"props/**\", found {pattern:?}: {reason}")]
+    #[error("expected a glob such as \"props/**\", found {pattern:?}: {reason}; correct the glob")]
     Syntax {
         /// The beginning of the glob.
         pattern: String,
@@ -43,7 +43,10 @@ pub enum GlobError {
         reason: String,
     },
     /// The globs of an override take too much memory together.
-    #[error("expected fewer or shorter globs, found {count} that are too large together: {reason}")]
+    #[error(
+        "expected globs that can be compiled together, found {count} that are too large: {reason}; write fewer or \
+         shorter globs"
+    )]
     TooLarge {
         /// The number of globs.
         count: usize,

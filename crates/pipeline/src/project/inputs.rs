@@ -54,7 +54,7 @@ pub enum InputError {
         example: PathBuf,
     },
     /// A folder or an entry of it that cannot be read.
-    #[error("{}: expected a folder that can be read, found: {reason}", path.display())]
+    #[error("{}: expected a folder that can be read, found: {reason}; check its permissions", path.display())]
     Walk {
         /// The folder or entry.
         path: PathBuf,

@@ -17,7 +17,7 @@ pub enum ReadBackError {
     #[error("expected a readable file, found: {0}; check the path")]
     Read(io::Error),
     /// The waves cannot be encoded.
-    #[error("expected to encode the waves as OpenEXR, found: {0}")]
+    #[error("expected to encode the waves as OpenEXR, found: {0}; free memory and try again")]
     Waves(String),
     /// The document is damaged.
     #[error(transparent)]

@@ -31,7 +31,7 @@ pub enum Misplaced {
         source_file: PathBuf,
     },
     /// A folder that cannot be looked up.
-    #[error("expected a working folder that can be read, found: {0}")]
+    #[error("expected a working folder that can be read, found: {0}; run in a folder that exists and is readable")]
     Io(#[from] io::Error),
 }
 

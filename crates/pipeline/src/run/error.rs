@@ -76,7 +76,11 @@ pub enum RunError {
         path: PathBuf,
     },
     /// A declared output that does not exist after the bake.
-    #[error("expected the job to write {}, found nothing there", path.display())]
+    #[error(
+        "expected the job to write {}, found nothing there; {}",
+        path.display(),
+        if *was_written { "bake again, and let nothing else write to that folder" } else { "plan again" }
+    )]
     NoOutput {
         /// The file or folder.
         path: PathBuf,

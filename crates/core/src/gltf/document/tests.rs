@@ -206,7 +206,7 @@ fn names_the_damage_of_a_file() {
             "expected a multiple of 4 as the length of the GLB chunk at byte 12, found 3; export the file again",
         ),
         (with(16, 0), "expected a JSON chunk first in the GLB, found \\x00\\x00\\x00\\x00; the file is damaged"),
-        (with(20, 0), "JSON: line 1, column 1: expected a value, found U+0000"),
+        (with(20, 0), "JSON: line 1, column 1: expected a value, found U+0000; fix the text there, or export it again"),
         (glb(&[]), "expected a JSON chunk first in the GLB, found nothing; the file is damaged"),
         (
             glb(&[chunk(b"BIN\0", b""), json.clone()]),

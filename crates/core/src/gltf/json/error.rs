@@ -17,7 +17,7 @@ pub enum JsonError {
         column: usize,
     },
     /// The text breaks the grammar of RFC 8259.
-    #[error("line {line}, column {column}: expected {expected}, found {found}")]
+    #[error("line {line}, column {column}: expected {expected}, found {found}; fix the text there, or export it again")]
     Syntax {
         /// Line of the found character.
         line: usize,
@@ -37,7 +37,10 @@ pub enum JsonError {
         column: usize,
     },
     /// Objects and arrays nest deeper than [`MAX_DEPTH`].
-    #[error("line {line}, column {column}: expected at most {MAX_DEPTH} nested objects and arrays, found more")]
+    #[error(
+        "line {line}, column {column}: expected at most {MAX_DEPTH} nested objects and arrays, found more; nest fewer of \
+         them"
+    )]
     TooDeep {
         /// Line of the first bracket too deep.
         line: usize,

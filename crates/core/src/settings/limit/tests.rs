@@ -28,7 +28,7 @@ fn rejects_values_out_of_range() {
         (settings.with_view(View { fov: 180.0, ..view }), "fov: expected degrees between 0 and 180, found 180"),
         (settings.with_view(View { aspect: -1.0, ..view }), "aspect: expected a number above 0, found -1"),
     ] {
-        assert_eq!(result.unwrap_err().to_string(), expected);
+        assert_eq!(result.unwrap_err().to_string(), format!("{expected}; give a value in the range"));
     }
     assert_eq!(settings.with_glb(true).with_gltf(Form::Dual).validate(), Err(SettingsError::DualInGlb));
 }

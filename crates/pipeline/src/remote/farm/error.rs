@@ -11,7 +11,7 @@ use tonic::Code;
 #[derive(Clone, Debug, thiserror::Error)]
 pub enum RemoteError {
     /// A file that is to be sent cannot be read.
-    #[error("expected a readable file at {}, found: {error}", path.display())]
+    #[error("expected a readable file at {}, found: {error}; check the path", path.display())]
     Read {
         /// The file.
         path: PathBuf,
@@ -25,13 +25,13 @@ pub enum RemoteError {
         path: PathBuf,
     },
     /// This machine cannot start threads.
-    #[error("expected to start threads for --remote, found: {0}")]
+    #[error("expected to start threads for --remote, found: {0}; end other processes or raise their limit")]
     Start(Arc<io::Error>),
     /// The options do not allow a connection.
     #[error("{0}")]
     Options(String),
     /// The server does not answer.
-    #[error("expected a server of the Remote Execution API at {url}, found: {reason}")]
+    #[error("expected a server of the Remote Execution API at {url}, found: {reason}; check the URL and the network")]
     Unreachable {
         /// The URL of the server.
         url: String,
@@ -39,7 +39,7 @@ pub enum RemoteError {
         reason: String,
     },
     /// The server lacks a needed capability.
-    #[error("expected a server that {expected}, found {found}")]
+    #[error("expected a server that {expected}, found {found}; name another server with --remote")]
     Capabilities {
         /// The needed capability.
         expected: &'static str,
@@ -47,7 +47,7 @@ pub enum RemoteError {
         found: String,
     },
     /// The server refused a call.
-    #[error("{call}: expected the server to answer, found {}: {message}", name(*code))]
+    #[error("{call}: expected the server to answer, found {}: {message}; {}", name(*code), remedy(*code))]
     Status {
         /// The name of the call.
         call: &'static str,
@@ -69,13 +69,15 @@ pub enum RemoteError {
     )]
     Stopped,
     /// The bytes of a blob do not have its digest.
-    #[error("expected the bytes of {digest} from the server, found others")]
+    #[error(
+        "expected the bytes of {digest} from the server, found others; bake again, or check the store of the server"
+    )]
     Damaged {
         /// The digest.
         digest: String,
     },
     /// An answer cannot be understood.
-    #[error("expected {expected} from the server, found {found}")]
+    #[error("expected {expected} from the server, found {found}; update the server, or bake without --remote")]
     Malformed {
         /// What was expected.
         expected: &'static str,
@@ -83,7 +85,10 @@ pub enum RemoteError {
         found: String,
     },
     /// The tool succeeded, but its outputs are missing.
-    #[error("expected the outputs of the job from the server, found none although the tool ended well")]
+    #[error(
+        "expected the outputs of the job from the server, found none although the tool ended well; check the server's \
+         workers"
+    )]
     NoOutputs,
     /// The tool could not begin to bake.
     #[error("expected the tool to run on the worker, found exit code {code}: {text}; {}", hint(*code))]
@@ -97,7 +102,7 @@ pub enum RemoteError {
     #[error("{0}")]
     Cache(String),
     /// The caller has ended.
-    #[error("expected to wait for the server, found that the bake ended")]
+    #[error("expected to wait for the server, found that the bake ended; bake again")]
     Cancelled,
 }
 
@@ -163,6 +168,15 @@ fn name(code: Code) -> &'static str {
         Code::Unavailable => "UNAVAILABLE",
         Code::DataLoss => "DATA_LOSS",
         Code::Unauthenticated => "UNAUTHENTICATED",
+    }
+}
+
+/// Returns what the user can do about a status.
+fn remedy(code: Code) -> &'static str {
+    match code {
+        Code::Unauthenticated | Code::PermissionDenied => "check the headers and certificates of --remote",
+        Code::InvalidArgument | Code::Unimplemented | Code::NotFound => "check the options of --remote",
+        _ => "bake again, or look at the server's log",
     }
 }
 
