@@ -12,9 +12,8 @@ use super::{Comparison, OURS, Ours, chart, compare, csv, page};
 use crate::bake::{BakeError, BakedAsset, Source, bake_asset};
 use crate::codec::Target;
 use crate::codec::uastc::Effort;
-use crate::gltf::document::{Document, DocumentError};
-use crate::gltf::json::JsonError;
-use crate::gltf::material::{Layer, LayerKind, MaterialError, materials};
+use crate::gltf::document::Document;
+use crate::gltf::material::{Layer, LayerKind, materials};
 use crate::output::PublishError;
 use crate::readback::{Input, ReadBackError, file_name, read_back};
 use crate::render::{Material, SceneName};
@@ -56,15 +55,6 @@ pub enum CompareError {
     /// The input, or a material of its bake, cannot be read.
     #[error(transparent)]
     ReadBack(#[from] ReadBackError),
-    /// The document is damaged.
-    #[error(transparent)]
-    Document(#[from] DocumentError),
-    /// The JSON of the document is damaged.
-    #[error(transparent)]
-    Json(#[from] JsonError),
-    /// A material is damaged.
-    #[error(transparent)]
-    Material(#[from] MaterialError),
     /// A setting is out of its range.
     #[error(transparent)]
     Settings(#[from] SettingsError),
@@ -114,8 +104,8 @@ fn compare_document(
     source: &Source<'_>,
     progress: &dyn Fn(f32, &str),
 ) -> Result<Vec<Comparison>, CompareError> {
-    let root: Value = source.document.json().value("")?.unwrap_or_default();
-    let materials = materials(&root).into_iter().collect::<Result<Vec<_>, _>>()?;
+    let root: Value = source.document.json().value("").map_err(BakeError::from)?.unwrap_or_default();
+    let materials = materials(&root).into_iter().collect::<Result<Vec<_>, _>>().map_err(BakeError::from)?;
     let has_base = |layers: &[Layer]| layers.iter().any(|layer| layer.kind == LayerKind::Base);
     let bumpy: Vec<usize> =
         materials.iter().filter(|material| has_base(&material.layers)).map(|material| material.index).collect();
@@ -125,9 +115,10 @@ fn compare_document(
     let mut comparisons = Vec::new();
     for (done, &index) in bumpy.iter().enumerate() {
         // Bytes and times are to be those of one material, so the other materials lose their bumps.
-        let mut document = Document::parse(&source.document.to_bytes().map_err(BakeError::from)?)?;
+        let copy = source.document.to_bytes().map_err(BakeError::from)?;
+        let mut document = Document::parse(&copy).map_err(BakeError::from)?;
         for other in materials.iter().map(|material| material.index).filter(|other| *other != index) {
-            document.json_mut().set(&format!("/materials/{other}"), &json!({}))?;
+            document.json_mut().set(&format!("/materials/{other}"), &json!({})).map_err(BakeError::from)?;
         }
         let advance = |share: f32, name: &str| progress((done as f32 + share) / bumpy.len() as f32, name);
         comparisons.extend(compare_material(options, &Source { document: &document, ..*source }, &advance)?);
