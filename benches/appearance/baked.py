@@ -16,6 +16,7 @@ PYRAMID = "ROUGHCAST_materials_roughness_pyramid"
 # Name of each variant, and the arguments of its bake.
 BAKES = {
     "plain mips, UASTC": ["--model", "none"],
+    "portable, isotropic": ["--profile", "portable", "--model", "isotropic"],
     "portable, fast": ["--profile", "portable", "--quality", "fast"],
     "portable, best": ["--profile", "portable", "--quality", "best"],
     "pyramid, fast": ["--profile", "pyramid", "--quality", "fast"],

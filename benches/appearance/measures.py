@@ -32,11 +32,8 @@ def flip(picture, truth, mask):
     return float(np.asarray(errors)[mask].mean())
 
 
-def change(frames):
-    """Returns the mean absolute difference of successive frames, as displayed."""
-    return float(np.abs(np.diff(frames, axis=0)).mean())
-
-
 def flicker(frames, truth):
-    """Returns by how much successive frames change more than those of the truth do. Below 0, motion is blurred away."""
-    return change(frames) - change(truth)
+    """Returns the mean absolute change from frame to frame, as displayed, beyond that of the truth: pixels that change
+    less than the truth does count as 0."""
+    change, right = (np.abs(np.diff(sequence, axis=0)) for sequence in (frames, truth))
+    return float(np.maximum(change - right, 0.0).mean())

@@ -6,11 +6,15 @@ python3 benches/appearance/run.py [FOLDER ...] [--quick] [-o DIR] [--roughcast P
 import argparse
 import hashlib
 import json
+import os
 import sys
 import time
 from pathlib import Path
 
-import numpy as np
+# FLIP's threads wait for each other 40 times longer than they work on pictures as small as these.
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+
+import numpy as np  # noqa: E402
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
@@ -28,6 +32,8 @@ QUICK = score.Settings(pixels=48, samples=256, levels=(1.5, 3.5), frames=4)
 QUICK_MATERIALS = ("mirror_tiles", "brushed", "painted_rust")
 # Changes of these files make new truths.
 TRUTH_FILES = ("formula.py", "lights.py", "shading.py", "source.py", "truth.py", "views.py")
+# Changes of these files change the page, but no result.
+PAGE_FILES = ("charts.py", "intervals.py", "page.py", "run.py", "summary.py")
 # The view of the pictures on the page.
 SHOWN = ("plane 20", 2.5)
 
@@ -65,7 +71,7 @@ def arguments():
     parser.add_argument("--samples", type=int, default=defaults.samples, help="samples for each pixel of the truth")
     options = parser.parse_args()
     if not options.roughcast.is_file():
-        parser.error(f"{options.roughcast} is missing: run `cargo build --release`, or name the binary with --roughcast")
+        parser.error(f"{options.roughcast} is missing: run `cargo build --release`, or name another with --roughcast")
     return options
 
 
@@ -76,7 +82,7 @@ def listed(options):
     size = 256 if options.quick else 512
     real = [] if options.quick else materials.from_data(options.data, folder)
     names = QUICK_MATERIALS if options.quick else generate.GENERATED
-    made = [materials.generated(name, folder, size) for name in names]
+    made = [materials.generated(n, folder, size) for n in names if not options.only or n in options.only]
     named = [material for user in options.folders for material in materials.from_folder(user, folder)]
     return [m for m in real + made + named if not options.only or m.name in options.only]
 
@@ -88,7 +94,8 @@ def scored(material, settings, options):
     stored = folder / f"{material.name}.json"
     level_0 = source.read(material.path)
     truth_key = digest(repr(settings), *(HERE / name for name in TRUTH_FILES), *vars(level_0).values())
-    key = digest(truth_key, options.roughcast, *sorted(HERE.glob("*.py")))
+    programs = sorted(file for file in HERE.glob("*.py") if file.name not in PAGE_FILES)
+    key = digest(truth_key, options.roughcast, *programs)
     if stored.exists() and json.loads(stored.read_text())["key"] == key:
         return json.loads(stored.read_text())
     reference = truths(material, level_0, truth_key, settings, options)

@@ -25,9 +25,9 @@ class Settings:
     """Size of the pictures, samples for each pixel of the truth, and levels of distances."""
 
     pixels: int = 96
-    samples: int = 2304
+    samples: int = 1024
     levels: tuple = LEVELS
-    frames: int = 8
+    frames: int = 6
 
     def views(self):
         """Returns all still views."""
@@ -56,7 +56,7 @@ def truths(material_source, settings):
         error, light = np.abs(one - other)[:, mask] / 2.0, result[view.name][:, mask]
         result[f"noise, {view.name}"] = np.array([error[0].sum() / light[0].sum(), error[1:].sum() / light[1:].sum()])
     for view, shifts in settings.moving():
-        frames = [lit(truth.render(view, maps, 2 * settings.samples, 7, 1, shift)) for shift in shifts]
+        frames = [lit(truth.render(view, maps, settings.samples, 7, 1, shift)) for shift in shifts]
         result[f"frames, {view.name}"] = np.array(frames, np.float32)
     return result
 

@@ -10,7 +10,7 @@ import lights
 
 # Half-vectors of the environment's integral for each pixel. The lights are smooth, and doubling this number changes
 # the pictures by less than a percent (test `doubling_the_half_vectors_changes_little`).
-HALF_VECTORS = 64
+HALF_VECTORS = 48
 
 
 def render(view_pixels, surface, suns, half_vectors=HALF_VECTORS):
@@ -58,7 +58,7 @@ def half_vector_points(count):
 
 
 def albedo_table(size=48):
-    """Returns E, the mean share of the rays of an isotropic lobe, for alphas (rows) and cosines to the eye (columns)."""
+    """Returns E, the mean share of the rays of isotropic lobes, for alphas (rows) and cosines to the eye (columns)."""
     alpha, cosine = np.meshgrid(*((np.arange(size) + 0.5) / size,) * 2, indexing="ij")
     zero, one = np.zeros_like(alpha), np.ones_like(alpha)
     axes = ((zero, zero, one), (one, zero, zero), (zero, one, zero))
