@@ -24,7 +24,7 @@ STEP = (0.31, 0.17)
 class Settings:
     """Size of the pictures, samples for each pixel of the truth, and levels of distances."""
 
-    pixels: int = 96
+    pixels: int = 64
     samples: int = 1024
     levels: tuple = LEVELS
     frames: int = 6
