@@ -20,6 +20,7 @@ HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 sys.path.insert(0, str(HERE))
 
+import baked  # noqa: E402
 import generate  # noqa: E402
 import gltf  # noqa: E402
 import materials  # noqa: E402
@@ -88,18 +89,23 @@ def listed(options):
 
 
 def scored(material, settings, options):
-    """Returns the results of a material: stored ones, if neither inputs nor programs have changed."""
+    """Returns the results of a material: stored ones, if neither inputs nor programs have changed.
+
+    A new binary changes only the bakes, and the results of other variants are kept.
+    """
     folder = options.output / "results"
     folder.mkdir(parents=True, exist_ok=True)
     stored = folder / f"{material.name}.json"
     level_0 = source.read(material.path)
     truth_key = digest(repr(settings), *(HERE / name for name in TRUTH_FILES), *vars(level_0).values())
     programs = sorted(file for file in HERE.glob("*.py") if file.name not in PAGE_FILES)
-    key = digest(truth_key, options.roughcast, *programs)
-    if stored.exists() and json.loads(stored.read_text())["key"] == key:
-        return json.loads(stored.read_text())
+    key, peers_key = digest(truth_key, options.roughcast, *programs), digest(truth_key, *programs)
+    old = json.loads(stored.read_text()) if stored.exists() else {}
+    if old.get("key") == key:
+        return old
+    kept = old["variants"] if old.get("peers_key") == peers_key else {}
     reference = truths(material, level_0, truth_key, settings, options)
-    result = {"key": key, "name": material.name, "origin": material.origin, "size": level_0.size, "variants": {}}
+    result = {"key": key, "peers_key": peers_key, "name": material.name, "origin": material.origin, "variants": {}}
     result["noise"] = {n.removeprefix("noise, "): list(map(float, reference[n])) for n in reference if "noise" in n}
     shown = View(*SHOWN, settings.pixels) if SHOWN[1] in settings.levels else settings.views()[0]
     pictures = options.output / "pictures" / material.name
@@ -107,6 +113,9 @@ def scored(material, settings, options):
     gltf.save(pictures / "truth.png", score.picture(None, level_0.size, shown, reference))
     bakes = options.output / "bakes" / material.name
     for variant in score.variants(material, level_0, options.roughcast, bakes):
+        if variant.name in kept and variant.name not in baked.BAKES:
+            result["variants"][variant.name] = kept[variant.name]
+            continue
         scores = score.still(variant, level_0.size, settings, reference)
         scores["flicker"] = score.moving(variant, level_0.size, settings, reference)
         result["variants"][variant.name] = scores
