@@ -74,7 +74,8 @@ def chan(source):
 def length_of_alpha(alpha):
     """Returns the length of the mean of half-vectors h drawn from D(h) (n.h) of GGX: with a = sqrt(1 - alpha^2),
     (a - (1 - a^2) atanh(a)) / a^3."""
-    a = np.sqrt(1.0 - np.clip(alpha, 1e-4, 0.9995) ** 2)
+    # In double precision, since a of smooth surfaces differs from 1 by 5e-9.
+    a = np.sqrt(1.0 - np.clip(np.asarray(alpha, np.float64), 1e-4, 0.9995) ** 2)
     return (a - (1.0 - a * a) * np.arctanh(a)) / a**3
 
 

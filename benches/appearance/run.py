@@ -105,9 +105,11 @@ def scored(material, settings, options):
         return old
     kept = old["variants"] if old.get("peers_key") == peers_key else {}
     reference = truths(material, level_0, truth_key, settings, options)
-    result = {"key": key, "peers_key": peers_key, "name": material.name, "origin": material.origin, "variants": {}}
+    result = {"key": key, "peers_key": peers_key, "name": material.name, "origin": material.origin}
+    result["variants"] = {}
     result["noise"] = {n.removeprefix("noise, "): list(map(float, reference[n])) for n in reference if "noise" in n}
     shown = View(*SHOWN, settings.pixels) if SHOWN[1] in settings.levels else settings.views()[0]
+    result["shown"] = shown.name
     pictures = options.output / "pictures" / material.name
     pictures.mkdir(parents=True, exist_ok=True)
     gltf.save(pictures / "truth.png", score.picture(None, level_0.size, shown, reference))

@@ -40,6 +40,10 @@ def test_lengths_are_means_of_ggx_half_vectors():
         assert peers.alpha_of_length(peers.length_of_alpha(alpha)) == pytest.approx(alpha, rel=1e-3)
 
 
+def test_lengths_of_mirrors_are_finite_in_single_precision():
+    assert peers.length_of_alpha(np.float32(0.0)) == pytest.approx(1.0, abs=1e-4)
+
+
 def waves(u, v):
     """Returns a source whose slopes are -u, u in turns along rows and -v, v along columns."""
     y, x = np.mgrid[0:4, 0:4]
