@@ -214,7 +214,7 @@ def seen(shown):
     """Returns the section of pictures."""
     names = ", ".join(material["name"] for material in shown)
     text = wrapped(
-        f"View *{shown[0]['shown']}* under the environment and one sun: {names}. Below each picture is the picture error "
-        "of the variant over all views."
+        f"View *{shown[0]['shown']}* under the environment and one sun: {names}. Below each picture is the picture "
+        "error of the variant over all views."
     )
     return f"## Pictures\n\n{text}\n\n![Pictures of the truth and of variants](pictures/appearance-pictures.svg)"
