@@ -102,10 +102,19 @@ def under_sun(xp, surface, v, l, correlated=True):
     return tuple(lobe * f + a * nl for f, a in zip(fresnel(f0, vh), albedo))
 
 
+def turned_to(xp, axes, v):
+    """Returns axes whose normal does not face away from the eye: at grazing angles, normals of steep bumps are turned
+    until they are perpendicular to `v`. Without this step such bumps would reflect nothing and be black, and an engine
+    shows them as a grazing mirror."""
+    n, t, _ = axes
+    lift = xp.maximum(MIN_COSINE - dot(n, v), 0.0)
+    return frame(xp, add(n, scale(v, lift)), t)
+
+
 def reflected(xp, surface, v, points):
     """Returns (direction, share, Fresnel term of each channel) of a reflected ray, by sampling half-vectors.
 
-    `points` is (s cos phi, s sin phi), where s = sqrt(u / (1 - u)): the slopes of a GGX lobe with alpha 1. The
+    The normal must face the eye (`turned_to`). `points` is (s cos phi, s sin phi), where s = sqrt(u / (1 - u)): the slopes of a GGX lobe with alpha 1. The
     expectation of radiance times share times Fresnel term over uniform u and phi is the radiance by the lobe.
     """
     axes, alphas, f0, _ = surface

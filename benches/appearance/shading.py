@@ -32,15 +32,16 @@ def as_floats(part):
 
 def environment(surface, eye, half_vectors):
     """Returns three channels of light from all around, by an even sequence of half-vectors of the lobe."""
-    f0, albedo = surface[2:]
+    axes, alphas, f0, albedo = surface
+    seen = (formula.turned_to(np, axes, eye), alphas, f0, albedo)
     total, shares = [0.0, 0.0, 0.0], 0.0
     for points, weight in half_vector_points(half_vectors):
-        ray, share, fresnel = formula.reflected(np, surface, eye, points)
+        ray, share, fresnel = formula.reflected(np, seen, eye, points)
         share = share * weight
         total = [t + share * f * l for t, f, l in zip(total, fresnel, lights.environment(np, ray))]
         shares = shares + share
     factor = formula.compensation(np, f0, shares)
-    diffuse = lights.diffuse(np, surface[0][0])
+    diffuse = lights.diffuse(np, axes[0])
     return [t * c + a * d for t, c, a, d in zip(total, factor, albedo, diffuse)]
 
 

@@ -101,7 +101,8 @@ def shade(camera, shapes, maps, suns, x, y, slope, angle, shift):
     eye = tuple(dr.normalize(origin - hit.p))
     surface = maps.surface(texel, normal, tangent)
     distance = dr.sqrt(slope / (1.0 - slope))
-    ray, share, fresnel = formula.reflected(dr, surface, eye, (distance * dr.cos(angle), distance * dr.sin(angle)))
+    seen = (formula.turned_to(dr, surface[0], eye), *surface[1:])
+    ray, share, fresnel = formula.reflected(dr, seen, eye, (distance * dr.cos(angle), distance * dr.sin(angle)))
     factor = maps.compensation(surface, eye)
     light, diffuse = lights.environment(dr, ray), lights.diffuse(dr, surface[0][0])
     pictures = [tuple(share * f * c * l + a * d for f, c, l, a, d in zip(fresnel, factor, light, surface[3], diffuse))]

@@ -73,6 +73,13 @@ def test_half_vectors_are_enough(alphas):
     assert np.abs(few - many).sum() / many.sum() < 0.025
 
 
+def test_normals_that_face_away_are_turned_to_the_eye():
+    axes, eye = formula.frame(np, (0.9, 0.0, 0.4), (0.0, 1.0, 0.0)), (-0.8, 0.0, 0.6)
+    turned = formula.turned_to(np, axes, eye)
+    assert formula.dot(turned[0], eye) == pytest.approx(formula.MIN_COSINE, rel=0.2)
+    assert formula.turned_to(np, axes, (0.6, 0.0, 0.8))[0] == pytest.approx(axes[0])
+
+
 def test_frames_are_orthonormal():
     axes = formula.frame(np, (0.3, -0.2, 0.9), (1.0, 0.1, 0.0))
     for i, a in enumerate(axes):
