@@ -98,13 +98,24 @@ def wrapped(text):
 def in_short(materials, overall):
     """Returns the summary of the page."""
     peers = [name for name in overall if not summary.is_ours(name) and not name.startswith("plain")]
-    best = min(peers, key=lambda name: overall[name]["picture"][0])
+    best = max(peers, key=lambda name: overall[name]["closer"][0])
     times = lambda name: "{:.2f} x ({:.2f} to {:.2f})".format(*overall[name]["closer"])
     behind = lambda name: sum(summary.closer(m, name) < 1.0 for m in materials)
     ours = "; ".join(f"*{name}* {times(name)}, behind plain mips on {behind(name)}" for name in TABLE)
     return "## In short\n\n" + wrapped(
         f"Closer to the truth than plain mips, on {len(materials)} materials: {ours}. The best peer in the mean is "
-        f"{best}: {times(best)}, behind plain mips on {behind(best)}."
+        f"{best}: {times(best)}, behind plain mips on {behind(best)}. {against(best, materials)}"
+    )
+
+
+def against(peer, materials):
+    """Returns sentences on *portable, best* against one peer, and against the best peer of each material."""
+    ours = "portable, best"
+    ratio = [summary.picture_error(m, peer) / summary.picture_error(m, ours) for m in materials]
+    ahead = [m["name"] for m in materials if summary.best_peer_error(m) < summary.picture_error(m, ours)]
+    return (
+        "Against it, *{}* is {:.2f} x ({:.2f} to {:.2f}) closer. ".format(ours, *mean_interval(ratio, geometric=True))
+        + f"The best of all peers on each material is ahead of *{ours}* on {len(ahead)}: {', '.join(ahead) or 'none'}."
     )
 
 

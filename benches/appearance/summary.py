@@ -51,6 +51,11 @@ def best_peer(material):
     return min(peers, key=lambda name: picture_error(material, name))
 
 
+def best_peer_error(material):
+    """Returns the picture error of the best peer on a material."""
+    return picture_error(material, best_peer(material))
+
+
 def overall(materials):
     """Returns by variant: (mean, low, high) of picture error, of each measure, of flicker, and of times closer."""
     result = {}
