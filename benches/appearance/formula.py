@@ -114,8 +114,9 @@ def turned_to(xp, axes, v):
 def reflected(xp, surface, v, points):
     """Returns (direction, share, Fresnel term of each channel) of a reflected ray, by sampling half-vectors.
 
-    The normal must face the eye (`turned_to`). `points` is (s cos phi, s sin phi), where s = sqrt(u / (1 - u)): the slopes of a GGX lobe with alpha 1. The
-    expectation of radiance times share times Fresnel term over uniform u and phi is the radiance by the lobe.
+    The normal must face the eye (`turned_to`). `points` is (s cos phi, s sin phi), where s = sqrt(u / (1 - u)): the
+    slopes of a GGX lobe with alpha 1. The expectation of radiance times share times Fresnel term over uniform u and phi
+    is the radiance by the lobe.
     """
     axes, alphas, f0, _ = surface
     n, t, b = axes

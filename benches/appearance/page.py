@@ -36,7 +36,8 @@ METHOD = """
   {anisotropy} anisotropic samples; figures are means of both filters. The formula is glTF's: GGX with height-correlated
   masking, Schlick's Fresnel term, and a Lambertian base. Under the environment, rough lobes get back the light that
   single scattering loses, as in three.js and Filament. This energy compensation is computed exactly, and so is the
-  integral over the environment: errors of an engine's own approximations are not part of these figures.
+  integral over the environment: errors of an engine's own approximations are not part of these figures. Normals that
+  face away from the eye are turned until they are perpendicular to it, as engines clamp the cosine.
 - **Views.** Planes are seen at 75, 45 and 20 degrees of elevation, and a sphere. Footprints at the centre are
   {levels}: half-way between mip levels. Pictures have {pixels} x {pixels} pixels, and the truth has {samples} samples
   for each of them.
