@@ -31,7 +31,8 @@ struct Means {
 
 fn means(image: &Image, alpha: f32, shaded_as: Family, settings: Settings, levels: RangeInclusive<u32>) -> Vec<Means> {
     let map = || NormalMap::new(image.clone(), NormalLayout::Auto, false).unwrap();
-    let surface = Surface::of_map(&map(), SquaredAlpha::isotropic(Alpha(alpha)));
+    let texels = Surface::of_map(&map(), SquaredAlpha::isotropic(Alpha(alpha)));
+    let magnified = texels.magnified();
     let bump_map = BumpMap::Normals(map());
     let base = Roughness::from(Alpha(alpha));
     let bake = |settings: Settings| {
@@ -43,8 +44,9 @@ fn means(image: &Image, alpha: f32, shaded_as: Family, settings: Settings, level
         .map(|level| {
             let (baked, plain) = (decoded(&baked, level, base), decoded(&plain, level, base));
             let size = (baked.normal.width, baked.normal.height);
-            let texels = sample_texels(size, TEXELS);
-            let errors = mean_errors(&surface, shaded_as, size, &texels, |(x, y), footprint, reference| {
+            let points = sample_texels(size, TEXELS);
+            let surface = if level == 0 { &texels } else { &magnified };
+            let errors = mean_errors(surface, shaded_as, size, &points, |(x, y), footprint, reference| {
                 let moments = footprint.moments();
                 let exact = Peer::ALL.map(|peer| peer.lobe(shaded_as, &moments));
                 let normal = plain.lobe(shaded_as, x, y).unwrap().normal();
@@ -162,13 +164,14 @@ fn fast_lobes_are_within_15_percent_of_the_oracle() {
     assert!(ratio < 1.15 && excess < 0.02, "UASTC: {ratio}, {excess}");
 }
 
-/// After UASTC the bound is 7 percent, see docs/accuracy.md.
+/// After UASTC the bound is 10 percent: lobes of level 0 as samplers magnify it are narrower than those of its texels,
+/// so that errors of normals weigh more.
 #[test]
 fn best_lobes_are_within_6_percent_of_the_oracle() {
     let (ratio, [excess, _]) = bars(Family::Ggx, settings(Effort::Best, Target::Float));
     assert!(ratio < 1.06 && excess < 0.01, "{ratio}, {excess}");
     let (ratio, [_, excess]) = bars(Family::Ggx, settings(Effort::Best, Target::Basis));
-    assert!(ratio < 1.08 && excess < 0.01, "UASTC: {ratio}, {excess}");
+    assert!(ratio < 1.10 && excess < 0.01, "UASTC: {ratio}, {excess}");
 }
 
 /// Level 0 has no lost bumps. Only encoding may change it, by 0.0007 as half floats, and roughness textures add

@@ -51,31 +51,59 @@ struct Expected {
     squared_alpha: [f64; 3],
 }
 
-/// Computes a texel directly from its level-0 texels. The sides of the map are powers of two.
-fn oracle(normals: &Image, roughness: Option<&Image>, factor: f64, level: u32, x: u32, y: u32) -> Expected {
+/// Returns the unit normal of a texel of a map that repeats.
+fn unit_normal(normals: &Image, x: i64, y: i64) -> [f64; 3] {
+    let [x, y] = [x.rem_euclid(i64::from(normals.width)), y.rem_euclid(i64::from(normals.height))].map(|i| i as u32);
+    let n = [0, 1, 2].map(|c| 2.0 * f64::from(normals.sample(x, y, c).unwrap()) - 1.0);
+    let length = n.iter().map(|c| c * c).sum::<f64>().sqrt();
+    n.map(|c| c / length)
+}
+
+/// Returns the slopes that a sampler shows within a texel: at four points at a distance of 1/2 - 1/sqrt 12 from its
+/// centre along both axes.
+fn magnified_slopes(normals: &Image, (x, y): (u32, u32)) -> [[f64; 2]; 4] {
+    let share = 0.5 - 1.0 / 12.0_f64.sqrt();
+    [(-1, -1), (1, -1), (-1, 1), (1, 1)].map(|(dx, dy)| {
+        let (x, y) = (i64::from(x), i64::from(y));
+        let [here, beside, below, across] =
+            [(0, 0), (dx, 0), (0, dy), (dx, dy)].map(|(i, j)| unit_normal(normals, x + i, y + j));
+        let mix = |c: usize| {
+            (1.0 - share) * ((1.0 - share) * here[c] + share * beside[c])
+                + share * ((1.0 - share) * below[c] + share * across[c])
+        };
+        let [nx, ny, nz] = [mix(0), mix(1), mix(2)];
+        [-nx / nz, -ny / nz]
+    })
+}
+
+/// Computes a texel directly from its level-0 texels, and at level 0 from the texel. Levels for which `is_base` holds
+/// have the base lobe. The sides of the map are powers of two.
+fn oracle(normals: &Image, base: &BaseRoughness, is_base: bool, level: u32, (x, y): (u32, u32)) -> Expected {
     let side = 1 << level;
     let texels: Vec<(u32, u32)> = (0..side * side).map(|i| (x * side + i % side, y * side + i / side)).collect();
-    let n = texels.len() as f64;
-    let slope = |&(x, y): &(u32, u32)| {
-        let [nx, ny, nz] = [0, 1, 2].map(|c| 2.0 * f64::from(normals.sample(x, y, c).unwrap()) - 1.0);
-        [-nx / nz, -ny / nz]
+    let slopes: Vec<[f64; 2]> = if level == 0 {
+        let [nx, ny, nz] = unit_normal(normals, x.into(), y.into());
+        vec![[-nx / nz, -ny / nz]]
+    } else {
+        texels.iter().flat_map(|texel| magnified_slopes(normals, *texel)).collect()
     };
-    let slopes: Vec<[f64; 2]> = texels.iter().map(slope).collect();
-    let mean = [0, 1].map(|i| slopes.iter().map(|s| s[i]).sum::<f64>() / n);
-    let k = |i: usize, j: usize| slopes.iter().map(|s| (s[i] - mean[i]) * (s[j] - mean[j])).sum::<f64>() / n;
+    let count = slopes.len() as f64;
+    let mean = [0, 1].map(|i| slopes.iter().map(|s| s[i]).sum::<f64>() / count);
+    let k = |i: usize, j: usize| slopes.iter().map(|s| (s[i] - mean[i]) * (s[j] - mean[j])).sum::<f64>() / count;
     let base_of = |&(x, y): &(u32, u32)| {
-        let green = roughness.map_or(1.0, |r| f64::from(r.sample(x, y, 1).unwrap()));
-        (factor * green).powi(4)
+        let green = base.image.as_ref().map_or(1.0, |r| f64::from(r.sample(x, y, 1).unwrap()));
+        (f64::from(base.factor) * green).powi(4)
     };
-    let base = texels.iter().map(base_of).sum::<f64>() / n;
+    let base = texels.iter().map(base_of).sum::<f64>() / texels.len() as f64;
     let covariance = Symmetric2::new(k(0, 0) as f32, k(0, 1) as f32, k(1, 1) as f32);
     let base_lobe = SquaredAlpha(Symmetric2::diagonal(base as f32, base as f32));
     let moments = ShapedMoments::normal(Moments { mean: Offset::default(), covariance });
-    let roughened = base_lobe.roughen(Distribution::Normal.correct(&moments, base_lobe, Family::Ggx).covariance).0;
+    let corrected = Distribution::Normal.correct(&moments, base_lobe, Family::Ggx).covariance;
+    let lobe = if is_base { base_lobe.0 } else { base_lobe.roughen(corrected).0 };
     let length = (mean[0] * mean[0] + mean[1] * mean[1] + 1.0).sqrt();
     Expected {
         normal: [-mean[0] / length, -mean[1] / length, 1.0 / length],
-        squared_alpha: [roughened.uu, roughened.uv, roughened.vv].map(f64::from),
+        squared_alpha: [lobe.uu, lobe.uv, lobe.vv].map(f64::from),
     }
 }
 
@@ -93,8 +121,10 @@ fn compare(normals: Image, roughness: Option<Image>, factor: f32, target: Target
     let bump_map = BumpMap::Normals(NormalMap::new(normals.clone(), NormalLayout::Xyz, false).unwrap());
     let settings =
         Settings::default().with_model(Model::Anisotropic).with_distribution(Distribution::Normal).with_target(target);
-    let base = BaseRoughness { image: roughness.clone(), factor };
+    let base = BaseRoughness { image: roughness, factor };
     let baked = bake_map(&bump_map, Some(&base), &settings).unwrap();
+    // Levels at which the roughened lobes have a larger error keep the base lobe.
+    let base_levels = &baked.choice.as_ref().and_then(|choice| choice.taken()).expect("a choice").base_levels;
     assert_eq!(bump_map.outliers(), Outliers::default());
     let contents: Vec<Content> = baked.textures.iter().map(|t| t.content).collect();
     assert_eq!(contents, [Content::Normal, Content::Roughness, Content::Anisotropy]);
@@ -105,7 +135,7 @@ fn compare(normals: Image, roughness: Option<Image>, factor: f32, target: Target
         let mut errors = Errors::default();
         for i in 0..normal.width * normal.height {
             let (x, y) = (i % normal.width, i / normal.width);
-            let expected = oracle(&normals, roughness.as_ref(), f64::from(factor), level, x, y);
+            let expected = oracle(&normals, &base, base_levels.contains(&(level as usize)), level, (x, y));
             let at = |image: &Image, c| f64::from(image.sample(x, y, c).unwrap());
             let n = [0, 1, 2].map(|c| 2.0 * at(&normal, c) - 1.0);
             let length = n.iter().map(|n| n * n).sum::<f64>().sqrt();

@@ -8,14 +8,14 @@ use std::path::Path;
 
 use roughcast::bake::{BaseRoughness, bake_map};
 use roughcast::bump::{NormalLayout, NormalMap};
-use roughcast::codec::uastc::{Effort, Metric};
+use roughcast::codec::uastc::{Effort, Lobe, Metric};
 use roughcast::codec::{PayloadFormat, Target, Texels, encode};
 use roughcast::decode::decode;
 use roughcast::image::{DecodeOptions, Image};
 use roughcast::ktx2::{Ktx2, Ktx2Writer, StoredLevel};
 use roughcast::lobe::{Alpha, Family, Roughness, SquaredAlpha};
 use roughcast::material::BumpMap;
-use roughcast::metric::{Decoded, Surface, mean_errors, sample_texels};
+use roughcast::metric::{Decoded, Surface, mean_errors, sample_texels, shown_lobe};
 use roughcast::report::Content;
 use roughcast::settings::{Model, Settings};
 
@@ -24,14 +24,18 @@ const MAPS: [&str; 5] =
 const FIXTURES: [&str; 2] = ["two_channel_normal.png", "vgroove_normal.png"];
 const ALPHAS: [f32; 2] = [0.05, 0.2];
 const LEVELS: std::ops::RangeInclusive<u32> = 1..=5;
-/// UASTC by squared differences of channels, UASTC by direction as `bake` encodes it, and BC5.
-const ENCODINGS: [(PayloadFormat, Metric, Effort); 5] = [
-    (PayloadFormat::UastcRgb, Metric::Rgb, Effort::Fast),
-    (PayloadFormat::UastcRgb, Metric::Rgb, Effort::Best),
-    (PayloadFormat::UastcRgb, Metric::Direction, Effort::Fast),
-    (PayloadFormat::UastcRgb, Metric::Direction, Effort::Best),
-    (PayloadFormat::Bc5, Metric::Direction, Effort::Fast),
+/// UASTC by squared differences of channels, by direction, and by errors of lobes as `bake` encodes it, and BC5.
+const ENCODINGS: [(PayloadFormat, Metric, Effort, HasLobes); 7] = [
+    (PayloadFormat::UastcRgb, Metric::Rgb, Effort::Fast, false),
+    (PayloadFormat::UastcRgb, Metric::Rgb, Effort::Best, false),
+    (PayloadFormat::UastcRgb, Metric::Direction, Effort::Fast, false),
+    (PayloadFormat::UastcRgb, Metric::Direction, Effort::Best, false),
+    (PayloadFormat::UastcRgb, Metric::Direction, Effort::Fast, true),
+    (PayloadFormat::UastcRgb, Metric::Direction, Effort::Best, true),
+    (PayloadFormat::Bc5, Metric::Direction, Effort::Fast, false),
 ];
+/// Whether the encoder knows the lobes about the normals.
+type HasLobes = bool;
 /// Columns: half floats and [`ENCODINGS`].
 const COLUMNS: usize = 1 + ENCODINGS.len();
 
@@ -41,7 +45,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let folder = if shared.is_dir() { shared } else { Path::new("fixtures/maps") };
     let names: &[&str] = if folder == shared { &MAPS } else { &FIXTURES };
     println!(
-        "| map | alpha | level | half floats | channels, fast | channels, best | direction, fast | direction, best | BC5 |"
+        "| map | alpha | level | half floats | channels, fast | channels, best | direction, fast | direction, best | \
+         lobes, fast | lobes, best | BC5 |"
     );
     println!("|---|---|---|{}", "---|".repeat(COLUMNS));
     for name in names {
@@ -88,8 +93,19 @@ fn errors_by_level(image: &Image, alpha: f32, texels: usize) -> Result<Vec<Row>,
             };
             let exact = of(Content::Normal)?.ok_or("the bake has no normals")?;
             let mut normals = vec![exact.clone()];
-            for (format, metric, effort) in ENCODINGS {
-                normals.push(encoded(&exact, format, metric, effort)?);
+            let (roughness, anisotropy) = (of(Content::Roughness)?, of(Content::Anisotropy)?);
+            let row_of_lobes = |y: u32, out: &mut [Lobe]| {
+                for (x, lobe) in out.iter_mut().enumerate() {
+                    let sample = |image: &Image, c| image.sample(x as u32, y, c).unwrap_or(1.0);
+                    let texel = |image: &Image| [0, 1, 2].map(|c| sample(image, c));
+                    let roughness = roughness.as_ref().map_or(1.0, |image| sample(image, 1));
+                    let [uu, uv, vv] = shown_lobe(roughness, anisotropy.as_ref().map(texel)).map(|a| a as f32);
+                    *lobe = Lobe { uu, uv, vv };
+                }
+            };
+            for (format, metric, effort, has_lobes) in ENCODINGS {
+                let lobes = has_lobes.then_some(&row_of_lobes as &LobeRow<'_>);
+                normals.push(encoded(&exact, lobes, format, metric, effort)?);
             }
             let mut decoded = Vec::new();
             for normal in normals {
@@ -114,15 +130,24 @@ fn errors_by_level(image: &Image, alpha: f32, texels: usize) -> Result<Vec<Row>,
         .collect()
 }
 
+/// Writes the lobes of row `y` of a level.
+type LobeRow<'a> = dyn Fn(u32, &mut [Lobe]) + Sync + 'a;
+
 /// Encodes and decodes `normals`.
-fn encoded(normals: &Image, format: PayloadFormat, metric: Metric, effort: Effort) -> Result<Image, Box<dyn Error>> {
+fn encoded(
+    normals: &Image,
+    lobes: Option<&LobeRow<'_>>,
+    format: PayloadFormat,
+    metric: Metric,
+    effort: Effort,
+) -> Result<Image, Box<dyn Error>> {
     let &Image { width, height, .. } = normals;
     let row = |y: u32, out: &mut [[f32; 4]]| {
         for (x, texel) in out.iter_mut().enumerate() {
             *texel = [0, 1, 2, 3].map(|c| normals.sample(x as u32, y, c).unwrap_or(1.0));
         }
     };
-    let level = encode(&Texels { width, height, row: &row }, format, metric, effort)?;
+    let level = encode(&Texels { width, height, row: &row, lobes }, format, metric, effort)?;
     let levels = vec![StoredLevel::new(level, format, effort)?];
     let file = Ktx2Writer { format, width, height, levels, keys: &[] }.into_bytes()?;
     Ok(Ktx2::parse(&file)?.decode_level(0)?)

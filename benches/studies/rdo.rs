@@ -41,7 +41,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 *texel = [0, 1, 2, 3].map(|c| image.sample(x as u32, y, c).unwrap_or(1.0));
             }
         };
-        let texels = Texels { width: image.width, height: image.height, row: &row };
+        let texels = Texels { width: image.width, height: image.height, row: &row, lobes: None };
         let before = encode(&texels, PayloadFormat::UastcRgb, metric, effort)?;
         let mut after = before.clone();
         lower_rate(&mut after, &texels, metric, loss)?;

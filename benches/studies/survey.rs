@@ -63,15 +63,15 @@ fn main() -> Result<(), Box<dyn Error>> {
 fn compare(map: &NormalMap, alpha: f32, same: &mut Differences, more: &mut Differences) {
     let sizes = level_sizes(map.width(), map.height());
     let surface = Surface::of_map(map, SquaredAlpha::isotropic(Alpha(alpha)));
-    let row = |y: u32, out: &mut [OrientedLobe]| {
+    let rows = |first: u32, out: &mut [OrientedLobe]| {
         let mut texels = vec![Moments::default(); out.len()];
-        NormalOffsets::new(map).row(y, &mut texels);
+        NormalOffsets::new(map).rows(first, &mut texels);
         for (lobe, m) in out.iter_mut().zip(texels) {
             *lobe = OrientedLobe::new(m.mean, SquaredAlpha::isotropic(Alpha(alpha)));
         }
     };
     let precision = Precision::QUICK;
-    let sites = sample_sites(&sizes, 1..sizes.len(), Family::Ggx, precision, &row);
+    let sites = sample_sites(&sizes, 1..sizes.len(), Family::Ggx, precision, &rows);
     for (level, &size) in sizes.iter().enumerate().skip(1) {
         let of: Vec<_> = sites.iter().filter(|s| s.level == level).collect();
         let mut quick = [0.0; PEERS.len()];

@@ -14,6 +14,7 @@ use super::terminal::outcome::Outcome;
 use super::terminal::summary::summary;
 use super::work::{Work, Worked};
 use crate::cache::CacheError;
+use crate::note::Note;
 use crate::output::lock::{Kind, OutputLock};
 use crate::output::{OutputPath, PublishError};
 use crate::project::{InputError, NamedServer, Selected, SelectionError};
@@ -87,6 +88,8 @@ struct Order {
     settings: Settings,
     configs: Vec<PathBuf>,
     server: Option<NamedServer>,
+    /// Notes on the engines of the presets; none for a plan, which has no presets.
+    notes: Vec<Note>,
     /// The output folder; `None` for a plan, whose jobs name their own.
     output: Option<PathBuf>,
     /// The lock on the output folder, held until all outputs are written. A plan takes no lock, because other parts of
@@ -141,6 +144,9 @@ impl Args {
         if self.depfile.is_some() {
             touch_cached(&worked.assets);
         }
+        if !self.quiet && !self.json {
+            order.notes.iter().try_for_each(|note| writeln!(out, "note: {note}"))?;
+        }
         let mut outcome = order.outcome;
         let json = if self.json || self.report.is_some() { report(order, refused, worked)? } else { String::new() };
         outcome = outcome.and(write_files([(report_path, &json), (depfile_path, &dependencies)], err)?);
@@ -169,9 +175,10 @@ impl Args {
         }
         let _lock = self.lock(&selected, err)?;
         let planned = plan_assets(&selected.assets);
+        let notes = selected.notes_on_engines();
         let Selected { output, errors, settings, configs, remote: server, .. } = selected;
         let output = Some(output);
-        Ok(ControlFlow::Continue(Order { planned, errors, settings, configs, server, output, _lock, outcome }))
+        Ok(ControlFlow::Continue(Order { planned, errors, settings, configs, server, notes, output, _lock, outcome }))
     }
 
     /// Locks the output folder, and says so when that takes long.
@@ -219,7 +226,8 @@ fn report(order: Order, refused: Refused, worked: Worked) -> io::Result<String> 
         AssetOutcome::failed(name, job.ok().map(|job| job.id), 0.0, error.to_string(), false)
     });
     let assets = errors.chain(refused).chain(worked.assets).collect();
-    let report = RunReport::new(RecordedSettings::new(&order.settings, order.settings.model), assets, worked.remote);
+    let settings = RecordedSettings::new(&order.settings, order.settings.model);
+    let report = RunReport::new(settings, assets, order.notes, worked.remote);
     Ok(serde_json::to_string_pretty(&report).map_err(io::Error::other)? + "\n")
 }
 

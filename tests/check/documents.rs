@@ -109,32 +109,34 @@ const FIXTURES: &[Fixture] = &[
             });
         },
     ),
-    // The roughness texture has twice the lost roughness.
+    // The roughness texture has much more than the lost roughness.
     Fixture {
         is_deep: true,
-        ..fixture(Code::Variance, &["--profile", "pyramid", "--model", "anisotropic"], LEVEL_1, |b| {
-            b.edit(|d| scale_roughness(d, 2.0));
+        ..fixture(Code::PyramidLevel, &["--profile", "pyramid", "--model", "anisotropic"], LEVEL_1, |b| {
+            b.edit(|d| scale_roughness(d, 6.0));
         })
     },
     Fixture {
         is_deep: true,
-        ..fixture(Code::Variance, &["--profile", "pyramid", "--model", "isotropic"], LEVEL_1, |b| {
-            b.edit(|d| scale_roughness(d, 2.0));
+        ..fixture(Code::PyramidLevel, &["--profile", "pyramid", "--model", "isotropic"], LEVEL_1, |b| {
+            b.edit(|d| scale_roughness(d, 12.0));
         })
     },
-    // Level 1 has offsets of another mean.
+    // The lobes of level 1 are turned along v, where the bumps of level 0 are low.
     Fixture {
         is_deep: true,
         ..fixture(
-            Code::Variance,
+            Code::PyramidLevel,
             &["--profile", "pyramid", "--model", "none", "--target", "float", "--gltf", "strict"],
             LEVEL_1,
             |b| {
                 let texture = b.texture("bumps.offset.ktx2");
                 let mut bytes = fs::read(&texture).unwrap();
                 let level = Ktx2::parse(&bytes).unwrap().levels()[1];
-                // Every half float becomes 0x3C3C, a little more than 1.
-                bytes[level.offset as usize..][..level.length as usize].fill(0x3C);
+                // The half floats 0.5, 0.8, 0.9 and 1: the unit normal (0, 0.6, 0.8).
+                let texel = [0x00, 0x38, 0x66, 0x3A, 0x33, 0x3B, 0x00, 0x3C];
+                let level = &mut bytes[level.offset as usize..][..level.length as usize];
+                level.iter_mut().zip(texel.into_iter().cycle()).for_each(|(byte, new)| *byte = new);
                 fs::write(texture, bytes).unwrap();
             },
         )

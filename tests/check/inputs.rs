@@ -383,7 +383,7 @@ fn ktx2(image: &RgbImage) -> Vec<u8> {
     };
     let (width, height) = image.dimensions();
     let format = PayloadFormat::UastcRgb;
-    let level = encode(&Texels { width, height, row: &row }, format, Metric::Rgb, Effort::Fast).unwrap();
+    let level = encode(&Texels { width, height, row: &row, lobes: None }, format, Metric::Rgb, Effort::Fast).unwrap();
     let keys = [Key { key: "KTXwriter".into(), value: "toktx v4.3".into() }];
     let levels = vec![StoredLevel::new(level, format, Effort::Fast).unwrap()];
     Ktx2Writer { format, width, height, levels, keys: &keys }.into_bytes().unwrap()

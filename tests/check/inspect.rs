@@ -48,7 +48,7 @@ fn shows_materials_and_ranges_of_a_document() {
     let images = &material["slots"][0]["images"];
     assert_eq!((&images[0]["picture"]["format"], &images[1]["ktx2"]["width"]), (&json!("PNG"), &json!(16)));
     let text = inspect(&bake.document(), &[]);
-    assert!(text.contains("offsetMin: [") && text.contains("KHR_texture_basisu: ridges.roughcast/"), "{text}");
+    assert!(text.contains("offsetScale: [") && text.contains("KHR_texture_basisu: ridges.roughcast/"), "{text}");
 }
 
 #[test]
@@ -93,9 +93,12 @@ fn extracts_floats_of_all_textures_of_a_document_as_exr() {
     let image = roughcast::decode::decode(&bytes, &Default::default()).unwrap();
     let document: Value = serde_json::from_slice(&fs::read(bake.document()).unwrap()).unwrap();
     let extension = &document["materials"][0]["extensions"]["ROUGHCAST_materials_roughness_pyramid"];
-    let [min, max] = ["offsetMin", "offsetMax"].map(|bound| extension[bound][0].as_f64().unwrap() as f32);
+    let scale = extension["offsetScale"][0].as_f64().unwrap() as f32;
     // The ridges have slopes of 0.6 and -0.5, stored in 8 bits.
-    let across = [0, 1].map(|x| min + image.sample(x, 1, 0).unwrap() * (max - min));
+    let across = [0, 1].map(|x| {
+        let [x, z] = [0, 2].map(|c| 2.0 * image.sample(x, 1, c).unwrap() - 1.0);
+        -scale * x / z
+    });
     assert!((across[0] - 0.6).abs() < 0.02 && (across[1] + 0.5).abs() < 0.02, "{across:?}");
 }
 

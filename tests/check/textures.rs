@@ -62,7 +62,8 @@ fn write(format: PayloadFormat, size: u32, levels: &[Vec<u8>], keys: &[Key]) -> 
 fn normals(texel: [f32; 4], format: PayloadFormat) -> Vec<u8> {
     let level = |size| {
         let row = |_: u32, out: &mut [[f32; 4]]| out.fill(texel);
-        encode(&Texels { width: size, height: size, row: &row }, format, Metric::Rgb, Effort::Fast).unwrap()
+        encode(&Texels { width: size, height: size, row: &row, lobes: None }, format, Metric::Rgb, Effort::Fast)
+            .unwrap()
     };
     write(format, 4, &[level(4), level(2), level(1)], &provenance().keys())
 }

@@ -89,8 +89,8 @@ fn trimmed_textures_have_the_coarser_levels_of_whole_textures() {
                     let bytes = fs::read(folder.join(path)).unwrap();
                     Ktx2::parse(&bytes).unwrap().decode_level(level).unwrap()
                 };
-                // Ranges of the pyramid profile depend on the written levels, so its texels differ.
-                if texture.get("range").is_none() {
+                // Ranges and scales of the pyramid profile depend on the written levels, so its texels differ.
+                if texture.get("range").is_none() && texture.get("scale").is_none() {
                     assert_eq!(level(&baked, 0).samples, level(&whole, 1).samples, "{path}");
                     assert_eq!(level(&baked, 3).samples, level(&whole, 4).samples, "{path}");
                 }

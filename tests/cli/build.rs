@@ -33,7 +33,11 @@ fn depfiles_name_what_each_output_was_made_from() {
         assert!(folder.path().join(path).is_file(), "{path} of {rules:?}");
     }
     let has = |name: &str| inputs.iter().any(|input| input.ends_with(name));
-    assert!(target.starts_with("o/") && has(".gltf") && has(".png") && has("my assets #1/roughcast.toml"), "{rules:?}");
+    assert!(
+        target.starts_with("o/") && has(".gltf") && has("brushed_normal.png") && has("my assets #1/roughcast.toml"),
+        "{rules:?}"
+    );
+    assert!(has("brushed_colour.png"), "the base colour decides on the reflectance: {rules:?}");
 }
 
 /// Make runs a rule again while an output is older than an input.

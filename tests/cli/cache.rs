@@ -96,6 +96,18 @@ fn only_what_changed_is_baked() {
     }
 }
 
+/// The base colour decides on the reflectance of texels, and so on the roughness.
+#[test]
+fn another_base_colour_is_baked_again() {
+    let scene = scene();
+    let folder = scene.path();
+    statuses(folder, "");
+    let colour = folder.join("assets/brushed/brushed_colour.png");
+    let size = image::open(&colour).expect("a picture").into_rgb8().dimensions();
+    image::RgbImage::from_fn(size.0, size.1, |x, _| image::Rgb([(x % 256) as u8; 3])).save(&colour).expect("a file");
+    assert_eq!(statuses(folder, ""), ["baked", "cached", "cached", "cached"]);
+}
+
 #[test]
 fn a_corrupted_entry_is_dropped_with_a_warning_and_baked_again() {
     for kind in ["blobs", "jobs"] {

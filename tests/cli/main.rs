@@ -19,6 +19,7 @@ mod random;
 mod rdo;
 mod real;
 mod render;
+mod scale_normals;
 #[path = "../common/skip.rs"]
 mod skip;
 mod survival;

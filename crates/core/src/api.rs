@@ -97,8 +97,10 @@ pub struct BakedTexture {
     pub height: u32,
     /// The KTX2 file, with all mip levels.
     pub ktx2: Vec<u8>,
-    /// What texels of 0 and 1 stand for; only in the pyramid profile.
+    /// What texels of 0 and 1 stand for; only in textures of D and lambda_1.
     pub range: Option<Range>,
+    /// What multiplies the slopes of the stored normals; only in textures of offsets.
+    pub scale: Option<f32>,
 }
 
 /// Bakes one normal or height map without a document.
@@ -117,7 +119,7 @@ pub fn bake_map(
     let texture = |mut texture: EncodedTexture| {
         let (width, height) = (texture.mip_chain.width, texture.mip_chain.height);
         let ktx2 = texture.mip_chain.take_ktx2(&[])?;
-        Ok(BakedTexture { content: texture.content, width, height, ktx2, range: texture.range })
+        Ok(BakedTexture { content: texture.content, width, height, ktx2, range: texture.range, scale: texture.scale })
     };
     let textures = baked.textures.into_iter().map(texture).collect::<Result<_, OutOfMemory>>()?;
     Ok(BakedMap { textures, model: baked.model, choice: baked.choice, notes: baked.notes })

@@ -60,12 +60,16 @@ pub enum NoteKind {
     OtherTextureCoordinates,
     /// A texture of the base lobe has another wrap mode than the bump map.
     OtherWrapMode,
+    /// The reflectance of the material cannot be read.
+    UnknownReflectance,
     /// The material has glossiness besides roughness.
     SpecularGlossiness,
     /// The material's anisotropy was dropped.
     AnisotropyDropped,
     /// The pyramid profile describes no layer but the base layer.
     LayerWithoutPyramid,
+    /// The engine widens lobes a second time for bumps that the bake has counted.
+    EngineLimiter,
 }
 
 impl NoteKind {
@@ -73,9 +77,11 @@ impl NoteKind {
     fn asks_for_action(self) -> bool {
         match self {
             // Another source file is better.
-            Self::JpegSource | Self::SmallDepth | Self::NormalsBelowSurface => true,
+            Self::JpegSource | Self::SmallDepth | Self::NormalsBelowSurface | Self::UnknownReflectance => true,
             // The document or the command line does not fit the purpose.
             Self::SamplerWithoutMips | Self::UnknownTexelSize | Self::OtherTextureCoordinates => true,
+            // A setting of the engine is better.
+            Self::EngineLimiter => true,
             Self::NoBumpMap
             | Self::MissedBound
             | Self::SteepSlopes
@@ -243,6 +249,15 @@ pub fn other_wrap_mode(texture: &str) -> Note {
     note(NoteKind::OtherWrapMode, text)
 }
 
+/// Returns the note on a material whose reflectance cannot be read for `reason`.
+pub fn unknown_reflectance(reason: &impl Display) -> Note {
+    let text = format!(
+        "the base colour or KHR_materials_specular cannot be read, so that every texel counts by its area alone, \
+         whatever its reflectance: {reason}"
+    );
+    note(NoteKind::UnknownReflectance, text)
+}
+
 /// Returns the note on a material with glossiness, which engines may read instead of roughness.
 pub fn specular_glossiness() -> Note {
     let text = "the material has KHR_materials_pbrSpecularGlossiness, and engines that know it read glossiness: the \
@@ -250,9 +265,9 @@ pub fn specular_glossiness() -> Note {
     note(NoteKind::SpecularGlossiness, text)
 }
 
-/// Returns the note on an anisotropic material that was baked with the isotropic model.
-pub fn anisotropy_dropped() -> Note {
-    let text = "the material's anisotropy was dropped because `--model isotropic` was requested";
+/// Returns the note on an anisotropic material that was baked with the isotropic model because of `setting`.
+pub fn anisotropy_dropped(setting: &str) -> Note {
+    let text = format!("the material's anisotropy was dropped because `{setting}` was requested");
     note(NoteKind::AnisotropyDropped, text)
 }
 
@@ -260,6 +275,14 @@ pub fn anisotropy_dropped() -> Note {
 pub fn layer_without_pyramid(layer: &str) -> Note {
     let text = format!("the extension describes the base lobe only: no pyramid was written for the {layer}");
     note(NoteKind::LayerWithoutPyramid, text)
+}
+
+/// Returns the note on `engine`, which widens lobes by default for the bumps that it shades. `switch` says how its user
+/// turns that off.
+pub fn engine_limiter(engine: &str, switch: &str) -> Note {
+    let text =
+        format!("{engine} widens baked lobes a second time wherever normals differ from pixel to pixel: {switch}");
+    note(NoteKind::EngineLimiter, text)
 }
 
 #[cfg(test)]
@@ -277,6 +300,8 @@ mod tests {
             sampler_without_mips(),
             unknown_texel_size(&"the material is in no scene"),
             other_texture_coordinates("roughness"),
+            engine_limiter("Godot", "turn its limiter off"),
+            unknown_reflectance(&"the image is damaged"),
             missed_bound("level 2 misses --max-error 0.1".to_owned(), true),
         ];
         asking.iter().for_each(|note| assert!(note.asks_for_action, "{note:?}"));
@@ -296,7 +321,7 @@ mod tests {
             conflicting_rotations(0.5, 0.5),
             other_wrap_mode("anisotropy"),
             specular_glossiness(),
-            anisotropy_dropped(),
+            anisotropy_dropped("--model isotropic"),
             layer_without_pyramid("clearcoat"),
             missed_bound("level 2 misses --max-error 0.1".to_owned(), false),
         ];

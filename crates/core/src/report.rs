@@ -95,6 +95,9 @@ pub struct Candidate {
     pub bytes: u64,
     /// Mean lobe error of the decoded levels, from `finest` on.
     pub errors: Vec<f32>,
+    /// Levels that keep the base lobe, since the roughened lobes would have a larger error there.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub base_levels: Vec<usize>,
 }
 
 /// A level at which the chosen candidate exceeds the error bound.
@@ -214,9 +217,12 @@ pub struct TextureReport {
     pub trimmed: usize,
     /// Bytes of the KTX2 file.
     pub bytes: usize,
-    /// What texels of 0 and 1 stand for; only in the pyramid profile.
+    /// What texels of 0 and 1 stand for; only in textures of D and lambda_1.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub range: Option<Range>,
+    /// What multiplies the slopes of the stored normals; only in textures of offsets.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scale: Option<f32>,
 }
 
 fn is_zero(n: &usize) -> bool {
@@ -234,7 +240,7 @@ pub enum Content {
     Roughness,
     /// Direction in red and green, and strength in blue, of the anisotropy.
     Anisotropy,
-    /// Offsets (f_u, f_v).
+    /// Offsets (f_u, f_v), as unit normals of scaled offsets.
     Offset,
     /// The factor D.
     Factor,
@@ -281,7 +287,8 @@ mod tests {
 
     #[test]
     fn missed_bounds_name_each_remedy_once() {
-        let candidate = |model, error| Candidate { model, first: 0, bytes: 0, errors: vec![error; 3] };
+        let candidate =
+            |model, error| Candidate { model, first: 0, bytes: 0, errors: vec![error; 3], base_levels: Vec::new() };
         let miss = |level, reason| Miss { level, error: 0.2, oracle: 0.1, reason };
         let choice = Choice {
             finest: 0,

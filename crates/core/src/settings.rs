@@ -75,6 +75,21 @@ impl Model {
     }
 }
 
+/// The model with the most parameters that a bake may choose by itself.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum MaxModel {
+    /// For engines without anisotropic lobes.
+    #[cfg_attr(feature = "cli", value(help = "For engines without anisotropic lobes"))]
+    Isotropic,
+    /// Every model.
+    #[default]
+    #[cfg_attr(feature = "cli", value(help = "Every model"))]
+    Anisotropic,
+}
+
 /// How the document refers to textures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
@@ -108,6 +123,9 @@ pub struct Settings {
     pub profile: Profile,
     /// What is modelled of the lost bumps.
     pub model: Model,
+    /// The model with the most parameters that [`Model::Auto`] may choose. An explicit [`Model::Anisotropic`] overrides
+    /// it.
+    pub max_model: MaxModel,
     /// Largest mean lobe error at any level, in [0, 1], that [`Model::Auto`] accepts.
     pub max_error: f32,
     /// The shape of the distribution of slopes that footprints are assumed to have.
@@ -125,6 +143,9 @@ pub struct Settings {
     pub gltf: Form,
     /// Whether a .glb is written instead of a .gltf with external files.
     pub glb: bool,
+    /// Whether `normalTexture.scale` may change, so that the slopes of low bumps use all values of their texture. An
+    /// engine that ignores the scale shows such bumps too strong.
+    pub scale_normals: bool,
     /// Frame of the pyramid profile's offsets.
     pub frame: Frame,
     /// Scale of height maps in widths of a repeat (in mesh units under [`Frame::Natural`]). It overrides the asset's
@@ -143,6 +164,7 @@ impl Default for Settings {
         Self {
             profile: Profile::default(),
             model: Model::default(),
+            max_model: MaxModel::default(),
             max_error: 0.1,
             distribution: Distribution::default(),
             lobe: Family::default(),
@@ -151,6 +173,7 @@ impl Default for Settings {
             rdo: None,
             gltf: Form::default(),
             glb: false,
+            scale_normals: false,
             frame: Frame::default(),
             height_scale: None,
             view: None,
@@ -177,14 +200,24 @@ impl Settings {
     setters! {
         with_profile: profile, Profile;
         with_model: model, Model;
+        with_max_model: max_model, MaxModel;
         with_distribution: distribution, Distribution;
         with_lobe: lobe, Family;
         with_target: target, Target;
         with_quality: quality, Effort;
         with_gltf: gltf, Form;
         with_glb: glb, bool;
+        with_scale_normals: scale_normals, bool;
         with_max_texels: max_texels, u64;
         with_provenance: provenance, bool;
+    }
+
+    /// Returns the model with the most parameters that the settings allow.
+    pub(crate) fn model_limit(&self) -> Model {
+        match (self.model, self.max_model) {
+            (Model::Anisotropic, _) | (_, MaxModel::Anisotropic) => Model::Anisotropic,
+            (_, MaxModel::Isotropic) => Model::Isotropic,
+        }
     }
 
     /// Sets [`Settings::max_error`].

@@ -155,6 +155,7 @@ impl MapOptions {
         let settings = MapSettings {
             bake: RecordedSettings::new(&self.settings, model),
             range: texture.range.as_ref().map(RecordedRange::new),
+            scale: texture.scale.map(f64::from),
             map: self.recorded(),
         };
         Provenance {
@@ -187,6 +188,8 @@ struct MapSettings<'a> {
     #[serde(flatten)]
     bake: RecordedSettings,
     range: Option<RecordedRange>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    scale: Option<f64>,
     map: RecordedMap<'a>,
 }
 

@@ -4,7 +4,7 @@
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use uastc_encoder::{Effort, Encoder, Image, Metric, Weight, decode_block, lower_rate};
+use uastc_encoder::{Effort, Encoder, Image, Lobe, Metric, Weight, decode_block, lower_rate};
 
 const ROUGHNESS: Metric = Metric::Weighted([Weight::Quarter, Weight::Full, Weight::Quarter]);
 const EFFORTS: [Effort; 2] = [Effort::Fast, Effort::Best];
@@ -54,6 +54,23 @@ fn encode(bencher: Bencher, texels: &[u8], metric: Metric, effort: Effort) {
 #[divan::bench(args = EFFORTS, sample_count = 3)]
 fn encode_normals(bencher: Bencher, effort: Effort) {
     encode(bencher, &normals(), Metric::Direction, effort);
+}
+
+/// Makes lobes that vary from texel to texel, with axis ratios up to 2.
+fn lobes() -> Vec<Lobe> {
+    let size = size() as usize;
+    let lobe = |x: f32, y: f32| {
+        let (a, b) = (0.1 + 0.05 * (x * 0.03).sin(), 0.1 + 0.05 * (y * 0.05).cos());
+        Lobe { uu: a * a, uv: 0.2 * a * b, vv: b * b }
+    };
+    (0..size * size).map(|i| lobe((i % size) as f32, (i / size) as f32)).collect()
+}
+
+#[divan::bench(args = EFFORTS, sample_count = 3)]
+fn encode_normals_with_lobes(bencher: Bencher, effort: Effort) {
+    let (texels, lobes, encoder) = (normals(), lobes(), Encoder::new(Metric::Direction, effort));
+    let image = Image::new(&texels, size(), size()).and_then(|image| image.with_lobes(&lobes)).expect("a square");
+    bencher.counter(ItemsCount::new(texels.len() / 4)).bench(|| encoder.encode(black_box(&image)));
 }
 
 #[divan::bench(args = EFFORTS, sample_count = 3)]

@@ -112,7 +112,7 @@ pub(crate) fn one_line<S: Simd, const N: usize>(
     texels: &[Grid<S>; N],
     all: &Moments<S, N>,
     axis: &[Wide<S>; N],
-    scale: &[f32; N],
+    scale: &[Wide<S>; N],
     mode: &'static Mode,
     rounds: usize,
 ) -> Blocks<S> {
@@ -120,8 +120,7 @@ pub(crate) fn one_line<S: Simd, const N: usize>(
         #[inline(always)]
         || {
             let mut blocks = Blocks::empty(simd, mode);
-            let scale = splat(simd, scale);
-            let points = Points { texels, subset: None, scale, range: mode.range, ramp: mode.ramp() };
+            let points = Points { texels, subset: None, scale: *scale, range: mode.range, ramp: mode.ramp() };
             blocks.set_line(&points.fit(simd, all, axis, rounds), 0, None);
             blocks
         },
@@ -135,7 +134,7 @@ pub(crate) fn two_planes<S: Simd, const N: usize>(
     texels: &[Grid<S>; N],
     all: &Moments<S, N>,
     selector: Wide<S>,
-    scale: &[f32; N],
+    scale: &[Wide<S>; N],
     mode: &'static Mode,
     rounds: usize,
 ) -> Blocks<S> {
@@ -155,12 +154,11 @@ fn planes<S: Simd, const N: usize, const M: usize>(
     texels: &[Grid<S>; N],
     all: &Moments<S, N>,
     selector: Wide<S>,
-    scale: &[f32; N],
+    scale: &[Wide<S>; N],
     mode: &'static Mode,
     rounds: usize,
 ) -> Blocks<S> {
     let zero = Wide::splat(simd, 0.0);
-    let scale = splat(simd, scale);
     let (single, others) = split_channels::<_, N, M>(texels, selector);
     let (mut own, mut columns, mut scatter) = ([zero; N], [[zero; N]; M], [[zero; M]; M]);
     for c in 0..N {
@@ -180,7 +178,7 @@ fn planes<S: Simd, const N: usize, const M: usize>(
     let points = Points {
         texels: &single,
         subset: None,
-        scale: [channel_at(selector, &scale)],
+        scale: [channel_at(selector, scale)],
         range: mode.range,
         ramp: mode.ramp(),
     };
@@ -188,7 +186,7 @@ fn planes<S: Simd, const N: usize, const M: usize>(
     let points = Points {
         texels: &others,
         subset: None,
-        scale: other_channels(selector, &scale),
+        scale: other_channels(selector, scale),
         range: mode.range,
         ramp: mode.ramp(),
     };
@@ -314,7 +312,7 @@ pub(crate) fn split_lines<S: Simd, const N: usize, const K: usize>(
     simd: S,
     texels: &[Grid<S>; N],
     split: &Split<S, N, K>,
-    scale: &[f32; N],
+    scale: &[Wide<S>; N],
     mode: &'static Mode,
     rounds: usize,
 ) -> Blocks<S> {
@@ -323,10 +321,9 @@ pub(crate) fn split_lines<S: Simd, const N: usize, const K: usize>(
         || {
             let mut blocks = Blocks::empty(simd, mode);
             blocks.pattern = split.pattern;
-            let scale = splat(simd, scale);
             for (subset, mask) in split.masks.iter().enumerate() {
                 let (m, axis) = (&split.moments[subset], &split.axes[subset]);
-                let points = Points { texels, subset: Some(mask), scale, range: mode.range, ramp: mode.ramp() };
+                let points = Points { texels, subset: Some(mask), scale: *scale, range: mode.range, ramp: mode.ramp() };
                 blocks.set_line(&points.fit(simd, m, axis, rounds), subset, Some(mask));
             }
             blocks

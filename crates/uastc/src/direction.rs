@@ -80,11 +80,95 @@ pub(crate) fn effective_direction<F: Real>([x, y, z]: [F; 3]) -> ([F; 3], F) {
 
 /// An entry of a palette: the vector that one weight (two with two planes) gives between two endpoints.
 #[derive(Clone, Copy)]
-struct Entry<S: Simd> {
+pub(crate) struct Entry<S: Simd> {
     /// The direction of [`effective_direction`].
-    direction: [Wide<S>; 3],
+    pub direction: [Wide<S>; 3],
     /// The part of the error that does not depend on the normal.
-    loss: Wide<S>,
+    pub loss: Wide<S>,
+}
+
+/// How the error of a decoded vector against the normal of a texel is measured.
+pub(crate) trait DirectionMetric<S: Simd>: Copy {
+    /// Returns the wanted normals.
+    fn normals(&self) -> &Normals<S>;
+
+    /// Returns the distance of an entry from the normal of texel `i`. A texel takes the nearest entry.
+    fn distance(&self, i: usize, entry: &Entry<S>) -> Wide<S>;
+
+    /// Returns the error of texel `i`, whose entry has this `distance`.
+    fn error(&self, i: usize, distance: Wide<S>) -> Wide<S>;
+
+    /// Returns how many of the likeliest patterns thorough searches fit.
+    fn patterns(&self) -> usize;
+
+    /// Returns in which lanes `blocks`, which are fitted to x and y by squared distance, may get below `error`.
+    fn may_win(&self, blocks: &Blocks<S>, error: Wide<S>) -> <Wide<S> as Real>::Mask;
+
+    /// Returns the weight of texel `i` in a regression if its vector is `decoded`; `None` if all texels weigh 1.
+    fn weight(&self, i: usize, decoded: [Wide<S>; 3]) -> Option<Wide<S>>;
+}
+
+/// How thoroughly endpoints are fitted.
+#[derive(Clone, Copy)]
+pub(crate) struct Refinement {
+    /// Rounds of regression; with 0 the endpoints stay.
+    pub rounds: usize,
+    /// Passes of [`Subset::leave_optimum`].
+    pub hops: usize,
+    /// Passes over single endpoints.
+    pub passes: usize,
+}
+
+impl Refinement {
+    /// Returns `rounds` of regression alone.
+    pub fn rounds(rounds: usize) -> Self {
+        Self { rounds, hops: 0, passes: 0 }
+    }
+
+    /// Returns `passes` over the single endpoints of fitted blocks.
+    pub fn passes(passes: usize) -> Self {
+        Self { rounds: 0, hops: 0, passes }
+    }
+}
+
+/// Squared distances between directions.
+#[derive(Clone, Copy)]
+pub(crate) struct SquaredDistances<'a, S: Simd>(pub &'a Normals<S>);
+
+impl<S: Simd> DirectionMetric<S> for SquaredDistances<'_, S> {
+    #[inline(always)]
+    fn normals(&self) -> &Normals<S> {
+        self.0
+    }
+
+    #[inline(always)]
+    fn distance(&self, i: usize, entry: &Entry<S>) -> Wide<S> {
+        let [x, y, z] = texel(self.0, i);
+        let [u, v, w] = entry.direction;
+        let (a, b, c) = (x - u, y - v, z - w);
+        a * a + entry.loss + b * b + c * c
+    }
+
+    #[inline(always)]
+    fn error(&self, _: usize, distance: Wide<S>) -> Wide<S> {
+        distance
+    }
+
+    #[inline(always)]
+    fn patterns(&self) -> usize {
+        2
+    }
+
+    #[inline(always)]
+    fn may_win(&self, blocks: &Blocks<S>, error: Wide<S>) -> <Wide<S> as Real>::Mask {
+        // The error of x and y is below that of directions.
+        blocks.error.simd_lt(error)
+    }
+
+    #[inline(always)]
+    fn weight(&self, _: usize, _: [Wide<S>; 3]) -> Option<Wide<S>> {
+        None
+    }
 }
 
 /// Endpoints of one subset for each channel: low, high.
@@ -97,12 +181,12 @@ const MAX_ENTRIES: usize = 32;
 ///
 /// The index of an entry is the weight index of all channels. With two planes, its upper bits are the weight index of
 /// channel `selector`, and its lower bits that of the other channels.
-struct Subset<'a, S: Simd> {
+struct Subset<S: Simd, M> {
     simd: S,
     ramp: &'static Ramp,
     range: &'static Range,
     selector: Option<usize>,
-    normals: &'a Normals<S>,
+    metric: M,
     /// 1 for a member, 0 for other texels; `None` if all texels are members.
     mask: Option<Grid<S>>,
 }
@@ -144,7 +228,7 @@ impl<S: Simd> Fit<S> {
     }
 }
 
-impl<S: Simd> Subset<'_, S> {
+impl<S: Simd, M: DirectionMetric<S>> Subset<S, M> {
     /// Returns the weights, 0..=64, of an entry: of the selected channel, and of the others.
     #[inline(always)]
     fn weights(&self, entry: Wide<S>) -> [Wide<S>; 2] {
@@ -194,52 +278,70 @@ impl<S: Simd> Subset<'_, S> {
     /// Chooses the nearest entry for every texel.
     #[inline(always)]
     fn best_entries(&self, ends: &Ends<S>) -> Fit<S> {
-        let simd = self.simd;
-        let palette = self.palette(ends);
-        let zero = Wide::splat(simd, 0.0);
-        let (mut entries, mut errors) = ([zero; 16], [zero; 16]);
-        for i in 0..16 {
-            let [x, y, z] = texel(self.normals, i);
-            let (mut least, mut at) = (Wide::splat(simd, f32::INFINITY), zero);
-            for (e, entry) in palette.iter().take(self.entries()).enumerate() {
-                let [u, v, w] = entry.direction;
-                let (a, b, c) = (x - u, y - v, z - w);
-                let error = a * a + entry.loss + b * b + c * c;
-                let is_nearer = error.simd_lt(least);
-                least = is_nearer.select(error, least);
-                at = is_nearer.select(Wide::splat(simd, e as f32), at);
-            }
-            (entries[i], errors[i]) = (at, least);
-        }
-        let error = sum(
+        // Compiled once, and not for each call.
+        self.simd.vectorize(
             #[inline(always)]
-            |i| masked(self.mask.as_ref(), i, errors[i]),
-        );
-        Fit { ends: *ends, entries, error }
+            || {
+                let simd = self.simd;
+                let palette = self.palette(ends);
+                let zero = Wide::splat(simd, 0.0);
+                let (mut entries, mut errors) = ([zero; 16], [zero; 16]);
+                for i in 0..16 {
+                    let (mut least, mut at) = (Wide::splat(simd, f32::INFINITY), zero);
+                    for (e, entry) in palette.iter().take(self.entries()).enumerate() {
+                        let distance = self.metric.distance(i, entry);
+                        let is_nearer = distance.simd_lt(least);
+                        least = is_nearer.select(distance, least);
+                        at = is_nearer.select(Wide::splat(simd, e as f32), at);
+                    }
+                    (entries[i], errors[i]) = (at, self.metric.error(i, least));
+                }
+                let error = sum(
+                    #[inline(always)]
+                    |i| masked(self.mask.as_ref(), i, errors[i]),
+                );
+                Fit { ends: *ends, entries, error }
+            },
+        )
     }
 
-    /// Returns the endpoints that fit the weights of `entries` best to `targets`, by regression in each channel.
+    /// Returns how much each texel counts in a regression if `ends` and `entries` give the present vectors: 0 outside
+    /// of the subset. Returns `None` if all texels count the same.
     #[inline(always)]
-    fn regress(&self, targets: &[Grid<S>; 3], entries: &Grid<S>) -> Ends<S> {
+    fn regression_weights(&self, ends: &Ends<S>, entries: &Grid<S>) -> Option<Grid<S>> {
+        self.metric.weight(0, self.decoded(ends, entries[0]))?;
+        let mut weights = *entries;
+        for i in 0..16 {
+            let weight = self.metric.weight(i, self.decoded(ends, entries[i]));
+            weights[i] = masked(self.mask.as_ref(), i, weight.unwrap_or(Wide::splat(self.simd, 1.0)));
+        }
+        Some(weights)
+    }
+
+    /// Returns the endpoints that fit the weights of `entries` best to `targets`, by regression in each channel. A
+    /// texel counts as `subset` says.
+    #[inline(always)]
+    fn regress(&self, targets: &[Grid<S>; 3], entries: &Grid<S>, subset: Option<&Grid<S>>) -> Ends<S> {
         let simd = self.simd;
-        let subset = self.mask.as_ref();
         let count = count(simd, subset);
         let zero = Wide::splat(simd, 0.0);
-        let mut weights = [[zero; 2]; 16];
+        // Weights of interpolation, and the same multiplied by how much the texel counts.
+        let (mut weights, mut counted) = ([[zero; 2]; 16], [[zero; 2]; 16]);
         for i in 0..16 {
             let [single, others] = self.weights(entries[i]);
-            weights[i] = [masked(subset, i, single), masked(subset, i, others)];
+            weights[i] = [single, others];
+            counted[i] = [masked(subset, i, single), masked(subset, i, others)];
         }
         let mut ends = [[zero; 2]; 3];
         for c in 0..3 {
             let plane = self.plane(c);
             let w = sum(
                 #[inline(always)]
-                |i| weights[i][plane],
+                |i| counted[i][plane],
             );
             let ww = sum(
                 #[inline(always)]
-                |i| weights[i][plane] * weights[i][plane],
+                |i| counted[i][plane] * weights[i][plane],
             );
             let x = sum(
                 #[inline(always)]
@@ -247,10 +349,12 @@ impl<S: Simd> Subset<'_, S> {
             );
             let wx = sum(
                 #[inline(always)]
-                |i| weights[i][plane] * targets[c][i],
+                |i| counted[i][plane] * targets[c][i],
             );
             let determinant = count * ww - w * w;
-            let slope = determinant.simd_gt(0.0).select((count * wx - w * x) / determinant, zero);
+            // Sums of whole numbers are exact and differ by more, unless all weights are equal.
+            let is_line = determinant.simd_gt(count * ww * 1e-5);
+            let slope = is_line.select((count * wx - w * x) / determinant, zero);
             let low = (x - slope * w) / count + UNIT;
             ends[c] = [quantise(simd, self.range, low), quantise(simd, self.range, low + slope * 64.0)];
         }
@@ -263,7 +367,7 @@ impl<S: Simd> Subset<'_, S> {
     /// vectors, it is an upper bound of this error. Regression can treat its channels one by one.
     #[inline(always)]
     fn targets(&self, fit: &Fit<S>) -> [Grid<S>; 3] {
-        let mut targets = *self.normals;
+        let mut targets = *self.metric.normals();
         for i in 0..16 {
             let [x, y, z] = self.decoded(&fit.ends, fit.entries[i]);
             let along = (x * targets[0][i] + y * targets[1][i] + z * targets[2][i]) / (UNIT * UNIT);
@@ -284,10 +388,37 @@ impl<S: Simd> Subset<'_, S> {
         if rounds == 0 {
             return self.best_entries(ends);
         }
-        let mut best = self.best_entries(&self.regress(self.normals, entries));
+        let weights = self.regression_weights(ends, entries);
+        let subset = weights.as_ref().or(self.mask.as_ref());
+        let mut best = self.best_entries(&self.regress(self.metric.normals(), entries, subset));
         for _ in 1..rounds {
-            if !best.keep_better(&self.best_entries(&self.regress(&self.targets(&best), &best.entries))) {
+            let weights = self.regression_weights(&best.ends, &best.entries);
+            let subset = weights.as_ref().or(self.mask.as_ref());
+            if !best.keep_better(&self.best_entries(&self.regress(&self.targets(&best), &best.entries, subset))) {
                 break;
+            }
+        }
+        best
+    }
+
+    /// Leaves the nearest optimum, `hops` times for each channel: moves its endpoints by half the distance between
+    /// palette entries, fits entries and endpoints again, and keeps what is better.
+    #[inline(always)]
+    fn leave_optimum(&self, mut best: Fit<S>, hops: usize) -> Fit<S> {
+        let step = 0.5 / self.ramp.last;
+        for _ in 0..hops {
+            for k in 0..12 {
+                let mut ends = best.ends;
+                let [low, high] = &mut ends[k / 4];
+                let by = (*high - *low) * if k % 2 == 0 { step } else { -step };
+                let (a, b) = if k % 4 < 2 { (*low + by, *high + by) } else { (*low - by, *high + by) };
+                (*low, *high) = (quantise(self.simd, self.range, a), quantise(self.simd, self.range, b));
+                let moved = self.best_entries(&ends);
+                let weights = self.regression_weights(&moved.ends, &moved.entries);
+                let subset = weights.as_ref().or(self.mask.as_ref());
+                let fitted = self.best_entries(&self.regress(&self.targets(&moved), &moved.entries, subset));
+                best.keep_better(&moved);
+                best.keep_better(&fitted);
             }
         }
         best
@@ -313,13 +444,16 @@ impl<S: Simd> Subset<'_, S> {
 }
 
 impl<S: Simd> Blocks<S> {
-    /// Fits blocks of one mode and selector to `normals` by direction.
+    /// Fits blocks of one mode and selector to the normals of `metric` by direction.
     ///
-    /// Endpoints are fitted by `rounds` of regression, starting from the weights of the blocks, and then by `passes`
-    /// over single endpoints. The weights become the best ones for these endpoints. The error becomes the error of
-    /// directions.
+    /// Endpoints are fitted by regression, starting from the weights of the blocks, and then as `refinement` says. The
+    /// weights become the best ones for these endpoints. The error becomes that of `metric`.
     #[inline(always)]
-    pub(crate) fn fit_directions(&mut self, simd: S, normals: &Normals<S>, rounds: usize, passes: usize) {
+    pub(crate) fn fit_directions<M>(&mut self, simd: S, metric: M, refinement: Refinement)
+    where
+        M: DirectionMetric<S>,
+    {
+        let Refinement { rounds, hops, passes } = refinement;
         simd.vectorize(
             #[inline(always)]
             || {
@@ -339,10 +473,11 @@ impl<S: Simd> Blocks<S> {
                 self.error = zero;
                 for subset in 0..mode.subsets {
                     let mask = masks.map(|masks| masks[subset]);
-                    let part = Subset { simd, ramp, range: mode.range, selector, normals, mask };
+                    let part = Subset { simd, ramp, range: mode.range, selector, metric, mask };
                     let [x, y, z, _] = self.endpoints[subset];
                     let ends = [x, y, z];
-                    let fit = part.polish(part.refine(&ends, &entries, rounds), passes);
+                    let fit = part.leave_optimum(part.refine(&ends, &entries, rounds), hops);
+                    let fit = part.polish(fit, passes);
                     self.error += fit.error;
                     self.endpoints[subset][..3].copy_from_slice(&fit.ends);
                     for i in 0..16 {

@@ -8,6 +8,7 @@ use crate::BLOCK_BYTES;
 use crate::hints::{Hints, solid_etc1};
 use crate::image::{Image, SizeError};
 use crate::lanes::Texels;
+use crate::lobe::Lobe;
 use crate::metric::{Effort, Metric};
 use crate::pack::pack_solid;
 use crate::row::{Row, groups};
@@ -36,7 +37,8 @@ impl Encoder {
         let columns = image.columns();
         let mut blocks = vec![[0; BLOCK_BYTES]; columns * image.rows()];
         blocks.par_chunks_exact_mut(columns).enumerate().for_each(|(row, blocks)| {
-            self.encode_row(std::array::from_fn(|y| image.line(4 * row + y)), blocks);
+            let lobes = image.has_lobes().then(|| std::array::from_fn(|y| image.lobes(4 * row + y)));
+            self.encode_row(std::array::from_fn(|y| image.line(4 * row + y)), lobes, blocks);
         });
         blocks
     }
@@ -51,51 +53,84 @@ impl Encoder {
     /// Returns [`SizeError::Rows`] if the rows are empty or differ in length. Returns [`SizeError::Blocks`] if `blocks`
     /// does not have one block for every four texels of a row, rounded up.
     pub fn encode_rows(&self, rows: [&[[u8; 4]]; 4], blocks: &mut [[u8; BLOCK_BYTES]]) -> Result<(), SizeError> {
+        self.encode_rows_with(rows, None, blocks)
+    }
+
+    /// Encodes four rows of normals like [`Self::encode_rows`], by the errors of their `lobes`. Other metrics than
+    /// [`Metric::Direction`] ignore the lobes.
+    ///
+    /// # Errors
+    /// Returns the errors of [`Self::encode_rows`], and [`SizeError::Rows`] if a row of lobes does not have the length
+    /// of the rows of texels.
+    pub fn encode_rows_with_lobes(
+        &self,
+        rows: [&[[u8; 4]]; 4],
+        lobes: [&[Lobe]; 4],
+        blocks: &mut [[u8; BLOCK_BYTES]],
+    ) -> Result<(), SizeError> {
+        self.encode_rows_with(rows, Some(lobes), blocks)
+    }
+
+    fn encode_rows_with(
+        &self,
+        rows: [&[[u8; 4]]; 4],
+        lobes: Option<[&[Lobe]; 4]>,
+        blocks: &mut [[u8; BLOCK_BYTES]],
+    ) -> Result<(), SizeError> {
         let widths = rows.map(<[_]>::len);
-        if widths != [widths[0]; 4] || widths[0] == 0 {
-            return Err(SizeError::Rows { widths });
+        for widths in [Some(widths), lobes.map(|lobes| lobes.map(<[_]>::len))].into_iter().flatten() {
+            if widths != [rows[0].len(); 4] || widths[0] == 0 {
+                return Err(SizeError::Rows { widths });
+            }
         }
         let (expected, found) = (widths[0].div_ceil(4), blocks.len());
         if expected != found {
             return Err(SizeError::Blocks { expected, found });
         }
-        self.encode_row(rows, blocks);
+        self.encode_row(rows, lobes, blocks);
         Ok(())
     }
 
     /// Encodes four rows of equal length. The search is compiled here, once for each instruction set.
-    fn encode_row(&self, rows: [&[[u8; 4]]; 4], blocks: &mut [[u8; BLOCK_BYTES]]) {
-        let texels = (0..blocks.len()).map(|column| gather(rows, column * 4)).collect();
-        dispatch!(self.instructions, simd => search_row(simd, texels, self.metric, self.effort, blocks));
+    fn encode_row(&self, rows: [&[[u8; 4]]; 4], lobes: Option<[&[Lobe]; 4]>, blocks: &mut [[u8; BLOCK_BYTES]]) {
+        let texels = (0..blocks.len()).map(|column| gather_texels(rows, column * 4)).collect();
+        let lobes = lobes.filter(|_| self.metric == Metric::Direction);
+        let lobes = lobes.map(|rows| (0..blocks.len()).map(|column| gather(rows, column * 4)).collect());
+        let row = Row::new(texels, lobes);
+        dispatch!(self.instructions, simd => search_row(simd, row, self.metric, self.effort, blocks));
     }
 }
 
-/// Returns the texels of the block that begins at column `left` of four rows, made opaque. The last texel of a row is
-/// repeated.
-fn gather(rows: [&[[u8; 4]]; 4], left: usize) -> Texels {
-    let mut texels = Texels::default();
-    for (four, row) in texels.as_chunks_mut::<4>().0.iter_mut().zip(rows) {
+/// Returns the texels of the block that begins at column `left` of four rows, made opaque.
+fn gather_texels(rows: [&[[u8; 4]]; 4], left: usize) -> Texels {
+    let mut texels = gather(rows, left);
+    texels.iter_mut().for_each(|texel| texel[3] = 255);
+    texels
+}
+
+/// Returns what the block that begins at column `left` of four rows holds. The last element of a row is repeated.
+fn gather<T: Copy>(rows: [&[T]; 4], left: usize) -> [T; 16] {
+    let mut block = [rows[0][left]; 16];
+    for (four, row) in block.as_chunks_mut::<4>().0.iter_mut().zip(rows) {
         match row.get(left..).and_then(<[_]>::first_chunk) {
             Some(found) => *four = *found,
             None => *four = std::array::from_fn(|x| row[(left + x).min(row.len() - 1)]),
         }
     }
-    texels.iter_mut().for_each(|texel| texel[3] = 255);
-    texels
+    block
 }
 
 /// Encodes the blocks of a row. The order of operations is fixed, so that every instruction set gives the same bytes.
 #[inline(always)]
-fn search_row<S: Simd>(simd: S, texels: Vec<Texels>, metric: Metric, effort: Effort, out: &mut [[u8; BLOCK_BYTES]]) {
+fn search_row<S: Simd>(simd: S, mut row: Row, metric: Metric, effort: Effort, out: &mut [[u8; BLOCK_BYTES]]) {
     let mut varying = Vec::with_capacity(out.len());
-    for (k, texels) in texels.iter().enumerate() {
+    for (k, texels) in row.texels.iter().enumerate() {
         if texels.iter().all(|texel| *texel == texels[0]) {
             out[k] = pack_solid(texels[0], solid_etc1(texels[0]));
         } else {
             varying.push(k);
         }
     }
-    let mut row = Row::new(texels);
     row.search(simd, &varying, metric, effort);
     for (group, at) in groups(&varying) {
         let hints = Hints::of_lanes(simd, at.map(|k| &row.texels[k]), at.map(|k| row.blocks[k].mode));

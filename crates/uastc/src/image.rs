@@ -2,11 +2,14 @@
 
 use crate::BLOCK_BYTES;
 use crate::lanes::Texels;
+use crate::lobe::Lobe;
 
 /// A borrowed image of RGBA8 texels, row 0 first, without padding between rows. It has at least one texel.
 #[derive(Clone, Copy, Debug)]
 pub struct Image<'a> {
     texels: &'a [[u8; 4]],
+    /// A lobe for each texel, or none.
+    lobes: &'a [Lobe],
     width: usize,
     height: usize,
 }
@@ -27,6 +30,14 @@ pub enum SizeError {
         height: u32,
         /// The length of the slice.
         bytes: usize,
+    },
+    /// The number of lobes is not that of the texels.
+    #[error("expected {expected} lobes, one for each texel, found {found}; pass the lobes of the same image")]
+    Lobes {
+        /// How many texels the image has.
+        expected: usize,
+        /// How many lobes were passed.
+        found: usize,
     },
     /// The number of blocks is not that of the image.
     #[error("expected {expected} blocks of 4 x 4 texels, found {found}; pass the blocks of the same image")]
@@ -58,7 +69,28 @@ impl<'a> Image<'a> {
         if !fits || texels.is_empty() {
             return Err(SizeError::Texels { width, height, bytes: rgba.len() });
         }
-        Ok(Self { texels, width: width as usize, height: height as usize })
+        Ok(Self { texels, lobes: &[], width: width as usize, height: height as usize })
+    }
+
+    /// Adds the lobes about the normals of an image, row 0 first. [`Metric::Direction`](crate::Metric::Direction) then
+    /// measures what wrong normals do to them.
+    ///
+    /// # Errors
+    /// Returns [`SizeError::Lobes`] if the image does not have exactly as many texels.
+    pub fn with_lobes(self, lobes: &'a [Lobe]) -> Result<Self, SizeError> {
+        let (expected, found) = (self.texels.len(), lobes.len());
+        if expected == found { Ok(Self { lobes, ..self }) } else { Err(SizeError::Lobes { expected, found }) }
+    }
+
+    /// Returns whether the texels have lobes.
+    pub(crate) fn has_lobes(&self) -> bool {
+        !self.lobes.is_empty()
+    }
+
+    /// Returns row `y` of the lobes; rows beyond the image repeat the last one.
+    pub(crate) fn lobes(&self, y: usize) -> &'a [Lobe] {
+        let at = y.min(self.height - 1) * self.width;
+        &self.lobes[at..at + self.width]
     }
 
     /// Returns the number of blocks in a row.

@@ -10,6 +10,7 @@ mod hints;
 mod image;
 mod lanes;
 mod line;
+mod lobe;
 mod metric;
 mod moments;
 mod normals;
@@ -28,6 +29,7 @@ mod unpack;
 pub use decode::decode_block;
 pub use encoder::Encoder;
 pub use image::{Image, SizeError};
+pub use lobe::Lobe;
 pub use metric::{Effort, Metric, Weight};
 pub use rate::lower_rate;
 

@@ -37,6 +37,11 @@ pub enum Metric {
     ///
     /// Decoded vectors stay close to unit length (within 0.015 in the mean over a level of unit normals). Renderers
     /// that rebuild z from x and y therefore see the same normal as renderers that normalise.
+    ///
+    /// If the texels have lobes ([`Image::with_lobes`](crate::Image::with_lobes)), the error of a texel is the total
+    /// variation between two GGX lobes of its squared alphas, about the wanted and about the decoded normal. The
+    /// distance between the lobes also has the part that keeps lengths. Total variation is at most 1, so texels whose
+    /// lobes miss anyway no longer pull the endpoints.
     Direction,
 }
 

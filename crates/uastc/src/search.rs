@@ -7,7 +7,7 @@
 use fearless_simd::{Select, Simd, SimdBase, prelude::*};
 
 use crate::blocks::Blocks;
-use crate::candidate::{Split, one_line, split_lines, two_planes};
+use crate::candidate::{Split, one_line, splat, split_lines, two_planes};
 use crate::lanes::{Grid, all_lanes, sum};
 use crate::line::Points;
 use crate::moments::{Moments, moments, principal_axis, scatter_along, trace};
@@ -48,12 +48,13 @@ impl<S: Simd> Blocks<S> {
     pub fn try_planes(&mut self, simd: S, texels: &[Grid<S>; 3], scale: &[f32; 3]) {
         let all = moments(simd, texels, None);
         let (selector, _) = likely_planes(simd, &all);
-        self.keep_better(&two_planes(simd, texels, &all, selector, scale, &MODE_6, FAST_ROUNDS), all_lanes(simd));
+        let scale = splat(simd, scale);
+        self.keep_better(&two_planes(simd, texels, &all, selector, &scale, &MODE_6, FAST_ROUNDS), all_lanes(simd));
     }
 
     /// Tries two subsets in the likeliest pattern.
     #[inline(always)]
-    pub fn try_subsets<const N: usize>(&mut self, simd: S, texels: &[Grid<S>; N], scale: &[f32; N]) {
+    pub fn try_subsets<const N: usize>(&mut self, simd: S, texels: &[Grid<S>; N], scale: &[Wide<S>; N]) {
         let all = moments(simd, texels, None);
         let axis = principal_axis(simd, &all.scatter);
         let [pattern] = likely_patterns(simd, texels, &all, &axis);
@@ -75,7 +76,7 @@ impl<S: Simd> Blocks<S> {
         texels: &[Grid<S>; N],
         all: &Moments<S, N>,
         axis: &[Wide<S>; N],
-        scale: &[f32; N],
+        scale: &[Wide<S>; N],
         rounds: usize,
         allowed: <Wide<S> as Real>::Mask,
     ) {
@@ -150,27 +151,28 @@ fn grey<S: Simd>(simd: S, texels: &[Grid<S>; 1], weight: f32, mode: &'static Mod
 /// Fits all modes that pay to opaque `texels`, whose levels are multiplied by `scale`, and returns the best blocks.
 #[inline(always)]
 pub(crate) fn best_rgb<S: Simd>(simd: S, texels: &[Grid<S>; 3], scale: &[f32; 3]) -> Blocks<S> {
+    let scales = splat(simd, scale);
     let all = moments(simd, texels, None);
     let axis = principal_axis(simd, &all.scatter);
-    let mut winner = one_line(simd, texels, &all, &axis, scale, &MODE_0, ROUNDS);
+    let mut winner = one_line(simd, texels, &all, &axis, &scales, &MODE_0, ROUNDS);
     let every_lane = all_lanes(simd);
     // Long lines need many weights, and short lines need exact endpoints.
     let along = scatter_along(simd, &all.scatter, &axis);
     let is_long = along.simd_gt(400.0);
     if is_long.any_true() {
-        winner.keep_better(&one_line(simd, texels, &all, &axis, scale, &MODE_18, ROUNDS), is_long);
+        winner.keep_better(&one_line(simd, texels, &all, &axis, &scales, &MODE_18, ROUNDS), is_long);
     }
     let is_short = along.simd_lt(3000.0);
     if is_short.any_true() {
-        winner.keep_better(&one_line(simd, texels, &all, &axis, scale, &MODE_5, ROUNDS), is_short);
+        winner.keep_better(&one_line(simd, texels, &all, &axis, &scales, &MODE_5, ROUNDS), is_short);
     }
     let is_shortest = along.simd_lt(200.0);
     if is_shortest.any_true() {
-        winner.keep_better(&one_line(simd, texels, &all, &axis, scale, &MODE_1, ROUNDS), is_shortest);
+        winner.keep_better(&one_line(simd, texels, &all, &axis, &scales, &MODE_1, ROUNDS), is_shortest);
     }
     for selector in [0.0, 1.0, 2.0] {
         let selector = Wide::splat(simd, selector);
-        winner.keep_better(&two_planes(simd, texels, &all, selector, scale, &MODE_6, ROUNDS), every_lane);
+        winner.keep_better(&two_planes(simd, texels, &all, selector, &scales, &MODE_6, ROUNDS), every_lane);
     }
     for pattern in likely_patterns::<_, 3, 2>(simd, texels, &all, &axis) {
         let split = Split::two_subsets(simd, texels, pattern);
@@ -178,11 +180,11 @@ pub(crate) fn best_rgb<S: Simd>(simd: S, texels: &[Grid<S>; 3], scale: &[f32; 3]
         if !is_likely.any_true() {
             continue;
         }
-        winner.keep_better(&split_lines(simd, texels, &split, scale, &MODE_4, ROUNDS), is_likely);
+        winner.keep_better(&split_lines(simd, texels, &split, &scales, &MODE_4, ROUNDS), is_likely);
         // Below this error, the sixteen endpoint levels of mode 2 are too coarse.
         let is_coarse = is_likely & winner.error.simd_gt(150.0);
         if is_coarse.any_true() {
-            winner.keep_better(&split_lines(simd, texels, &split, scale, &MODE_2, ROUNDS), is_coarse);
+            winner.keep_better(&split_lines(simd, texels, &split, &scales, &MODE_2, ROUNDS), is_coarse);
         }
     }
     winner.try_grey(simd, texels, scale, 2);
@@ -208,7 +210,7 @@ pub(crate) fn fast_lines<S: Simd>(
     let (_, planes_estimate) = likely_planes(simd, &all);
     let mut winner = Blocks::none(simd);
     let is_line_likely = line_estimate.simd_lt(planes_estimate * UNCERTAINTY);
-    winner.try_line(simd, texels, &all, &axis, scale, FAST_ROUNDS, is_line_likely);
+    winner.try_line(simd, texels, &all, &axis, &splat(simd, scale), FAST_ROUNDS, is_line_likely);
     (winner, [planes_estimate.simd_lt(line_estimate * UNCERTAINTY), is_grey(texels, scale)])
 }
 
@@ -219,7 +221,8 @@ pub(crate) fn fast_green<S: Simd>(simd: S, [reds, green, blues]: &[Grid<S>; 3], 
     let green = [*green];
     let all = moments(simd, &green, None);
     let mut winner = Blocks::none(simd);
-    winner.try_line(simd, &green, &all, &[Wide::splat(simd, 1.0)], &[scale[1]], FAST_ROUNDS, all_lanes(simd));
+    let scales = splat(simd, &[scale[1]]);
+    winner.try_line(simd, &green, &all, &[Wide::splat(simd, 1.0)], &scales, FAST_ROUNDS, all_lanes(simd));
     let [green, ..] = winner.endpoints[0];
     let [red, blue] =
         [winner.nearest(simd, reds[0] * (1.0 / scale[0])), winner.nearest(simd, blues[0] * (1.0 / scale[2]))];

@@ -8,15 +8,17 @@ use serde_json::Value;
 pub const EXTENSION: &str = "ROUGHCAST_materials_roughness_pyramid";
 
 /// The format version that the plugin reads.
-const FORMAT_VERSION: u32 = 1;
+const FORMAT_VERSION: u32 = 2;
 
 /// The extension object of the schema (`schemas/` of Roughcast).
 #[derive(Clone, Debug, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Extension {
     pub offset_texture: TextureInfo,
-    pub offset_min: Vec2,
-    pub offset_max: Vec2,
+    /// 3 where z is stored, 2 where the shader rebuilds z from x and y.
+    offset_channels: u32,
+    /// What multiplies the slopes of the stored normals.
+    pub offset_scale: Vec2,
     pub roughness_model: Option<Model>,
     pub roughness_texture: Option<TextureInfo>,
     roughness_min: Option<Vec<f32>>,
@@ -60,7 +62,7 @@ fn one() -> f32 {
 pub enum Model {
     /// D = [[d1, d2], [0, d3]], with K = D D^T.
     CovarianceFactor,
-    /// lambda_1, the square root of K's larger eigenvalue.
+    /// lambda_1, with K = lambda_1^2 1.
     StandardDeviation,
 }
 
@@ -137,6 +139,9 @@ impl Extension {
         if extension.roughness_model.is_some() != extension.roughness_texture.is_some() {
             return Err("expected roughnessTexture with roughnessModel, found one of them".to_owned());
         }
+        if ![2, 3].contains(&extension.offset_channels) {
+            return Err(format!("offsetChannels: expected 2 or 3, found {}", extension.offset_channels));
+        }
         if extension.correction_factor < 0.0 {
             let found = extension.correction_factor;
             return Err(format!("correctionFactor: expected a number of at least 0, found {found}"));
@@ -145,6 +150,11 @@ impl Extension {
             return Err("expected mainDirection with the frame of that name, found one of them".to_owned());
         }
         Ok(extension)
+    }
+
+    /// Returns whether the offset texture stores z.
+    pub fn has_z(&self) -> bool {
+        self.offset_channels == 3
     }
 
     /// Returns all textures of the extension.

@@ -22,7 +22,7 @@ pub type PyramidMaterial = ExtendedMaterial<StandardMaterial, Pyramid>;
 pub struct Pyramid {
     #[uniform(100)]
     values: Values,
-    /// Mean offsets (f_u, f_v), linear.
+    /// Unit normals of scaled offsets, linear.
     #[texture(101)]
     #[sampler(102)]
     offset: Handle<Image>,
@@ -38,8 +38,7 @@ pub struct Pyramid {
 struct Values {
     offset_uv: Mat3,
     roughness_uv: Mat3,
-    offset_min: Vec2,
-    offset_max: Vec2,
+    offset_scale: Vec2,
     roughness_min: Vec3,
     correction_factor: f32,
     roughness_max: Vec3,
@@ -51,6 +50,8 @@ struct Values {
 pub struct Variant {
     model: Option<Model>,
     frame: Frame,
+    /// Whether the shader rebuilds z of the offset texture.
+    rebuilds_z: bool,
     /// Whether the offset texture and the roughness texture are read with the second texture coordinates.
     second_uv: [bool; 2],
 }
@@ -69,8 +70,7 @@ impl Pyramid {
             values: Values {
                 offset_uv: extension.offset_texture.uv_transform(),
                 roughness_uv: roughness_info.map_or(Mat3::IDENTITY, |info| info.uv_transform()),
-                offset_min: extension.offset_min,
-                offset_max: extension.offset_max,
+                offset_scale: extension.offset_scale,
                 roughness_min,
                 correction_factor: extension.correction_factor,
                 roughness_max,
@@ -81,6 +81,7 @@ impl Pyramid {
             variant: Variant {
                 model: extension.roughness_model,
                 frame: extension.frame,
+                rebuilds_z: !extension.has_z(),
                 second_uv: [Some(&extension.offset_texture), roughness_info]
                     .map(|t| t.is_some_and(|t| t.channel() == 1)),
             },
@@ -100,7 +101,7 @@ impl MaterialExtension for Pyramid {
         key: MaterialExtensionKey<Self>,
     ) -> Result<(), SpecializedMeshPipelineError> {
         let Some(fragment) = &mut descriptor.fragment else { return Ok(()) };
-        let Variant { model, frame, second_uv: [offset_uv, roughness_uv] } = key.bind_group_data;
+        let Variant { model, frame, rebuilds_z, second_uv: [offset_uv, roughness_uv] } = key.bind_group_data;
         let defs = [
             // D needs the anisotropic lobe. The base lobe of a material without anisotropy is isotropic.
             (model == Some(Model::CovarianceFactor), "STANDARD_MATERIAL_ANISOTROPY"),
@@ -108,6 +109,7 @@ impl MaterialExtension for Pyramid {
             (model == Some(Model::StandardDeviation), "ROUGHCAST_DEVIATION"),
             (frame == Frame::Natural, "ROUGHCAST_FRAME_NATURAL"),
             (frame == Frame::MainDirection, "ROUGHCAST_FRAME_MAIN"),
+            (rebuilds_z, "ROUGHCAST_REBUILT_Z"),
             (offset_uv, "ROUGHCAST_OFFSET_UV_B"),
             (roughness_uv, "ROUGHCAST_ROUGHNESS_UV_B"),
         ];

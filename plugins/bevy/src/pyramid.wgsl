@@ -14,8 +14,7 @@
 struct Pyramid {
     offset_uv: mat3x3<f32>,
     roughness_uv: mat3x3<f32>,
-    offset_min: vec2<f32>,
-    offset_max: vec2<f32>,
+    offset_scale: vec2<f32>,
     roughness_min: vec3<f32>,
     correction_factor: f32,
     roughness_max: vec3<f32>,
@@ -79,8 +78,12 @@ fn frame_at(in: VertexOutput, uv: vec2<f32>) -> Frame {
 
 // Tilts the normal: n' = n - f_u e1 - f_v e2.
 fn tilt(input: ptr<function, PbrInput>, frame: Frame, uv: vec2<f32>, is_front: bool) {
-    let texel = textureSampleBias(offset_texture, offset_sampler, uv, view.mip_bias).rg;
-    let f = frame.scale * mix(pyramid.offset_min, pyramid.offset_max, texel);
+    // Unit normals of offsets that are divided by their scale.
+    var stored = 2.0 * textureSampleBias(offset_texture, offset_sampler, uv, view.mip_bias).xyz - 1.0;
+#ifdef ROUGHCAST_REBUILT_Z
+    stored.z = sqrt(max(1.0 - dot(stored.xy, stored.xy), 0.0));
+#endif
+    let f = -frame.scale * pyramid.offset_scale * stored.xy / max(stored.z, 1.0 / 32.0);
     let n = normalize(normalize((*input).world_normal) - f.x * frame.e1 - f.y * frame.e2);
     let is_double_sided = ((*input).material.flags & STANDARD_MATERIAL_FLAGS_DOUBLE_SIDED_BIT) != 0u;
     (*input).N = select(n, -n, is_double_sided && !is_front);

@@ -12,7 +12,7 @@ const plain = (more) => new THREE.MeshPhysicalMaterial({ ...maps(), ...more });
 
 const pyramid = (model, channels) =>
   applyPyramid(plain(), {
-    offset: { map: texture(), min: [-1, -1], max: [1, 1] },
+    offset: { map: texture(), channels: 3, scale: [1, 1] },
     roughness: { model, map: texture(), min: Array(channels).fill(0), max: Array(channels).fill(1) },
     correctionFactor: 1,
     frame: 'unit',

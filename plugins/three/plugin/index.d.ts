@@ -7,7 +7,7 @@ export const EXTENSION: 'ROUGHCAST_materials_roughness_pyramid';
 /** The local frame that offsets and roughness are given in. */
 export type Frame = 'natural' | 'unit' | 'mainDirection';
 
-/** What the roughness map holds: D = [[d1, d2], [0, d3]] of K = D D^T, or the square root of K's larger eigenvalue. */
+/** What the roughness map holds: D = [[d1, d2], [0, d3]] of K = D D^T, or lambda_1 of K = lambda_1^2 1. */
 export type RoughnessModel = 'covarianceFactor' | 'standardDeviation';
 
 /** glTF's textureInfo. */
@@ -15,6 +15,14 @@ export interface TextureInfo {
   index: number;
   texCoord?: number;
   extensions?: Record<string, unknown>;
+}
+
+/** How the offset map holds offsets: (f_u, f_v) = scale * (-x, -y) / z for the stored unit normal (x, y, z). */
+export interface OffsetCode {
+  /** 3 where z is stored, 2 where the shader rebuilds z from x and y. */
+  channels: 2 | 3;
+  /** Of f_u and f_v. */
+  scale: number[];
 }
 
 /** What texels of 0 and 1 stand for, channel by channel. */
@@ -33,7 +41,7 @@ interface Shared {
 
 /** The extension object of a material, checked. */
 export interface PyramidExtension extends Shared {
-  offset: Range & { texture: TextureInfo };
+  offset: OffsetCode & { texture: TextureInfo };
   roughness: (Range & { texture: TextureInfo; model: RoughnessModel }) | null;
   /** The base lobe, where the core material is roughened; K is added to the base lobe. */
   baseLobe: BaseLobe | null;
@@ -49,8 +57,8 @@ export interface BaseLobe {
 
 /** The data of a pyramid, with its textures loaded in linear colour space. */
 export interface Pyramid extends Shared {
-  /** (f_u, f_v) in red and green. */
-  offset: Range & { map: Texture };
+  /** Unit normals of scaled offsets. */
+  offset: OffsetCode & { map: Texture };
   roughness: (Range & { map: Texture; model: RoughnessModel }) | null;
 }
 

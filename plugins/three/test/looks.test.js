@@ -30,21 +30,25 @@ test('bakes are closer to the truth than plain mips are', { skip: missing || bro
         `anisotropic without the plugin, plane at ${DISTANCES[i]}: ${anisotropic} of ${plain}`,
       );
     }
-    for (const [i, [plain, portable, reflected, pyramid]] of sphere.entries()) {
-      assert.ok(Math.max(portable, reflected, pyramid) < plain, `sphere at ${DISTANCES[i]}: ${sphere[i]}`);
+    for (const [i, [plain, , reflected, pyramid]] of sphere.entries()) {
+      assert.ok(Math.max(reflected, pyramid) < plain, `sphere at ${DISTANCES[i]}: ${sphere[i]}`);
     }
     for (const all of [plane, sphere])
       assert.ok(total(all, 0) > 1.8 * Math.max(total(all, 2), total(all, 3)), `${all}`);
     assert.ok(total(sphere, 0) > 1.3 * total(sphere, 1), `${sphere}`);
-    const lights = [0, 60, 120, 180, 240, 300].map((azimuth) => ({ azimuth, elevation: 40 }));
-    const under = await page.evaluate((o) => window.underLights(o), {
-      kind: 'plane',
-      distance: 13,
-      size: 64,
-      samples: 64,
-      lights,
-    });
-    assert.ok(under[0] > 1.3 * Math.max(...under.slice(1)), `under lights from all around: ${under}`);
+    // The grooves have one direction. Whether an isotropic lobe gains under a single light depends on where it stands.
+    const lights = Array.from({ length: 12 }, (_, i) => ({ azimuth: 30 * i, elevation: i % 2 === 0 ? 55 : 25 }));
+    for (const [kind, distance] of [
+      ['plane', 13],
+      ['plane', 34],
+      ['sphere', 13],
+      ['sphere', 34],
+    ]) {
+      const options = { kind, distance, size: 64, samples: 64, lights };
+      const under = await page.evaluate((o) => window.underLights(o), options);
+      const worst = Math.max(...under.slice(1));
+      assert.ok(under[0] > 1.3 * worst, `${kind} at ${distance}, under lights from all around: ${under}`);
+    }
     const [plain, , reflected, pyramid] = await page.evaluate((o) => window.flicker(o), {
       kind: 'plane',
       distance: 12,

@@ -125,6 +125,10 @@ test('offsets tilt the normal, with and without tangents, from behind and in mir
   }
 });
 
+test('rebuilds the z of offsets in two channels', options, async () => {
+  await assertAlike({ ...BUMPY, channels: 2 }, ISOTROPIC);
+});
+
 test('natural offsets are heights per repeat', options, async () => {
   const plane = { ...PLANE, width: 2, height: 4 };
   const offset = [SLOPE[0] * 2, SLOPE[1] * 4];

@@ -10,7 +10,7 @@ use crate::codec::Target;
 use crate::codec::uastc::Effort;
 use crate::lobe::Distribution;
 use crate::project::{Engine, Values};
-use crate::settings::{Form, Limit, Model, Profile, Settings, limit};
+use crate::settings::{Form, Limit, MaxModel, Model, Profile, Settings, limit};
 
 /// How textures are baked and encoded.
 #[derive(Debug, Args)]
@@ -55,12 +55,20 @@ pub struct DocumentOptions {
     /// [default: fallback]
     #[arg(long, value_enum)]
     gltf: Option<Form>,
-    /// Preset of --target, --gltf and --model for an engine; the options themselves win over it.
+    /// Preset of --target, --gltf, --model, --max-model and --scale-normals for an engine; the options themselves win.
+    /// A note names the engine's own limiter of roughness if that should be turned off.
     #[arg(long, value_enum)]
     engine: Option<Engine>,
+    /// The model with the most parameters that --model auto may choose. [default: anisotropic]
+    #[arg(long, value_enum)]
+    max_model: Option<MaxModel>,
     /// Write .glb files with everything embedded.
     #[arg(long, num_args = 0..=1, require_equals = true, default_missing_value = "true", value_name = "BOOL")]
     glb: Option<bool>,
+    /// Divide the slopes of low bumps in their texture and multiply normalTexture.scale, so that they lose less to the
+    /// encoding. Only for engines that apply the scale as glTF says: Bevy ignores it. [default: false]
+    #[arg(long, num_args = 0..=1, require_equals = true, default_missing_value = "true", value_name = "BOOL")]
+    scale_normals: Option<bool>,
     /// Frame of the offsets of the pyramid profile. [default: unit]
     #[arg(long, value_enum)]
     frame: Option<FrameKind>,
@@ -103,7 +111,9 @@ impl DocumentOptions {
         Values {
             gltf: self.gltf,
             engine: self.engine,
+            max_model: self.max_model,
             glb: self.glb,
+            scale_normals: self.scale_normals,
             frame: self.frame,
             main_direction: self.main_direction,
             height_scale: self.height_scale,
@@ -117,7 +127,7 @@ pub fn effort() -> impl TypedValueParser<Value = Effort> {
     let names = [
         PossibleValue::new(Effort::Fast.name()).help("A few times the time of decoding the source images"),
         PossibleValue::new(Effort::Best.name())
-            .help("Lobes fitted to those three levels finer; all useful block modes tried"),
+            .help("Lobes of all coarse levels fitted to level 0; all useful block modes tried"),
     ];
     let effort = |name: String| if name == Effort::Best.name() { Effort::Best } else { Effort::Fast };
     PossibleValuesParser::new(names).map(effort)

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use super::baked_asset::BakedAsset;
 use super::compact::compact;
 use super::error::BakeError;
-use super::fill_extension::{EXTENSION, Extension, RangedTexture};
+use super::fill_extension::{EXTENSION, Extension, RangedTexture, ScaledTexture};
 use super::group_output::{AnisotropyChange, GroupOutput, GroupTexture, PyramidUse};
 use super::ktx2_files::ktx2_files;
 use super::names::Names;
@@ -25,6 +25,13 @@ use crate::material::Range;
 use crate::report::{AssetReport, LayerReport};
 use crate::settings::{Form, Settings};
 
+/// What the texels of a texture of the pyramid profile stand for.
+struct StoredValues {
+    range: Range,
+    scale: f32,
+    has_z: bool,
+}
+
 /// The textures and layers of all bump maps, on their way into the document.
 pub struct Assembly<'a> {
     reader: &'a Reader<'a>,
@@ -34,11 +41,12 @@ pub struct Assembly<'a> {
     /// Images whose digests textures record.
     recorded: BTreeSet<Arc<ImageLocation>>,
     textures: Vec<NewTexture>,
-    ranges: Vec<Option<Range>>,
+    stored: Vec<StoredValues>,
     /// The BIN chunk of a .glb that becomes a file.
     bin: Option<NewFile>,
     files: Vec<NewFile>,
     /// JSON pointers of roughness factors that textures now include.
+    normal_scales: Vec<(String, f32)>,
     roughness_factors: Vec<String>,
     anisotropies: Vec<AnisotropyChange>,
     pyramids: Vec<PyramidUse>,
@@ -58,9 +66,10 @@ impl<'a> Assembly<'a> {
             names: Names::new(source.stem),
             recorded: BTreeSet::new(),
             textures: Vec::new(),
-            ranges: Vec::new(),
+            stored: Vec::new(),
             bin,
             files: Vec::new(),
+            normal_scales: Vec::new(),
             roughness_factors: Vec::new(),
             anisotropies: Vec::new(),
             pyramids: Vec::new(),
@@ -75,6 +84,7 @@ impl<'a> Assembly<'a> {
             self.add_texture(texture, ktx2)?;
         }
         for layer in output.layers {
+            self.normal_scales.extend(layer.normal_scale);
             self.roughness_factors.extend(layer.roughness_factor);
             self.anisotropies.push(layer.anisotropy);
             self.pyramids.extend(layer.pyramid.map(|used| PyramidUse {
@@ -104,7 +114,11 @@ impl<'a> Assembly<'a> {
             (None, Form::Dual) => Some(ktx2.clone()),
             (None, _) => None,
         };
-        self.ranges.push(texture.range);
+        self.stored.push(StoredValues {
+            range: texture.range.unwrap_or_default(),
+            scale: texture.scale.unwrap_or(1.0),
+            has_z: texture.mip_chain.format.has_z(),
+        });
         self.textures.push(NewTexture { name, ktx2, source, sampler, slots });
         Ok(())
     }
@@ -127,8 +141,11 @@ impl<'a> Assembly<'a> {
         // Base lobes are written first, so that their textures count as needed when textures are added.
         write_base_lobes(json, &self.pyramids)?;
         let indices = add_textures(json, &self.textures)?;
+        for (pointer, scale) in &self.normal_scales {
+            json.set(pointer, scale)?;
+        }
         write_factors(json, &self.roughness_factors, &self.anisotropies)?;
-        write_pyramids(json, &self.pyramids, &indices, &self.ranges)?;
+        write_pyramids(json, &self.pyramids, &indices, &self.stored)?;
         self.finish_container()?;
         self.write_provenance()?;
         let mut copies = output_document::files(self.document.json())?;
@@ -206,22 +223,30 @@ fn write_factors(
     Ok(())
 }
 
-/// Writes the extension of the pyramid profile. `indices` and `ranges` are those of all new textures.
+/// Writes the extension of the pyramid profile. `indices` and `stored` are those of all new textures.
 fn write_pyramids(
     json: &mut Json,
     pyramids: &[PyramidUse],
     indices: &[usize],
-    ranges: &[Option<Range>],
+    stored: &[StoredValues],
 ) -> Result<(), BakeError> {
     for pyramid in pyramids {
-        let ranged = |index: usize, factor: f32| RangedTexture {
-            texture: indices[index],
-            range: ranges[index].clone().unwrap_or_default().scaled(factor),
+        let [across, up] = pyramid.slope_scale;
+        let StoredValues { scale, has_z, .. } = stored[pyramid.offset];
+        let offset = ScaledTexture { texture: indices[pyramid.offset], has_z, scale: [scale * across, scale * up] };
+        let ranged = |index: usize| {
+            let range = stored[index].range.clone();
+            // The rows of D are along the axes of the frame: (d1, d2) and (0, d3). A negative scale mirrors the offsets
+            // and leaves the roughness unchanged.
+            let range = match range.max.len() {
+                3 => range.scaled([across.abs(), across.abs(), up.abs()]),
+                _ => range.scaled([isotropic_scale(pyramid.slope_scale); 3]),
+            };
+            RangedTexture { texture: indices[index], range }
         };
         let extension = Extension::new(
-            ranged(pyramid.offset, pyramid.slope_scale),
-            // A negative scale mirrors the offsets and leaves the roughness unchanged.
-            pyramid.roughness.map(|index| ranged(index, pyramid.slope_scale.abs())),
+            offset,
+            pyramid.roughness.map(ranged),
             pyramid.correction,
             pyramid.frame,
             &pyramid.mapping,
@@ -236,6 +261,13 @@ fn write_pyramids(
         declare(json, EXTENSION, false)?;
     }
     Ok(())
+}
+
+/// Returns the scale of lambda_1 in a frame of the scale (s, t). A reader divides the variance along the two axes by
+/// s^2 and t^2, and takes the mean where lobes are isotropic.
+fn isotropic_scale([s, t]: [f32; 2]) -> f32 {
+    let inverse = 0.5 * (1.0 / (s * s) + 1.0 / (t * t));
+    if inverse.is_finite() { (1.0 / inverse).sqrt() } else { 0.0 }
 }
 
 /// Returns the path of an image that is a file.

@@ -1,12 +1,13 @@
 //! Steps 5 to 8 of one bump map: all its layers, its normal texture and its pyramid. Documents and standalone maps
 //! share this sequence.
 
-use crate::bake::bake_layer::{LayerProducts, NormalStep, bake_layer};
+use crate::bake::bake_layer::{DirectionStep, LayerProducts, bake_layer};
 use crate::bake::error::BakeError;
 use crate::bake::lobes::LayerInput;
 use crate::bake::offsets::MapOffsets;
 use crate::bake::products::{EncodedTexture, LayerNormals, normal_texture};
 use crate::bake::pyramid::{PyramidInput, PyramidProducts, pyramid};
+use crate::material::LobeLevels;
 
 /// What the bake makes of a bump map.
 pub struct BumpMapProducts {
@@ -21,7 +22,8 @@ pub struct BumpMapProducts {
 /// Bakes all layers of a bump map. The inputs are asked for when they are needed, since each holds images. The normal
 /// texture and the offsets have no levels finer than `first`.
 ///
-/// The first layer whose lobes are on the grid of the bump map decides the normal texture.
+/// The first layer whose lobes are on the grid of the bump map decides the normal texture, and offsets and K of the
+/// pyramid profile.
 pub fn bake_bump_map<'a, 'm>(
     map: &MapOffsets<'m>,
     first: usize,
@@ -30,16 +32,20 @@ pub fn bake_bump_map<'a, 'm>(
 ) -> Result<BumpMapProducts, BakeError> {
     let count = layers.len();
     let mut products = Vec::with_capacity(count);
-    let mut decided: Option<LayerNormals<'m>> = None;
+    let (mut decided, mut levels): (Option<LayerNormals<'m>>, Option<LobeLevels<'m>>) = (None, None);
     for (index, layer) in layers.enumerate() {
-        let step = NormalStep { decided: decided.as_ref(), first, is_needed_later: index + 1 < count };
-        let (layer, normals) = bake_layer(map, layer?, &step)?;
+        let is_needed_later = index + 1 < count;
+        let step = DirectionStep { normals: decided.as_ref(), pyramid: levels.as_ref(), first, is_needed_later };
+        let (layer, new) = bake_layer(map, layer?, &step)?;
         products.push(layer);
-        decided = decided.or(normals);
+        (decided, levels) = (decided.or(new.normals), levels.or(new.pyramid));
     }
     let profile = map.settings.profile;
     let normals = profile.is_portable().then(|| normal_texture(map, decided, first)).transpose()?;
-    let pyramid =
-        if profile.has_pyramid() { pyramid(map, first, pyramid_inputs(), &products)? } else { Default::default() };
+    let pyramid = if profile.has_pyramid() {
+        pyramid(map, levels.as_ref(), first, pyramid_inputs(), &products)?
+    } else {
+        PyramidProducts::default()
+    };
     Ok(BumpMapProducts { normals, layers: products, pyramid })
 }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::bake_bump_map::bake_bump_map;
 use super::decode::{BaseImages, Images};
 use super::error::BakeError;
-use super::frame::offset_frame;
+use super::frame::{OffsetFrame, offset_frame};
 use super::geometry::Geometry;
 use super::group::{BumpMapGroup, GroupLayer};
 use super::group_output::GroupOutput;
@@ -14,6 +14,7 @@ use super::lobes::{AnisotropyInput, BaseInput, LayerInput, PreparedBase};
 use super::offsets::MapOffsets;
 use super::pyramid::PyramidInput;
 use super::reader::Reader;
+use super::reflectance::ReflectanceInput;
 use crate::gltf::texel_size::NoDensity;
 use crate::material::notes;
 use crate::note::{self, Note};
@@ -33,7 +34,8 @@ pub fn bake_group(
     // Decoders have one thread each, and the bump map takes the longest.
     let (bump_map, first_base) = rayon::join(|| bake.images.bump_map(group), || bake.first_base());
     let ((bump_map, mut map_notes), first_base) = (bump_map?, first_base?);
-    let map = MapOffsets::new(&bump_map, settings, group.source.wrap)?;
+    let map = MapOffsets::new(&bump_map, settings, group.source.sampling())?;
+    let map = if group.may_scale_normals { map.scaling_normals() } else { map };
     map_notes.extend(notes::of_bump_map(&bump_map, map.bumps.size()));
     let lobe_groups = group.lobe_groups();
     let first = bake.first_level(&group.layers, map.bumps.size());
@@ -60,12 +62,14 @@ impl GroupBake<'_> {
     /// Decodes the base lobe of the first layer and builds its levels.
     fn first_base(&self) -> Result<Option<PreparedBase<'static>>, BakeError> {
         let Some(layer) = self.group.layers.first() else { return Ok(None) };
-        Ok(Some(PreparedBase::with_levels(self.base_input(layer)?, self.settings)?))
+        Ok(Some(self.base(layer)?.with_levels(self.settings)?))
     }
 
-    fn base_input(&self, layer: &GroupLayer) -> Result<BaseInput<'static>, BakeError> {
+    /// Decodes the base lobe of `layer` and its reflectance.
+    fn base(&self, layer: &GroupLayer) -> Result<PreparedBase<'static>, BakeError> {
         let BaseImages { roughness, anisotropy } = self.images.base(layer)?;
-        Ok(BaseInput {
+        let (reflectance, note) = ReflectanceInput::new(&self.images, layer, roughness.as_ref())?;
+        let input = BaseInput {
             roughness: roughness.map(Cow::Owned),
             roughness_factor: layer.layer.roughness_factor,
             anisotropy: layer.layer.anisotropy.as_ref().map(|source| AnisotropyInput {
@@ -73,8 +77,10 @@ impl GroupBake<'_> {
                 strength: source.strength,
                 rotation: source.rotation,
             }),
+            reflectance,
             wrap: self.group.source.wrap,
-        })
+        };
+        Ok(PreparedBase { input, levels: None, note })
     }
 
     /// Returns the inputs of all lobes. Images are decoded when the iterator reaches them.
@@ -88,7 +94,7 @@ impl GroupBake<'_> {
             let layer = &self.group.layers[users[0]];
             let base = match first_base.take() {
                 Some(base) => base,
-                None => PreparedBase { input: self.base_input(layer)?, levels: None },
+                None => self.base(layer)?,
             };
             let size = base.input.grid(self.settings, Some(map.bump_map))?;
             let users = || users.iter().map(|user| &self.group.layers[*user]);
@@ -97,8 +103,8 @@ impl GroupBake<'_> {
                 size,
                 can_be_roughened: layer.base.is_ok(),
                 slope_scale: layer.slope_scale,
-                needs_correction: layer.row().is_in_pyramid,
-                max_model: layer.max_model(),
+                is_in_pyramid: layer.row().is_in_pyramid,
+                max_model: layer.max_model().min(self.settings.model_limit()),
                 finest: self.finest_level(users(), size),
                 first: self.first_level(users(), size),
             })
@@ -110,8 +116,9 @@ impl GroupBake<'_> {
         let layers = self.group.layers.iter().enumerate().filter(|(_, layer)| layer.row().is_in_pyramid);
         let input = |(index, layer): (usize, &GroupLayer)| {
             let lobes = lobe_groups.iter().position(|users| users.contains(&index)).unwrap_or(0);
-            let (frame, transforms, note) = offset_frame(self.settings.frame, self.geometry, map.bump_map, layer);
-            PyramidInput { lobes, frame, transforms: Arc::new(transforms), note }
+            let frame = offset_frame(self.settings.frame, self.geometry, map.bump_map, layer);
+            let OffsetFrame { frame, transforms, scale, note } = frame;
+            PyramidInput { lobes, frame, transforms: Arc::new(transforms), scale, note }
         };
         layers.map(input).collect()
     }

@@ -3,9 +3,11 @@
 use crate::bake::choose::{LayerModel, candidates};
 use crate::bake::lobes::{LayerInput, LayerLobes};
 use crate::bake::offsets::MapOffsets;
-use crate::bake::products::{EncodedTexture, LayerNormals, lobe_textures, normal_encoding, normals_of_lobes};
+use crate::bake::products::{
+    EncodedTexture, LayerNormals, lobe_textures, normal_encoding, normals_of_lobes, normals_of_means,
+};
 use crate::codec::EncodeError;
-use crate::material::{Normals, Product, Roughening, notes};
+use crate::material::{LobeLevels, Normals, Product, Roughening, notes};
 use crate::note::Note;
 use crate::settings::Model;
 
@@ -15,38 +17,52 @@ pub struct LayerProducts {
     pub model: LayerModel,
     /// The model for the report: none if no texture can hold the chosen model.
     pub reported_model: Model,
-    /// The correction factor c, for the pyramid profile.
-    pub correction: Option<f32>,
+    /// The sum over levels 1 and coarser of the mean trace of the K that the lobes need, for the pyramid profile.
+    pub needed_variance: Option<f64>,
     /// The textures of the portable profile: roughness and anisotropy.
     pub textures: Vec<EncodedTexture>,
     /// Notes to the user.
     pub notes: Vec<Note>,
 }
 
-/// The normal texture of a bump map as far as earlier layers have decided it.
-pub struct NormalStep<'n, 'a> {
-    /// What an earlier layer has decided.
-    pub decided: Option<&'n LayerNormals<'a>>,
+/// The directions of a bump map's texels as far as earlier layers have decided them.
+pub struct DirectionStep<'n, 'a> {
+    /// The normal texture that an earlier layer has decided.
+    pub normals: Option<&'n LayerNormals<'a>>,
+    /// The levels of the pyramid profile that an earlier layer has decided.
+    pub pyramid: Option<&'n LobeLevels<'a>>,
     /// The finest level that is written of the normal texture.
     pub first: usize,
     /// Whether later layers need the normals.
     pub is_needed_later: bool,
 }
 
-/// Bakes a layer. Returns its products, and the normal texture if this layer decides it.
+/// What a layer decides for all layers of its bump map.
+pub struct Decided<'m> {
+    /// The normal texture.
+    pub normals: Option<LayerNormals<'m>>,
+    /// The levels of the pyramid profile.
+    pub pyramid: Option<LobeLevels<'m>>,
+}
+
+/// Bakes a layer. Returns its products, and what no earlier layer has decided.
 pub fn bake_layer<'m>(
     map: &MapOffsets<'m>,
     mut layer: LayerInput<'_>,
-    step: &NormalStep<'_, 'm>,
-) -> Result<(LayerProducts, Option<LayerNormals<'m>>), EncodeError> {
+    step: &DirectionStep<'_, 'm>,
+) -> Result<(LayerProducts, Decided<'m>), EncodeError> {
     let levels = layer.base.levels.take();
     let lobes = LayerLobes::new(map, &layer, levels);
-    let deciding = if step.decided.is_none() { normals_of_lobes(map, &layer, &lobes) } else { None };
-    let earlier = step.decided.and_then(|decided| decided.normals.as_ref());
+    let deciding = if step.normals.is_none() { normals_of_lobes(map, &lobes) } else { None };
+    // Lobes of several layers have several widths, and the lobes of this layer do not stay in memory.
+    let deciding = deciding.map(|normals| if step.is_needed_later { normals.by_direction() } else { normals });
+    let pyramid = if step.pyramid.is_none() { lobes.pyramid_levels(map) } else { None };
+    let earlier = step.normals.and_then(|decided| decided.normals.as_ref());
     let is_undecided = earlier.is_none() && deciding.is_none();
     let means = (map.settings.profile.is_portable() && is_undecided && lobes.roughening.is_some())
-        .then(|| Normals::of_means(&map.bumps));
-    let candidates = candidates(map, &layer, &lobes, earlier.or(deciding.as_ref()).or(means.as_ref()));
+        .then(|| normals_of_means(map));
+    let normals = earlier.or(deciding.as_ref()).or(means.as_ref());
+    let candidates = candidates(map, &layer, &lobes, normals, step.pyramid.or(pyramid.as_ref()));
     let encoding = normal_encoding(map, step.first);
     // The evaluation of candidates waits for its slowest texels several times: normals are encoded meanwhile.
     let (encoded, choice) = rayon::join(
@@ -57,12 +73,15 @@ pub fn bake_layer<'m>(
     drop((deciding, means));
     let normals = encoded.map(|mip_chain| {
         let lobes = lobes.roughening.as_ref().map(Roughening::lobes).filter(|_| step.is_needed_later);
-        LayerNormals { mip_chain, normals: lobes.map(|lobes| Normals::copied_from_lobes(&map.bumps, lobes)) }
+        let copied = |lobes| Normals::copied_from_lobes(&map.bumps, lobes).with_scale(map.normal_scale);
+        LayerNormals { mip_chain, normals: lobes.map(copied) }
     });
     let model = LayerModel::new(choice, &layer, map.settings);
     let is_held = layer.can_be_roughened || map.settings.profile.has_pyramid();
     let reported_model = if is_held { model.model } else { Model::None };
-    Ok((layer_products(map, model, reported_model, lobes)?, normals))
+    let mut products = layer_products(map, model, reported_model, lobes)?;
+    products.notes.extend(layer.base.note.take());
+    Ok((products, Decided { normals, pyramid }))
 }
 
 /// Makes the textures of a layer under `model` and frees its lobes.
@@ -72,14 +91,15 @@ fn layer_products(
     reported_model: Model,
     lobes: LayerLobes<'_>,
 ) -> Result<LayerProducts, EncodeError> {
-    let LayerLobes { roughening, correction } = lobes;
+    let LayerLobes { roughening, needed_variance, .. } = lobes;
     let mut notes: Vec<Note> = model.choice.as_ref().and_then(|choice| choice.note(map.settings)).into_iter().collect();
     let is_stored = map.settings.profile.is_portable() && model.model != Model::None;
     let mut textures = Vec::new();
     if let Some(roughening) = roughening.filter(|_| is_stored) {
+        let roughening = roughening.with_base_levels(model.base_levels());
         textures = lobe_textures(map, &roughening, &model)?;
         notes.extend(notes::of_roughening(&roughening, model.model, map.bump_map.noise()));
         roughening.free();
     }
-    Ok(LayerProducts { model, reported_model, correction, textures, notes })
+    Ok(LayerProducts { model, reported_model, needed_variance, textures, notes })
 }

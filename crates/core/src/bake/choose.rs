@@ -2,7 +2,7 @@
 
 use crate::bake::lobes::{LayerInput, LayerLobes};
 use crate::bake::offsets::MapOffsets;
-use crate::material::Normals;
+use crate::material::{LobeLevels, Normals, PyramidLevels, correction_factor, lost_variance};
 use crate::report::Choice;
 use crate::select::CandidateSet;
 use crate::settings::{Model, Settings};
@@ -18,19 +18,27 @@ pub struct LayerModel {
 }
 
 /// Returns the candidates of a layer; none if the bumps cannot be added to the base lobe. `normals` is the normal
-/// texture of the portable profile.
-pub fn candidates<'a, 'f, 'r>(
-    map: &'a MapOffsets<'r>,
+/// texture of the portable profile, and `pyramid` are the levels of the pyramid profile.
+pub fn candidates<'a, 'f>(
+    map: &'a MapOffsets<'_>,
     layer: &LayerInput<'_>,
     lobes: &'a LayerLobes<'f>,
     normals: Option<&'a Normals<'a>>,
-) -> Option<CandidateSet<'a, 'f, 'r>> {
+    pyramid: Option<&'a LobeLevels<'_>>,
+) -> Option<CandidateSet<'a, 'f>> {
+    let pyramid = lobes.needed_variance.map(|needed| {
+        let levels: &dyn PyramidLevels = match pyramid {
+            Some(levels) => levels,
+            None => map.bumps.moments(),
+        };
+        (levels, correction_factor(needed, lost_variance(levels)))
+    });
     lobes.roughening.as_ref().map(|roughening| CandidateSet {
         roughening,
         settings: map.settings,
         normals,
-        pyramid: lobes.correction.map(|correction| (map.bumps.moments(), correction)),
-        wrap: map.wrap,
+        pyramid,
+        wrap: map.sampler.wrap,
         max_model: layer.max_model,
         finest: layer.finest,
         first: layer.first,
@@ -47,6 +55,11 @@ impl LayerModel {
             (None, requested) => (requested.min(layer.max_model), layer.first),
         };
         Self { model, first, choice }
+    }
+
+    /// Returns the levels at which the chosen candidate keeps the base lobe.
+    pub fn base_levels(&self) -> &[usize] {
+        self.choice.as_ref().and_then(Choice::taken).map_or(&[], |taken| &taken.base_levels)
     }
 
     /// Returns the lobe errors of the chosen candidate, level by level; empty without a choice.

@@ -69,8 +69,8 @@ impl<'a> Images<'a> {
         locations.into_iter().filter_map(|l| Some((l.clone(), *digests.get(l)?))).collect()
     }
 
-    /// Decodes the image of `texture`, which `material` uses for a base lobe.
-    fn colours(&self, texture: &TextureSource, material: &str) -> Result<Image, ImageError> {
+    /// Decodes the image of `texture`, which `material` uses for a base lobe or its reflectance.
+    pub fn colours(&self, texture: &TextureSource, material: &str) -> Result<Image, ImageError> {
         let file = self.file(texture, material)?;
         let image = self.decoded(&file, texture, material, decode_colours)?;
         image.into_finite_colours().map_err(|error| ImageError::Map {

@@ -15,6 +15,16 @@ pub type Extension = RoughnessPyramid<f32>;
 /// The lobe that a material had before the portable profile roughened it, as it is written.
 pub type BaseLobe = crate::gltf::roughness_pyramid::BaseLobe<f32>;
 
+/// A texture of offsets.
+pub struct ScaledTexture {
+    /// Index into `textures`.
+    pub texture: usize,
+    /// Whether z is stored.
+    pub has_z: bool,
+    /// What multiplies the slopes of the normals.
+    pub scale: [f32; 2],
+}
+
 /// A texture with the range of its values.
 pub struct RangedTexture {
     /// Index into `textures`.
@@ -60,7 +70,7 @@ impl Extension {
     /// channel), both read with the texture coordinates of `mapping`. `base_lobe` is needed if the core properties hold
     /// K too.
     pub fn new(
-        offset: RangedTexture,
+        offset: ScaledTexture,
         roughness: Option<RangedTexture>,
         correction_factor: f32,
         frame: Frame,
@@ -68,7 +78,6 @@ impl Extension {
         base_lobe: Option<BaseLobe>,
     ) -> Self {
         let info = |index| TextureInfo::new(index, mapping);
-        let pair = |values: &[f32]| std::array::from_fn(|channel| values.get(channel).copied().unwrap_or_default());
         let model = |r: &RangedTexture| match r.range.max.len() {
             3 => RoughnessModel::CovarianceFactor,
             _ => RoughnessModel::StandardDeviation,
@@ -76,8 +85,8 @@ impl Extension {
         Self {
             format_version: FORMAT_VERSION,
             offset_texture: info(offset.texture),
-            offset_min: pair(&offset.range.min),
-            offset_max: pair(&offset.range.max),
+            offset_channels: if offset.has_z { 3 } else { 2 },
+            offset_scale: offset.scale,
             roughness_model: roughness.as_ref().map(model),
             roughness_texture: roughness.as_ref().map(|r| info(r.texture)),
             roughness_min: roughness.as_ref().map(|r| r.range.min.clone()),
@@ -94,9 +103,8 @@ impl Extension {
     /// Returns whether JSON has all the numbers: infinities and NaN would be written as `null`.
     pub fn is_finite(&self) -> bool {
         let ranges = [self.roughness_min.as_deref(), self.roughness_max.as_deref()].into_iter().flatten().flatten();
-        let offsets = self.offset_min.iter().chain(&self.offset_max);
         let direction = self.main_direction.iter().flatten();
-        let numbers = offsets.chain(ranges).chain(direction).chain([&self.correction_factor]).copied();
+        let numbers = self.offset_scale.iter().chain(ranges).chain(direction).chain([&self.correction_factor]).copied();
         numbers.chain(self.base_lobe.iter().flat_map(BaseLobe::numbers)).all(f32::is_finite)
     }
 }

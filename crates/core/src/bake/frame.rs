@@ -11,46 +11,60 @@ use crate::note::{self, Note};
 /// degrees.
 const MAX_ROTATION_DEVIATION: f32 = 0.1;
 
-/// Returns the frame of the offsets of `layer` and the transforms to it. If the layer cannot have the `requested`
-/// frame, it has the unit frame, and the note says why.
-pub fn offset_frame(
-    requested: Frame,
-    geometry: &Geometry<'_>,
-    bump_map: &BumpMap,
-    layer: &GroupLayer,
-) -> (Frame, FrameTransforms, Option<Note>) {
-    match transforms(requested, geometry, bump_map, layer) {
-        Ok(transforms) => (requested, transforms, None),
-        Err(reason) => (Frame::Unit, FrameTransforms::IDENTITY, Some(reason)),
+/// The frame of the offsets of a layer.
+pub struct OffsetFrame {
+    /// The frame.
+    pub frame: Frame,
+    /// The transforms to the frame, up to its scale.
+    pub transforms: FrameTransforms,
+    /// The scale of the frame: what multiplies slopes along its two axes.
+    pub scale: [f32; 2],
+    /// Why the frame is not the requested one.
+    pub note: Option<Note>,
+}
+
+impl OffsetFrame {
+    fn new(frame: Frame, transforms: FrameTransforms) -> Self {
+        Self { frame, transforms, scale: [1.0; 2], note: None }
     }
 }
 
-fn transforms(
+/// Returns the frame of the offsets of `layer`. If the layer cannot have the `requested` frame, it has the unit frame,
+/// and the note says why.
+pub fn offset_frame(requested: Frame, geometry: &Geometry<'_>, bump_map: &BumpMap, layer: &GroupLayer) -> OffsetFrame {
+    requested_frame(requested, geometry, bump_map, layer).unwrap_or_else(|reason| OffsetFrame {
+        note: Some(reason),
+        ..OffsetFrame::new(Frame::Unit, FrameTransforms::IDENTITY)
+    })
+}
+
+fn requested_frame(
     requested: Frame,
     geometry: &Geometry<'_>,
     bump_map: &BumpMap,
     layer: &GroupLayer,
-) -> Result<FrameTransforms, Note> {
-    match (requested, layer.layout.as_ref()) {
-        (Frame::Unit, _) => Ok(FrameTransforms::IDENTITY),
-        (_, None) => Err(note::unknown_layout()),
+) -> Result<OffsetFrame, Note> {
+    let transforms = match (requested, layer.layout.as_ref()) {
+        (Frame::Unit, _) => FrameTransforms::IDENTITY,
+        (_, None) => return Err(note::unknown_layout()),
         (Frame::Natural, Some(layout)) => {
-            let [p_u, p_v] = layout.units_per_repeat;
-            Ok(FrameTransforms::Uniform(FrameTransform::natural(p_u, p_v)))
+            let frame = OffsetFrame::new(requested, FrameTransforms::IDENTITY);
+            return Ok(OffsetFrame { scale: layout.units_per_repeat, ..frame });
         }
         (Frame::MainDirection(_), Some(layout)) if layout.rotation_deviation <= MAX_ROTATION_DEVIATION => {
             let [cos, sin] = layout.tangent_rotation;
-            Ok(FrameTransforms::Uniform(FrameTransform::rotation(cos, sin)))
+            FrameTransforms::Uniform(FrameTransform::rotation(cos, sin))
         }
         (Frame::MainDirection(_), Some(layout)) => {
             let (mapping, (width, height)) = (&layer.layer.bumps.texture().mapping, size_of(bump_map));
             match geometry.rotation_map(layer.material, mapping, [width, height]) {
-                Some(map) if map.conflict <= MAX_ROTATION_DEVIATION => Ok(FrameTransforms::PerTexel(map)),
+                Some(map) if map.conflict <= MAX_ROTATION_DEVIATION => FrameTransforms::PerTexel(map),
                 map => {
                     let over_map = map.map_or(2.0, |map| map.conflict);
-                    Err(note::conflicting_rotations(layout.rotation_deviation, over_map))
+                    return Err(note::conflicting_rotations(layout.rotation_deviation, over_map));
                 }
             }
         }
-    }
+    };
+    Ok(OffsetFrame::new(requested, transforms))
 }

@@ -1,6 +1,6 @@
 //! Step 2: the layers of all materials are grouped by bump map, and within a group by lobe.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 
 use serde_json::Value;
@@ -9,8 +9,9 @@ use super::geometry::Geometry;
 use crate::bump::Frame;
 use crate::gltf::geometry::Layout;
 use crate::gltf::layers::{LayerKind, LayerRow};
-use crate::gltf::material::{BumpSource, Layer, Material, TextureUse};
+use crate::gltf::material::{BumpSource, Layer, Material, ReflectanceFactors, TextureUse};
 use crate::gltf::rewrite::Slot;
+use crate::gltf::scene::animated_bumps;
 use crate::gltf::texture::{ImageLocation, TextureError, TextureSource, Textures};
 use crate::mip::Wrap;
 use crate::note::{self, Note};
@@ -23,6 +24,8 @@ pub struct BumpMapGroup {
     pub source: Arc<TextureSource>,
     /// How the image is read.
     pub kind: BumpMapKind,
+    /// Whether the scale of the normal texture may change in all layers.
+    pub may_scale_normals: bool,
     /// The layers.
     pub layers: Vec<GroupLayer>,
 }
@@ -69,6 +72,21 @@ pub struct BaseTextures {
     pub roughness: Option<Arc<TextureSource>>,
     /// Direction and strength.
     pub anisotropy: Option<Arc<TextureSource>>,
+    /// What decides on the reflectance; none if the reflectance is constant or cannot be read.
+    pub reflectance: Option<ReflectanceTextures>,
+}
+
+/// The factors of a layer's reflectance, and those of its textures that lie over the bump map.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReflectanceTextures {
+    /// The factors.
+    pub factors: ReflectanceFactors,
+    /// Base colour.
+    pub base_colour: Option<Arc<TextureSource>>,
+    /// Alpha multiplies the reflectance of the dielectric.
+    pub specular: Option<Arc<TextureSource>>,
+    /// Colour of the dielectric's F0.
+    pub specular_colour: Option<Arc<TextureSource>>,
 }
 
 /// What decides on a layer's roughened lobe, besides its bumps. Layers with equal keys share their textures.
@@ -106,13 +124,16 @@ pub fn group_by_bump_map(
     let mut groups: Vec<BumpMapGroup> = Vec::new();
     let mut indices: HashMap<_, usize> = HashMap::new();
     let mut textures = Textures::of(root);
+    let may_scale = settings.scale_normals && settings.profile.is_portable();
+    let animated = if may_scale { animated_bumps(root) } else { BTreeSet::new() };
     for Material { index, name, layers } in materials {
         for layer in layers {
             let (source, kind, layer) = group_layer((index, &name), layer, &mut textures, settings, geometry)?;
             let group = *indices.entry((address(&source), kind.key())).or_insert(groups.len());
             if group == groups.len() {
-                groups.push(BumpMapGroup { source, kind, layers: Vec::new() });
+                groups.push(BumpMapGroup { source, kind, may_scale_normals: may_scale, layers: Vec::new() });
             }
+            groups[group].may_scale_normals &= !animated.contains(&index);
             groups[group].layers.push(layer);
         }
     }
@@ -133,7 +154,16 @@ fn group_layer(
     let layout = geometry.layout(material, &bumps.mapping);
     let mut notes = Vec::new();
     let (kind, slope_scale) = kind_of(&layer.bumps, &source, settings, layout.as_ref(), &mut notes);
-    let base = base_textures(textures, &layer, &source).map_err(failed("roughness or anisotropy texture"))?;
+    let mut base = base_textures(textures, &layer, &source).map_err(failed("roughness or anisotropy texture"))?;
+    if let (Ok(base), Some(reflectance)) = (&mut base, &layer.reflectance) {
+        match reflectance {
+            Ok(factors) => match reflectance_textures(textures, factors, &layer, &source) {
+                Ok(textures) => base.reflectance = Some(textures),
+                Err(error) => notes.push(note::unknown_reflectance(&error)),
+            },
+            Err(error) => notes.push(note::unknown_reflectance(error)),
+        }
+    }
     Ok((source, kind, GroupLayer { material, name: name.to_owned(), layer, slope_scale, layout, base, notes }))
 }
 
@@ -208,7 +238,30 @@ fn base_textures(
     let anisotropy = read("anisotropy", layer.anisotropy.as_ref().and_then(|a| a.texture.as_ref()))?;
     Ok(match reason {
         Some(reason) => Err(reason),
-        None => Ok(BaseTextures { roughness, anisotropy }),
+        None => Ok(BaseTextures { roughness, anisotropy, reflectance: None }),
+    })
+}
+
+/// Returns the textures of the layer's reflectance. Textures whose texels do not lie over those of the bump map are
+/// left out, so that their factors count alone.
+fn reflectance_textures(
+    textures: &mut Textures<'_>,
+    factors: &ReflectanceFactors,
+    layer: &Layer,
+    bumps: &TextureSource,
+) -> Result<ReflectanceTextures, TextureError> {
+    let mapping = &layer.bumps.texture().mapping;
+    let mut read = |texture: &Option<TextureUse>| {
+        let Some(texture) = texture.as_ref().filter(|texture| texture.mapping.is_same(mapping)) else {
+            return Ok(None);
+        };
+        Ok(Some(textures.get(texture.texture)?).filter(|source| source.wrap == bumps.wrap))
+    };
+    Ok(ReflectanceTextures {
+        base_colour: read(&factors.base_colour)?,
+        specular: read(&factors.specular)?,
+        specular_colour: read(&factors.specular_colour)?,
+        factors: factors.clone(),
     })
 }
 
@@ -241,6 +294,11 @@ impl GroupLayer {
         self.slot(self.row().normal_texture)
     }
 
+    /// Returns a JSON pointer of the scale of the layer's normal texture.
+    pub fn normal_scale(&self) -> String {
+        self.pointer(&format!("{}/scale", self.row().normal_texture))
+    }
+
     /// Returns the references to the layer's roughness texture: its own, and the one to occlusion if both share a
     /// texture.
     pub fn roughness_slots(&self) -> Vec<Slot> {
@@ -271,9 +329,16 @@ impl GroupLayer {
         self.base.as_ref().map_or([None; 2], |base| [base.roughness.as_deref(), base.anisotropy.as_deref()])
     }
 
-    /// Returns the locations of the images of the base lobe.
+    /// Returns what decides on the reflectance of the base lobe; none if the reflectance is constant.
+    pub fn reflectance(&self) -> Option<&ReflectanceTextures> {
+        self.base.as_ref().ok()?.reflectance.as_ref()
+    }
+
+    /// Returns the locations of the images of the base lobe and of its reflectance.
     pub fn base_locations(&self) -> Vec<&Arc<ImageLocation>> {
-        self.base_textures().into_iter().flatten().map(|t| &t.location).collect()
+        let reflectance = self.reflectance().map(|r| [&r.base_colour, &r.specular, &r.specular_colour]);
+        let reflectance = reflectance.into_iter().flatten().filter_map(Option::as_deref);
+        self.base_textures().into_iter().flatten().chain(reflectance).map(|t| &t.location).collect()
     }
 
     fn slot(&self, member: &str) -> Slot {

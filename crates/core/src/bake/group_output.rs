@@ -16,7 +16,7 @@ use crate::gltf::rewrite::Slot;
 use crate::gltf::texture::{ImageLocation, TextureSource};
 use crate::note::{self, Note};
 use crate::report::{Content, LayerReport};
-use crate::settings::{Finest, Model, Settings};
+use crate::settings::{Finest, MaxModel, Model, Settings};
 
 /// A baked texture and its place in the document.
 pub struct GroupTexture {
@@ -36,6 +36,8 @@ pub struct GroupTexture {
 pub struct GroupLayerOutput {
     /// For the report.
     pub report: LayerReport,
+    /// JSON pointer and value of the scale of the normal texture, if the texture holds other slopes than before.
+    pub normal_scale: Option<(String, f32)>,
     /// JSON pointer of the roughness factor, if the roughness texture now includes the factor.
     pub roughness_factor: Option<String>,
     /// The change of the layer's anisotropy.
@@ -72,8 +74,8 @@ pub struct PyramidUse {
     pub offset: usize,
     /// Index of the texture of D or lambda_1; none under [`Model::None`].
     pub roughness: Option<usize>,
-    /// Multiplies offsets and roughness.
-    pub slope_scale: f32,
+    /// Multiplies offsets and roughness along the two axes of the frame.
+    pub slope_scale: [f32; 2],
     /// Texture coordinates of both textures.
     pub mapping: Mapping,
     /// The frame of the offsets.
@@ -105,12 +107,14 @@ impl GroupOutput {
     ) -> Self {
         let BumpMapProducts { normals, layers: products, pyramid } = products;
         let before_pyramid = usize::from(normals.is_some()) + products.iter().map(|p| p.textures.len()).sum::<usize>();
+        let normal_scale = normals.as_ref().and_then(|texture| texture.scale);
         let mut pyramid_layers = pyramid.layers.into_iter();
         let mut layers = Vec::with_capacity(group.layers.len());
         for (index, layer) in group.layers.iter().enumerate() {
             let Some(lobes) = lobe_groups.iter().position(|users| users.contains(&index)) else { continue };
             let in_pyramid = if layer.row().is_in_pyramid { pyramid_layers.next() } else { None };
-            let placement = LayerPlacement { layer, products: &products[lobes], settings, before_pyramid };
+            let products = &products[lobes];
+            let placement = LayerPlacement { layer, products, settings, before_pyramid, normal_scale };
             layers.push(placement.output(in_pyramid, notes(layer)));
         }
         let places = Places { group, images };
@@ -174,6 +178,8 @@ struct LayerPlacement<'a> {
     settings: &'a Settings,
     /// How many textures stand before those of the pyramid profile.
     before_pyramid: usize,
+    /// What multiplies the slopes of the normal texture; none if that is 1.
+    normal_scale: Option<f32>,
 }
 
 impl LayerPlacement<'_> {
@@ -186,8 +192,8 @@ impl LayerPlacement<'_> {
         notes.extend(layer.base.as_ref().err().filter(|_| settings.profile.is_portable()).cloned());
         notes.extend(products.notes.iter().cloned());
         let anisotropy = self.anisotropy_change();
-        if matches!(anisotropy, AnisotropyChange::Dropped { .. }) && settings.model == Model::Isotropic {
-            notes.push(note::anisotropy_dropped());
+        if matches!(anisotropy, AnisotropyChange::Dropped { .. }) {
+            notes.extend(Self::dropping_setting(settings).map(note::anisotropy_dropped));
         }
         if settings.profile.has_pyramid() && in_pyramid.is_none() {
             notes.push(note::layer_without_pyramid(layer.row().name));
@@ -203,11 +209,22 @@ impl LayerPlacement<'_> {
             notes,
         };
         let roughness_factor = self.is_roughened().then(|| layer.pointer(layer.row().roughness_factor));
+        let normal_scale = self.normal_scale.map(|scale| (layer.normal_scale(), scale * layer.slope_scale));
         GroupLayerOutput {
             report,
+            normal_scale,
             roughness_factor,
             anisotropy,
             pyramid: in_pyramid.map(|used| self.pyramid_use(used)),
+        }
+    }
+
+    /// Returns the setting that drops anisotropy; `None` if no setting does.
+    fn dropping_setting(settings: &Settings) -> Option<&'static str> {
+        match (settings.model, settings.max_model) {
+            (Model::Isotropic, _) => Some("--model isotropic"),
+            (Model::Auto, MaxModel::Isotropic) => Some("--max-model isotropic"),
+            _ => None,
         }
     }
 
@@ -240,10 +257,10 @@ impl LayerPlacement<'_> {
             pointer: layer.pointer(&format!("extensions/{EXTENSION}")),
             offset: self.before_pyramid + in_pyramid.offset,
             roughness: in_pyramid.roughness.map(|roughness| self.before_pyramid + roughness),
-            slope_scale: layer.slope_scale,
+            slope_scale: in_pyramid.scale.map(|scale| scale * layer.slope_scale),
             mapping: layer.layer.bumps.texture().mapping.clone(),
             frame: in_pyramid.frame,
-            correction: self.products.correction.unwrap_or(1.0),
+            correction: in_pyramid.correction,
             base_lobe: self.is_roughened().then(|| BaseLobe::new(&layer.layer)),
         }
     }

@@ -1,5 +1,7 @@
 //! Why an image of a material cannot be baked.
 
+use std::io;
+
 use crate::bake::source::SourceError;
 use crate::decode::DecodeError;
 use crate::image::MapError;
@@ -49,4 +51,15 @@ pub enum ImageError {
         /// The image's URI or number.
         texture: String,
     },
+}
+
+impl ImageError {
+    /// Returns whether memory was short, so that another try may succeed.
+    pub fn is_out_of_memory(&self) -> bool {
+        match self {
+            Self::Source { error: SourceError::Read { error, .. }, .. } => error.kind() == io::ErrorKind::OutOfMemory,
+            Self::Decode { error, .. } => error.is_out_of_memory(),
+            _ => false,
+        }
+    }
 }

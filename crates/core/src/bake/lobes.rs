@@ -3,11 +3,14 @@
 use std::borrow::Cow;
 
 use crate::bake::offsets::{MapOffsets, size_of};
+use crate::bake::reflectance::ReflectanceInput;
 use crate::image::{Image, Rgba};
 use crate::material::{
-    Base, BaseAnisotropy, BaseLevels, BaseRows, BumpMap, Bumps, GridError, Roughening, base_lobe, grid,
+    Base, BaseAnisotropy, BaseLevels, BaseRows, BumpMap, Bumps, GridError, LobeLevels, Roughening, base_lobe, grid,
+    lost_variance_of_lobes,
 };
 use crate::mip::Wrap;
+use crate::note::Note;
 use crate::settings::{Model, Settings};
 
 /// The textures and factors of a base lobe.
@@ -18,6 +21,8 @@ pub struct BaseInput<'a> {
     pub roughness_factor: f32,
     /// The anisotropy, if there is any.
     pub anisotropy: Option<AnisotropyInput>,
+    /// The reflectance; none if it is constant.
+    pub reflectance: Option<ReflectanceInput>,
     /// The sampler's mode, across and down.
     pub wrap: [Wrap; 2],
 }
@@ -40,8 +45,9 @@ impl BaseInput<'_> {
         grid(settings, images.map(|image| (image.width, image.height)).chain(bump_map.map(size_of)))
     }
 
-    /// Puts the base lobe on a grid of `width` x `height` texels.
-    pub fn rows(&self, (width, height): (u32, u32)) -> BaseRows<'_> {
+    /// Puts the base lobe and its reflectance on a grid of `width` x `height` texels.
+    pub fn rows(&self, size: (u32, u32)) -> BaseRows<'_> {
+        let (width, height) = size;
         let anisotropy = self.anisotropy.as_ref().map(|anisotropy| {
             let rotation = f64::from(anisotropy.rotation);
             BaseAnisotropy {
@@ -50,8 +56,10 @@ impl BaseInput<'_> {
                 rotation: [libm::cos(rotation) as f32, libm::sin(rotation) as f32],
             }
         });
-        let roughness = self.roughness.as_deref().map(Rgba);
-        BaseRows::new(width, height, roughness, self.roughness_factor, anisotropy, self.wrap)
+        let roughness = self.roughness.as_deref();
+        let reflectance = self.reflectance.as_ref().and_then(|input| input.rows(size, self.wrap, roughness));
+        let rgba = roughness.map(Rgba);
+        BaseRows::new(width, height, rgba, self.roughness_factor, anisotropy, self.wrap).with_reflectance(reflectance)
     }
 }
 
@@ -61,14 +69,16 @@ pub struct PreparedBase<'a> {
     pub input: BaseInput<'a>,
     /// Levels on the grid of the base lobe's own textures, with the size of that grid.
     pub levels: Option<((u32, u32), BaseLevels)>,
+    /// Why the reflectance is taken to be constant, if an image of it cannot be decoded.
+    pub note: Option<Note>,
 }
 
 impl<'a> PreparedBase<'a> {
     /// Builds the levels on the grid of the base lobe's own textures. Mostly the bumps are on that grid, too.
-    pub fn with_levels(input: BaseInput<'a>, settings: &Settings) -> Result<Self, GridError> {
-        let size = input.grid(settings, None)?;
-        let levels = BaseLevels::new(&input.rows(size));
-        Ok(Self { input, levels: Some((size, levels)) })
+    pub fn with_levels(self, settings: &Settings) -> Result<Self, GridError> {
+        let size = self.input.grid(settings, None)?;
+        let levels = BaseLevels::new(&self.input.rows(size));
+        Ok(Self { levels: Some((size, levels)), ..self })
     }
 }
 
@@ -82,8 +92,8 @@ pub struct LayerInput<'a> {
     pub can_be_roughened: bool,
     /// Multiplies offsets.
     pub slope_scale: f32,
-    /// Whether the pyramid profile needs the correction factor of the layer.
-    pub needs_correction: bool,
+    /// Whether the pyramid profile describes the layer.
+    pub is_in_pyramid: bool,
     /// The model with the most parameters that the layer can have.
     pub max_model: Model,
     /// The finest level that can be sampled.
@@ -96,8 +106,10 @@ pub struct LayerInput<'a> {
 pub struct LayerLobes<'a> {
     /// The base lobe and the roughened lobes, if bumps can be added to the base lobe.
     pub roughening: Option<Roughening<'a>>,
-    /// The correction factor c, for the pyramid profile.
-    pub correction: Option<f32>,
+    /// The sum over levels 1 and coarser of the mean trace of the K that the lobes need, for the pyramid profile.
+    pub needed_variance: Option<f64>,
+    /// Whether the lobes are on the grid of the bump map and have bumps.
+    can_decide: bool,
 }
 
 impl<'a> LayerLobes<'a> {
@@ -114,14 +126,27 @@ impl<'a> LayerLobes<'a> {
             Some((size, levels)) if size == layer.size => Base::with_levels(rows, levels),
             _ => Base::new(rows),
         };
-        let has_correction = settings.profile.has_pyramid() && layer.needs_correction;
-        let correction =
-            has_correction.then(|| map.bumps.correction(slope_scale, settings, base_lobe(&base.coarsest())));
-        let is_roughened = layer.can_be_roughened && (settings.profile.is_portable() || layer.needs_correction);
+        let is_in_pyramid = settings.profile.has_pyramid() && layer.is_in_pyramid;
+        let is_roughened = layer.can_be_roughened && (settings.profile.is_portable() || layer.is_in_pyramid);
+        let can_decide = is_roughened && slope_scale != 0.0 && layer.size == map.bumps.size();
+        let needed = (is_in_pyramid && !can_decide)
+            .then(|| map.bumps.corrected_variance(slope_scale, settings, base_lobe(&base.coarsest())));
         let roughening = is_roughened.then(|| {
             let resampled = (layer.size != map.bumps.size()).then(|| Bumps::new(map.bump_map, layer.size));
-            Roughening::new(base, resampled.as_ref().unwrap_or(&map.bumps), slope_scale, settings)
+            Roughening::new(base, resampled.as_ref().unwrap_or(&map.bumps), slope_scale, map.sampler, settings)
         });
-        Self { roughening, correction }
+        let of_lobes = roughening.as_ref().filter(|_| is_in_pyramid && can_decide).map(lost_variance_of_lobes);
+        Self { roughening, needed_variance: needed.or(of_lobes), can_decide }
+    }
+
+    /// Returns the lobes if they can decide the directions of the bump map's texels: if they are on its grid.
+    pub fn deciding(&self) -> Option<&Roughening<'a>> {
+        self.roughening.as_ref().filter(|_| self.can_decide)
+    }
+
+    /// Returns the levels of the pyramid profile that these lobes decide.
+    pub fn pyramid_levels<'m>(&self, map: &MapOffsets<'m>) -> Option<LobeLevels<'m>> {
+        self.needed_variance?;
+        self.deciding().map(|roughening| LobeLevels::new(&map.bumps, roughening))
     }
 }

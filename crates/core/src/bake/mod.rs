@@ -43,6 +43,7 @@ mod products;
 mod provenance;
 mod pyramid;
 mod reader;
+mod reflectance;
 mod source;
 mod standalone;
 

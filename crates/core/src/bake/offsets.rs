@@ -3,8 +3,8 @@
 use crate::bake::group::BumpMapKind;
 use crate::bump::{HeightMap, NormalLayout, NormalMap};
 use crate::image::{Image, MapError};
-use crate::material::{BumpMap, Bumps, GridError, grid};
-use crate::mip::{TexelRows, Wrap};
+use crate::material::{BumpMap, Bumps, GridError, grid, normal_scale};
+use crate::mip::{Sampler, TexelRows};
 use crate::settings::Settings;
 
 /// A bump map with its offsets, and what all later steps need to know beside it.
@@ -15,15 +15,22 @@ pub struct MapOffsets<'a> {
     pub bumps: Bumps<'a>,
     /// The settings of the bake.
     pub settings: &'a Settings,
-    /// The sampler's mode, across and down.
-    pub wrap: [Wrap; 2],
+    /// The modes of its sampler.
+    pub sampler: Sampler,
+    /// Divides the slopes of the normal texture.
+    pub normal_scale: f32,
 }
 
 impl<'a> MapOffsets<'a> {
     /// Puts `bump_map` on its grid.
-    pub fn new(bump_map: &'a BumpMap, settings: &'a Settings, wrap: [Wrap; 2]) -> Result<Self, GridError> {
+    pub fn new(bump_map: &'a BumpMap, settings: &'a Settings, sampler: Sampler) -> Result<Self, GridError> {
         let bumps = Bumps::new(bump_map, grid(settings, [size_of(bump_map)])?);
-        Ok(Self { bump_map, bumps, settings, wrap })
+        Ok(Self { bump_map, bumps, settings, sampler, normal_scale: 1.0 })
+    }
+
+    /// Chooses the scale of the normal texture.
+    pub fn scaling_normals(self) -> Self {
+        Self { normal_scale: normal_scale(&self.bumps), ..self }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Steps 7 and 8: the textures of the portable profile are made and encoded.
 
 use crate::bake::choose::LayerModel;
-use crate::bake::lobes::{LayerInput, LayerLobes};
+use crate::bake::lobes::LayerLobes;
 use crate::bake::offsets::MapOffsets;
 use crate::codec::EncodeError;
 use crate::material::{AnisotropyTexture, Encoding, MipChain, Normals, Product, Range, Roughening, RoughnessTexture};
@@ -14,8 +14,10 @@ pub struct EncodedTexture {
     pub content: Content,
     /// The encoded levels.
     pub mip_chain: MipChain,
-    /// What texels of 0 and 1 stand for, in the pyramid profile.
+    /// What texels of 0 and 1 stand for, in textures of D and lambda_1.
     pub range: Option<Range>,
+    /// What multiplies the slopes of normals: in textures of offsets, and in normal textures of low bumps.
+    pub scale: Option<f32>,
     /// What it models of the lost bumps.
     pub model: Model,
     /// Mean lobe errors of its layer, level by level, if it holds roughness data that were chosen.
@@ -34,6 +36,7 @@ impl EncodedTexture {
             trimmed: self.mip_chain.trimmed,
             bytes,
             range: self.range.clone(),
+            scale: self.scale,
         }
     }
 }
@@ -46,16 +49,15 @@ pub struct LayerNormals<'a> {
     pub normals: Option<Normals<'a>>,
 }
 
-/// Returns the normals that the lobes of `layer` decide: the directions of the lobes, if they are on the grid of the
-/// bump map.
-pub fn normals_of_lobes<'a, 'm: 'a>(
-    map: &MapOffsets<'m>,
-    layer: &LayerInput<'_>,
-    lobes: &'a LayerLobes<'a>,
-) -> Option<Normals<'a>> {
-    let roughening = lobes.roughening.as_ref().filter(|_| map.settings.profile.is_portable())?;
-    let can_decide = layer.slope_scale != 0.0 && roughening.sizes()[0] == map.bumps.size();
-    can_decide.then(|| Normals::of_lobes(&map.bumps, roughening.lobes()))
+/// Returns the normals that `lobes` decide: the directions of the lobes, if they are on the grid of the bump map.
+pub fn normals_of_lobes<'a, 'm: 'a>(map: &MapOffsets<'m>, lobes: &'a LayerLobes<'a>) -> Option<Normals<'a>> {
+    let roughening = lobes.deciding().filter(|_| map.settings.profile.is_portable())?;
+    Some(Normals::of_lobes(&map.bumps, roughening.lobes()).with_scale(map.normal_scale))
+}
+
+/// Returns the normals of mean slopes.
+pub fn normals_of_means<'m>(map: &MapOffsets<'m>) -> Normals<'m> {
+    Normals::of_means(&map.bumps).with_scale(map.normal_scale)
 }
 
 /// Returns the encoding of a bump map's normal texture, without levels finer than `first`.
@@ -71,9 +73,16 @@ pub fn normal_texture(
 ) -> Result<EncodedTexture, EncodeError> {
     let mip_chain = match decided {
         Some(decided) => decided.mip_chain,
-        None => Normals::of_means(&map.bumps).encode(normal_encoding(map, first))?,
+        None => normals_of_means(map).encode(normal_encoding(map, first))?,
     };
-    Ok(EncodedTexture { content: Content::Normal, mip_chain, range: None, model: Model::None, lobe_errors: Vec::new() })
+    Ok(EncodedTexture {
+        content: Content::Normal,
+        mip_chain,
+        range: None,
+        scale: (map.normal_scale != 1.0).then_some(map.normal_scale),
+        model: Model::None,
+        lobe_errors: Vec::new(),
+    })
 }
 
 /// Makes the roughness texture of a layer and, under the anisotropic model, its anisotropy texture.
@@ -87,6 +96,7 @@ pub fn lobe_textures(
         content,
         mip_chain,
         range: None,
+        scale: None,
         model: model.model,
         lobe_errors: model.lobe_errors(),
     };

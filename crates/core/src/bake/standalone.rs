@@ -12,6 +12,7 @@ use crate::bake::pyramid::PyramidInput;
 use crate::bump::Frame;
 use crate::image::Image;
 use crate::material::{BumpMap, FrameTransforms, notes};
+use crate::mip::{Magnification, Sampler};
 use crate::note::Note;
 use crate::report::Choice;
 use crate::settings::{Form, Model, Settings};
@@ -45,9 +46,10 @@ pub fn bake_map(
     base_roughness: Option<&BaseRoughness>,
     settings: &Settings,
 ) -> Result<EncodedMap, BakeError> {
-    // PNG fallbacks are for documents, which refer to both files.
-    let settings = &Settings { gltf: Form::Strict, ..*settings };
-    let map = MapOffsets::new(bump_map, settings, bump_map.wrap())?;
+    // PNG fallbacks are for documents, which refer to both files, and only documents have a scale of normals.
+    let settings = &Settings { gltf: Form::Strict, scale_normals: false, ..*settings };
+    let sampler = Sampler { wrap: bump_map.wrap(), magnification: Magnification::Linear };
+    let map = MapOffsets::new(bump_map, settings, sampler)?;
     let mut notes = notes::of_bump_map(bump_map, map.bumps.size());
     let layer = std::iter::once_with(|| layer_input(&map, base_roughness));
     let BumpMapProducts { normals, layers, pyramid } = bake_bump_map(&map, 0, layer, || vec![tangent_frame()])?;
@@ -71,15 +73,16 @@ fn layer_input<'a>(
         roughness: base_roughness.and_then(|base| base.image.as_ref()).map(Cow::Borrowed),
         roughness_factor: base_roughness.map_or(1.0, |base| base.factor),
         anisotropy: None,
-        wrap: map.wrap,
+        reflectance: None,
+        wrap: map.sampler.wrap,
     };
     Ok(LayerInput {
         size: input.grid(map.settings, Some(map.bump_map))?,
-        base: PreparedBase { input, levels: None },
+        base: PreparedBase { input, levels: None, note: None },
         can_be_roughened: base_roughness.is_some(),
         slope_scale: 1.0,
-        needs_correction: base_roughness.is_some(),
-        max_model: Model::Anisotropic,
+        is_in_pyramid: base_roughness.is_some(),
+        max_model: map.settings.model_limit(),
         finest: 0,
         first: 0,
     })
@@ -87,7 +90,13 @@ fn layer_input<'a>(
 
 /// Returns the input of the pyramid profile: offsets stay in the tangent frame.
 fn tangent_frame() -> PyramidInput {
-    PyramidInput { lobes: 0, frame: Frame::Unit, transforms: Arc::new(FrameTransforms::IDENTITY), note: None }
+    PyramidInput {
+        lobes: 0,
+        frame: Frame::Unit,
+        transforms: Arc::new(FrameTransforms::IDENTITY),
+        scale: [1.0; 2],
+        note: None,
+    }
 }
 
 #[cfg(test)]

@@ -71,11 +71,6 @@ impl FrameTransform {
     /// M = 1: the tangent frame itself.
     pub const IDENTITY: Self = Self { matrix: [[1.0, 0.0], [0.0, 1.0]] };
 
-    /// Returns the transform to the natural frame of a surface with |p_u| and |p_v| mesh units per repeat.
-    pub fn natural(p_u: f32, p_v: f32) -> Self {
-        Self { matrix: [[p_u, 0.0], [0.0, p_v]] }
-    }
-
     /// Returns the transform to a frame rotated against the tangent frame, in which T = `cos` e1 + `sin` e2.
     pub fn rotation(cos: f32, sin: f32) -> Self {
         Self { matrix: [[cos, -sin], [sin, cos]] }

@@ -7,7 +7,7 @@ use crate::codec::error::EncodeError;
 use crate::codec::format::PayloadFormat;
 use crate::codec::quantise::{Texels, unorm8_row};
 use crate::codec::uastc;
-use crate::codec::uastc::{BLOCK_BYTES, Effort, Encoder, Image, Metric, SizeError, Weight};
+use crate::codec::uastc::{BLOCK_BYTES, Effort, Encoder, Image, Lobe, Metric, SizeError, Weight};
 use crate::simd::dispatch;
 
 /// The metric of textures with occlusion, roughness and metalness in red, green and blue. Lobes depend on roughness, so
@@ -30,22 +30,50 @@ pub(super) fn uastc_blocks(
     let width = texels.width as usize;
     let columns = width.div_ceil(4);
     let mut blocks = vec![[0; BLOCK_BYTES]; columns * texels.height.div_ceil(4) as usize];
-    let encode_row =
-        |values: &mut Vec<[f32; 4]>, rgba: &mut Vec<[u8; 4]>, block_row: usize, blocks: &mut [[u8; 16]]| {
-            let first = 4 * block_row as u32;
-            for (y, line) in rgba.chunks_exact_mut(width).enumerate() {
-                // Blocks below the last row repeat it.
-                (texels.row)((first + y as u32).min(texels.height - 1), values);
-                dispatch!(instructions, _simd => unorm8_row(values, line.as_flattened_mut()));
+    let encode_row = |buffers: &mut RowBuffers, block_row: usize, blocks: &mut [[u8; 16]]| {
+        let RowBuffers { values, rgba, lobes } = buffers;
+        let first = 4 * block_row as u32;
+        for (i, line) in rgba.chunks_exact_mut(width).enumerate() {
+            // Blocks below the last row repeat it.
+            let y = (first + i as u32).min(texels.height - 1);
+            (texels.row)(y, values);
+            dispatch!(instructions, _simd => unorm8_row(values, line.as_flattened_mut()));
+            if let Some(row) = texels.lobes {
+                row(y, &mut lobes[width * i..width * (i + 1)]);
             }
-            encoder.encode_rows(std::array::from_fn(|y| &rgba[width * y..width * (y + 1)]), blocks)
-        };
+        }
+        let rows = std::array::from_fn(|i| &rgba[width * i..width * (i + 1)]);
+        match texels.lobes {
+            None => encoder.encode_rows(rows, blocks),
+            Some(_) => {
+                let lobes = std::array::from_fn(|i| &lobes[width * i..width * (i + 1)]);
+                encoder.encode_rows_with_lobes(rows, lobes, blocks)
+            }
+        }
+    };
     let encoded: Result<(), SizeError> = blocks.par_chunks_mut(columns).enumerate().try_for_each_init(
-        || (vec![[0.0; 4]; width], vec![[0; 4]; 4 * width]),
-        |(values, rgba), (block_row, blocks)| encode_row(values, rgba, block_row, blocks),
+        || RowBuffers::new(width, texels.lobes.is_some()),
+        |buffers, (block_row, blocks)| encode_row(buffers, block_row, blocks),
     );
     encoded.map_err(|e| refused(texels, &e))?;
     Ok(blocks.into_flattened())
+}
+
+/// What a row of blocks is encoded from.
+struct RowBuffers {
+    /// The values of one row of texels.
+    values: Vec<[f32; 4]>,
+    /// Four rows of texels.
+    rgba: Vec<[u8; 4]>,
+    /// Four rows of lobes; empty if they are not known.
+    lobes: Vec<Lobe>,
+}
+
+impl RowBuffers {
+    fn new(width: usize, has_lobes: bool) -> Self {
+        let lobes = if has_lobes { 4 * width } else { 0 };
+        Self { values: vec![[0.0; 4]; width], rgba: vec![[0; 4]; 4 * width], lobes: vec![Lobe::isotropic(1.0); lobes] }
+    }
 }
 
 /// Returns the error for a level whose size the encoder of UASTC refuses.
@@ -91,7 +119,8 @@ pub(super) fn bc(_: &Texels<'_>, _: PayloadFormat, _: Metric, _: Effort) -> Resu
 }
 
 /// Rewrites the UASTC `blocks` of `texels` so that zstd makes them smaller, as [`uastc::lower_rate`] does: neither
-/// error grows by as much as `loss` dB. The level is held as RGBA8 meanwhile.
+/// error grows by as much as `loss` dB. Errors of normals are those of directions, also if their lobes are known. The
+/// level is held as RGBA8 meanwhile.
 ///
 /// # Errors
 /// [`EncodeError::Encoder`] if `blocks` are not those of a level of that size.

@@ -20,10 +20,10 @@ const CHUNK: usize = 1 << 20;
 /// # Errors
 /// [`EncodeError::Png`].
 pub fn fallback(texels: &Texels<'_>, effort: Effort) -> Result<Vec<u8>, EncodeError> {
-    let &Texels { width, height, row } = texels;
+    let &Texels { width, height, row, .. } = texels;
     let bands = (0..height).step_by(BAND as usize).map(|first| {
         let row = |y: u32, out: &mut [[f32; 4]]| row(first + y, out);
-        Texels { width, height: BAND.min(height - first), row: &row }.to_rgba8()
+        Texels { width, height: BAND.min(height - first), row: &row, lobes: None }.to_rgba8()
     });
     encode(bands, width, height, effort).map_err(|error| EncodeError::Png { width, height, reason: error.to_string() })
 }

@@ -5,6 +5,7 @@ use half::f16;
 use rayon::prelude::*;
 
 use crate::codec::error::EncodeError;
+use crate::codec::uastc::Lobe;
 use crate::simd::dispatch;
 
 /// The texels of one level, produced row by row.
@@ -15,6 +16,9 @@ pub struct Texels<'a> {
     pub height: u32,
     /// Writes row `y` (0 is the top) to a slice of `width` texels; unused channels are ignored.
     pub row: &'a (dyn Fn(u32, &mut [[f32; 4]]) + Sync),
+    /// Writes the lobes about the normals of row `y` to a slice of `width` lobes; `None` if the texels are no normals,
+    /// or if their lobes are not known. The encoder of UASTC chooses blocks of normals by what they do to these lobes.
+    pub lobes: Option<&'a (dyn Fn(u32, &mut [Lobe]) + Sync)>,
 }
 
 impl Texels<'_> {

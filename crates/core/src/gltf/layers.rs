@@ -40,6 +40,8 @@ pub struct LayerRow {
     pub default_roughness_factor: f32,
     /// The anisotropy of the layer; none if its lobe can only be isotropic.
     pub anisotropy: Option<AnisotropyRow>,
+    /// What decides on the specular reflectance of the layer; none if the reflectance is constant.
+    pub reflectance: Option<ReflectanceRow>,
     /// The texture with occlusion in red, which may share its image with the roughness.
     pub occlusion_texture: Option<Pointer>,
     /// An extension that takes the place of the roughness in engines that know it.
@@ -63,6 +65,30 @@ pub struct AnisotropyRow {
     pub rotation: Pointer,
 }
 
+/// Where a material keeps what decides on the specular reflectance of a layer. Metalness is the blue channel of the
+/// layer's roughness texture.
+#[derive(Debug)]
+pub struct ReflectanceRow {
+    /// The object with base colour and metalness.
+    pub object: Pointer,
+    /// The texture with the base colour.
+    pub base_colour_texture: Pointer,
+    /// The linear colour that multiplies the base colour.
+    pub base_colour_factor: Pointer,
+    /// The number that multiplies the metalness.
+    pub metallic_factor: Pointer,
+    /// The object of `KHR_materials_specular`.
+    pub specular: Pointer,
+    /// The texture whose alpha multiplies the reflectance of the dielectric.
+    pub specular_texture: Pointer,
+    /// The number that multiplies the reflectance of the dielectric.
+    pub specular_factor: Pointer,
+    /// The texture with the colour of the dielectric's F0.
+    pub specular_colour_texture: Pointer,
+    /// The linear colour that multiplies the dielectric's F0.
+    pub specular_colour_factor: Pointer,
+}
+
 /// All layers, in the order in which materials list them.
 pub static LAYERS: [LayerRow; 2] = [BASE, CLEARCOAT];
 
@@ -82,6 +108,17 @@ const BASE: LayerRow = LayerRow {
         strength: "extensions/KHR_materials_anisotropy/anisotropyStrength",
         rotation: "extensions/KHR_materials_anisotropy/anisotropyRotation",
     }),
+    reflectance: Some(ReflectanceRow {
+        object: "pbrMetallicRoughness",
+        base_colour_texture: "pbrMetallicRoughness/baseColorTexture",
+        base_colour_factor: "pbrMetallicRoughness/baseColorFactor",
+        metallic_factor: "pbrMetallicRoughness/metallicFactor",
+        specular: "extensions/KHR_materials_specular",
+        specular_texture: "extensions/KHR_materials_specular/specularTexture",
+        specular_factor: "extensions/KHR_materials_specular/specularFactor",
+        specular_colour_texture: "extensions/KHR_materials_specular/specularColorTexture",
+        specular_colour_factor: "extensions/KHR_materials_specular/specularColorFactor",
+    }),
     occlusion_texture: Some("occlusionTexture"),
     other_workflow: Some("extensions/KHR_materials_pbrSpecularGlossiness"),
     is_in_pyramid: true,
@@ -97,6 +134,8 @@ const CLEARCOAT: LayerRow = LayerRow {
     roughness_factor: "extensions/KHR_materials_clearcoat/clearcoatRoughnessFactor",
     default_roughness_factor: 0.0,
     anisotropy: None,
+    // The clearcoat has one refractive index everywhere.
+    reflectance: None,
     occlusion_texture: None,
     other_workflow: None,
     is_in_pyramid: false,

@@ -4,7 +4,7 @@ use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
-use super::layers::{AnisotropyRow, LAYERS, LayerRow, member, split};
+use super::layers::{AnisotropyRow, LAYERS, LayerRow, ReflectanceRow, member, split};
 
 pub use super::layers::LayerKind;
 
@@ -115,6 +115,25 @@ pub struct AnisotropySource {
     pub texture: Option<TextureUse>,
 }
 
+/// What decides on the specular reflectance of a layer, besides the blue channel of its roughness texture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReflectanceFactors {
+    /// Base colour in sRGB.
+    pub base_colour: Option<TextureUse>,
+    /// Multiplies the linear base colour.
+    pub base_colour_factor: [f32; 3],
+    /// Multiplies the metalness.
+    pub metallic_factor: f32,
+    /// Alpha multiplies the reflectance of the dielectric.
+    pub specular: Option<TextureUse>,
+    /// Multiplies the reflectance of the dielectric.
+    pub specular_factor: f32,
+    /// Colour of the dielectric's F0 in sRGB.
+    pub specular_colour: Option<TextureUse>,
+    /// Multiplies the dielectric's F0.
+    pub specular_colour_factor: [f32; 3],
+}
+
 /// A lobe of a material and the bumps under it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layer {
@@ -130,6 +149,8 @@ pub struct Layer {
     pub occlusion: Option<TextureUse>,
     /// The anisotropy of the lobe without bumps.
     pub anisotropy: Option<AnisotropySource>,
+    /// What decides on the reflectance, or why that cannot be read; none if the reflectance of the layer is constant.
+    pub reflectance: Option<Result<ReflectanceFactors, MaterialError>>,
     /// Whether an extension such as `KHR_materials_pbrSpecularGlossiness` takes the place of the roughness.
     pub has_other_workflow: bool,
 }
@@ -212,6 +233,7 @@ impl<'a> RawMaterial<'a> {
             roughness_factor: roughness_factor.unwrap_or(row.default_roughness_factor),
             occlusion: occlusion.map(RawTexture::into_use),
             anisotropy,
+            reflectance: row.reflectance.as_ref().map(|row| self.reflectance(row)),
             has_other_workflow: row.other_workflow.is_some_and(|pointer| self.part(pointer).value.is_some()),
         }))
     }
@@ -235,6 +257,24 @@ impl<'a> RawMaterial<'a> {
             rotation: object.read(row.rotation)?.unwrap_or(0.0),
             texture: texture.map(RawTexture::into_use),
         }))
+    }
+
+    fn reflectance(&self, row: &ReflectanceRow) -> Result<ReflectanceFactors, MaterialError> {
+        let (surface, specular) = (self.part(row.object).object()?, self.part(row.specular).object()?);
+        let base_colour: Option<RawTexture> = surface.read(row.base_colour_texture)?;
+        let base_colour_factor: Option<[f32; 4]> = surface.read(row.base_colour_factor)?;
+        let specular_texture: Option<RawTexture> = specular.read(row.specular_texture)?;
+        let specular_colour: Option<RawTexture> = specular.read(row.specular_colour_texture)?;
+        let [red, green, blue, _] = base_colour_factor.unwrap_or([1.0; 4]);
+        Ok(ReflectanceFactors {
+            base_colour: base_colour.map(RawTexture::into_use),
+            base_colour_factor: [red, green, blue],
+            metallic_factor: surface.read(row.metallic_factor)?.unwrap_or(1.0),
+            specular: specular_texture.map(RawTexture::into_use),
+            specular_factor: specular.read(row.specular_factor)?.unwrap_or(1.0),
+            specular_colour: specular_colour.map(RawTexture::into_use),
+            specular_colour_factor: specular.read(row.specular_colour_factor)?.unwrap_or([1.0; 3]),
+        })
     }
 
     /// Returns the part of the material that is at `pointer`.

@@ -14,7 +14,7 @@ pub const EXTENSION: &str = "ROUGHCAST_materials_roughness_pyramid";
 
 /// The `formatVersion` of extension objects that this version of the crate writes and reads. A change that plugins must
 /// know of increases it.
-pub const FORMAT_VERSION: u32 = 1;
+pub const FORMAT_VERSION: u32 = 2;
 
 /// The members that refer to textures: offsets, and D or lambda_1.
 pub const TEXTURES: [&str; 2] = ["offsetTexture", "roughnessTexture"];
@@ -25,12 +25,12 @@ pub const TEXTURES: [&str; 2] = ["offsetTexture", "roughnessTexture"];
 pub struct RoughnessPyramid<N = f64> {
     /// The format version, [`FORMAT_VERSION`].
     pub format_version: u32,
-    /// Texture of (f_u, f_v).
+    /// Texture of the unit normals of scaled offsets.
     pub offset_texture: TextureInfo,
-    /// Offsets that a texel of 0 stands for.
-    pub offset_min: [N; 2],
-    /// Offsets that a texel of 1 stands for.
-    pub offset_max: [N; 2],
+    /// Channels of the offset texture: 3 with z, 2 without it.
+    pub offset_channels: u32,
+    /// What multiplies the slopes of the normals.
+    pub offset_scale: [N; 2],
     /// What the roughness texture holds.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub roughness_model: Option<RoughnessModel>,
@@ -194,6 +194,9 @@ impl RoughnessPyramid {
 
     /// Checks what the types leave open.
     fn check(&self) -> Result<(), String> {
+        if ![2, 3].contains(&self.offset_channels) {
+            return Err(format!("offsetChannels {} instead of 2 or 3", self.offset_channels));
+        }
         if self.correction_factor < 0.0 {
             return Err(format!("a correctionFactor of {}", self.correction_factor));
         }
@@ -221,6 +224,11 @@ impl RoughnessPyramid {
             (FrameKind::Natural | FrameKind::Unit, Some(_)) => Err("a mainDirection with another frame".to_owned()),
             _ => Ok(()),
         }
+    }
+
+    /// Returns whether the offset texture stores z.
+    pub fn has_z(&self) -> bool {
+        self.offset_channels == 3
     }
 
     /// Returns the textures, each with its member and the content that its provenance should name.

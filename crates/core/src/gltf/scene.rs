@@ -96,6 +96,11 @@ pub fn moving_coordinates(root: &Value) -> BTreeSet<usize> {
     Motion::of(root).transformed_materials
 }
 
+/// Returns the materials for which an animation changes the scale of bumps.
+pub fn animated_bumps(root: &Value) -> BTreeSet<usize> {
+    Motion::of(root).scaled_bumps
+}
+
 impl Placement {
     fn add(&mut self, metric: Result<Metric, Unsteady>) {
         match (&mut *self, metric) {
@@ -184,6 +189,8 @@ struct Motion {
     rotated_nodes: BTreeSet<usize>,
     /// Materials with a `KHR_texture_transform` whose scale or rotation changes.
     transformed_materials: BTreeSet<usize>,
+    /// Materials whose bumps change their scale.
+    scaled_bumps: BTreeSet<usize>,
 }
 
 impl Motion {
@@ -215,6 +222,7 @@ impl Motion {
             (Some("materials"), Some("scale" | "rotation")) if parts.any(|p| p == "KHR_texture_transform") => {
                 self.transformed_materials.insert(index);
             }
+            (Some("materials"), Some("scale")) => drop(self.scaled_bumps.insert(index)),
             _ => {}
         }
     }

@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use super::uri::relative_path;
 use crate::image::FileFormat;
-use crate::mip::Wrap;
+use crate::mip::{Magnification, Sampler, Wrap};
 
 /// Extensions with which a texture names an image besides its core `source`, most faithful first.
 const SOURCE_EXTENSIONS: [&str; 2] = ["EXT_texture_webp", "KHR_texture_basisu"];
@@ -72,11 +72,18 @@ pub struct TextureSource {
     pub sampler: Option<usize>,
     /// Wrap modes across and down.
     pub wrap: [Wrap; 2],
+    /// How the sampler magnifies level 0.
+    pub magnification: Magnification,
     /// Whether the sampler reads mip levels.
     pub samples_mips: bool,
 }
 
 impl TextureSource {
+    /// Returns the modes of the sampler.
+    pub fn sampling(&self) -> Sampler {
+        Sampler { wrap: self.wrap, magnification: self.magnification }
+    }
+
     /// Returns the part of a file name that identifies the image: the name of its file or, without a file, its own
     /// name.
     pub fn stem(&self) -> String {
@@ -159,6 +166,10 @@ impl<'r> Textures<'r> {
             name: name.map(str::to_owned),
             sampler: raw.sampler,
             wrap: [wrap_mode(modes.wrap_s), wrap_mode(modes.wrap_t)],
+            magnification: match modes.mag_filter {
+                Some(9728) => Magnification::Nearest,
+                _ => Magnification::Linear,
+            },
             // The filters NEAREST and LINEAR.
             samples_mips: !matches!(modes.min_filter, Some(9728 | 9729)),
         })
@@ -229,6 +240,7 @@ struct RawTexture {
 #[derive(Default, Deserialize)]
 #[serde(rename_all = "camelCase")]
 struct RawSampler {
+    mag_filter: Option<u32>,
     min_filter: Option<u32>,
     wrap_s: Option<u32>,
     wrap_t: Option<u32>,

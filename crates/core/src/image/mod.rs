@@ -1,5 +1,6 @@
 //! Decoded images, and the decoders of raster formats from PNG to OpenEXR. This module does not know glTF.
 
+mod channel_sum;
 mod decode;
 mod decoded;
 mod error;
@@ -8,8 +9,10 @@ mod format;
 mod jpeg;
 mod rgba;
 mod size;
+mod srgb;
 mod tiff;
 
+pub use channel_sum::ChannelSum;
 pub use decode::{DecodeOptions, decode_raster};
 pub use error::DecodeError;
 pub use format::FileFormat;
@@ -17,6 +20,7 @@ pub use format::FileFormat;
 pub use decoded::{Image, Samples};
 
 pub use rgba::Rgba;
+pub use srgb::srgb_to_linear;
 
 /// Why an image cannot be used as a map.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -97,6 +97,46 @@ impl Rgba<'_> {
     }
 }
 
+impl Image {
+    /// Returns whether all texels are equal.
+    pub fn is_constant(&self) -> bool {
+        fn all_equal<T: Copy + PartialEq + Sync>(samples: &[T], channels: usize) -> bool {
+            let (first, size) = (&samples[..channels], channels << 12);
+            samples.par_chunks(size).all(|texels| texels.chunks_exact(channels).all(|texel| texel == first))
+        }
+        let channels = self.channels as usize;
+        match &self.samples {
+            Samples::U8(all) => all_equal(all, channels),
+            Samples::U16(all) => all_equal(all, channels),
+            Samples::F32(all) => all_equal(all, channels),
+        }
+    }
+
+    /// Returns the least and the largest blue, read as in [`Rgba`].
+    pub fn blue_range(&self) -> [f32; 2] {
+        fn range<T: Copy + PartialOrd + Send + Sync>(samples: &[T], channels: usize) -> [T; 2] {
+            let blue = if channels > 2 { 2 } else { 0 };
+            let wider = |[least, largest]: [T; 2], [low, high]: [T; 2]| {
+                [if low < least { low } else { least }, if high > largest { high } else { largest }]
+            };
+            let first = || [samples[blue]; 2];
+            let in_chunk = |texels: &[T]| {
+                texels.chunks_exact(channels).fold(first(), |range, texel| wider(range, [texel[blue]; 2]))
+            };
+            samples.par_chunks(channels << 12).map(in_chunk).reduce(first, wider)
+        }
+        let channels = self.channels as usize;
+        if channels == 2 {
+            return [0.0; 2];
+        }
+        match &self.samples {
+            Samples::U8(all) => range(all, channels).map(|v| UNORM8[usize::from(v)]),
+            Samples::U16(all) => range(all, channels).map(|v| f32::from(v) / 65535.0),
+            Samples::F32(all) => range(all, channels),
+        }
+    }
+}
+
 /// Writes green of all texels to `out`, or grey for images of one channel.
 fn green<T: Copy>(samples: &[T], channels: usize, out: &mut [f32], value: impl Fn(T) -> f32) {
     match channels {

@@ -13,6 +13,8 @@ mod family;
 mod lattice;
 mod merge;
 mod oriented;
+pub mod reflectance;
+mod reflecting;
 mod region;
 mod shape;
 mod table;
@@ -24,6 +26,8 @@ pub use factor::{Factor, lambda_1};
 pub use family::Family;
 pub use lattice::{KURTOSES, Lattice, LatticePoint, RATIOS, Table};
 pub use oriented::OrientedLobe;
+pub(crate) use oriented::frame;
+pub use reflecting::{LobeTexel, ReflectingLobe};
 pub use region::Region;
 pub use shape::{CROSS_SKEWNESS, Shape};
 

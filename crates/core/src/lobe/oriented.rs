@@ -32,7 +32,7 @@ pub(super) const LEAST_COSINE: f32 = 0.05;
 /// Returns the orthonormal frame of a unit normal: T made perpendicular to the normal, then B = N x T, as in glTF's
 /// engines.
 #[inline(always)]
-pub(super) fn frame<F: Real>(n: [F; 3]) -> [[F; 3]; 3] {
+pub fn frame<F: Real>(n: [F; 3]) -> [[F; 3]; 3] {
     let one = n[0].splat_like(1.0);
     // For normals tilted by almost 90 degrees, x rounds to 1. For a slope of 16, 1 - x^2 is 0.004.
     let scale = one / (one - n[0] * n[0]).max(n[0].splat_like(1e-7)).sqrt();

@@ -2,6 +2,7 @@
 
 use crate::image::Rgba;
 use crate::lobe::{Anisotropy, Roughness, SquaredAlpha};
+use crate::material::reflectance::ReflectanceRows;
 use crate::math::symmetric::Symmetric2;
 use crate::mip::{LinearResampled, MipTail, TexelRows, Wrap, level_sizes};
 
@@ -34,6 +35,7 @@ pub struct BaseRows<'a> {
     strength: f32,
     rotation: [f32; 2],
     direction: Option<LinearResampled<Rgba<'a>>>,
+    reflectance: Option<ReflectanceRows<'a>>,
 }
 
 impl<'a> BaseRows<'a> {
@@ -53,7 +55,13 @@ impl<'a> BaseRows<'a> {
             None => (0.0, [1.0, 0.0], None),
             Some(a) => (a.strength, a.rotation, a.texture.map(on_grid)),
         };
-        Self { width, height, roughness_factor, roughness: roughness.map(on_grid), strength, rotation, direction }
+        let roughness = roughness.map(on_grid);
+        Self { width, height, roughness_factor, roughness, strength, rotation, direction, reflectance: None }
+    }
+
+    /// Adds the reflectance, which is on the grid of the base lobe; `None` if the reflectance is constant.
+    pub fn with_reflectance(self, reflectance: Option<ReflectanceRows<'a>>) -> Self {
+        Self { reflectance, ..self }
     }
 }
 
@@ -61,6 +69,19 @@ impl BaseRows<'_> {
     /// Returns whether the base lobe is anisotropic.
     pub fn is_anisotropic(&self) -> bool {
         self.strength > 0.0
+    }
+
+    /// Returns whether all texels have the same reflectance.
+    pub fn is_reflectance_constant(&self) -> bool {
+        self.reflectance.is_none()
+    }
+
+    /// Writes the reflectance of row `y` to `out`, in [0, 1]; 1 if the reflectance is constant.
+    pub fn reflectance_row(&self, y: u32, out: &mut [f32]) {
+        match &self.reflectance {
+            Some(rows) => rows.row(y, out),
+            None => out.fill(1.0),
+        }
     }
 
     /// Writes the texels of row `y` of the roughness texture to `out`; 1 in every channel without a texture.

@@ -5,7 +5,7 @@ use std::cell::OnceCell;
 use crate::bump::Shaped;
 use crate::lobe::SquaredAlpha;
 use crate::material::bump_map::BumpMap;
-use crate::material::correction::mean_correction;
+use crate::material::correction::corrected_variance;
 use crate::mip::{AreaResampled, Pyramid, TexelRows, level_sizes};
 use crate::settings::Settings;
 
@@ -37,11 +37,11 @@ impl<'a> Bumps<'a> {
         self.moments.get_or_init(|| Pyramid::new(self.rows))
     }
 
-    /// Returns the correction factor c for a shader that has one c for the whole map: the mean of what the levels need
-    /// under the lobe `base_lobe`. `slope_scale` multiplies the offsets.
-    pub fn correction(&self, slope_scale: f32, settings: &Settings, base_lobe: SquaredAlpha) -> f32 {
+    /// Returns the sum over levels 1 and coarser of the mean trace of c K that the lobe `base_lobe` needs, for offsets
+    /// that are not multiplied by the slope scale. `slope_scale` multiplies the offsets that the lobe is roughened by.
+    pub fn corrected_variance(&self, slope_scale: f32, settings: &Settings, base_lobe: SquaredAlpha) -> f64 {
         // c depends on the ratio of the lobe's width to the bumps, so the width is divided by the slope scale.
         let squared = (slope_scale * slope_scale).max(f32::MIN_POSITIVE);
-        mean_correction(&Pyramid::new(Shaped(self.rows)), settings, SquaredAlpha((1.0 / squared) * base_lobe.0))
+        corrected_variance(&Pyramid::new(Shaped(self.rows)), settings, SquaredAlpha((1.0 / squared) * base_lobe.0))
     }
 }

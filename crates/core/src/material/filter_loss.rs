@@ -2,21 +2,20 @@
 
 use rayon::prelude::*;
 
-use crate::bump::Moments;
+use crate::material::pyramid_levels::{PyramidLevels, PyramidTexel};
 use crate::material::quantity::Quantity;
-use crate::mip::{Pyramid, TexelRows};
 
 /// Returns the share of the variance that filtering D in place of K loses halfway between neighbouring texels, at the
 /// level that loses most. With D the mean of D1 and D2, (K1 + K2)/2 - D D^T = (D1 - D2)(D1 - D2)^T / 4, which is never
 /// negative.
-pub fn filter_loss<R: TexelRows<Texel = Moments>>(moments: &Pyramid<R>) -> f32 {
-    let sizes = moments.sizes();
+pub fn filter_loss(levels: &dyn PyramidLevels) -> f32 {
+    let sizes = levels.sizes();
     let of_level = |(level, &(width, height)): (usize, &(u32, u32))| {
         let factors = |y: u32, out: &mut Vec<[f32; 3]>| {
-            let mut texels = vec![Moments::default(); width as usize];
-            moments.row(level, y, &mut texels);
+            let mut texels = vec![PyramidTexel::default(); width as usize];
+            levels.row(level, y, &mut texels);
             out.clear();
-            out.extend(texels.into_iter().map(|m| Quantity::Factor.of(m)));
+            out.extend(texels.into_iter().map(|texel| Quantity::Factor.of(texel)));
         };
         let in_row = |(row, below): &mut (Vec<[f32; 3]>, Vec<[f32; 3]>), y: u32| {
             factors(y, row);

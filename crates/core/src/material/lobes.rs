@@ -4,47 +4,70 @@
 use rayon::prelude::*;
 
 use crate::bump::{Moments, Offset, Shaped, ShapedMoments, normal_from_offset, slopes};
-use crate::codec::uastc::Effort;
-use crate::lobe::{Distribution, Family, OrientedLobe, SquaredAlpha};
+use crate::lobe::{Distribution, Family, OrientedLobe, ReflectingLobe, SquaredAlpha};
 use crate::material::base::{Base, BaseRows, BaseTexel, base_lobe};
 use crate::material::bump_map::BumpMap;
 use crate::material::bumps::Bumps;
+use crate::material::fit_levels::fit_levels;
+use crate::material::magnified::Magnified;
+use crate::material::magnified_bumps::MagnifiedBumps;
 use crate::math::symmetric::Symmetric2;
-use crate::metric::{Footprint, Lobe, Part, Reference, overlaps, refine};
-use crate::mip::{AreaResampled, Level, MipTail, Pyramid, TexelRows, level_sizes};
+use crate::mip::{AreaResampled, Level, Magnification, MipTail, Pyramid, Sampler, TexelRows};
 use crate::settings::Settings;
 use crate::simd::map_row;
 
 /// Lobes of a material on the grid of its bumps.
 pub struct Lobes<'a> {
     level_0: Level0<'a>,
-    tail: MipTail<OrientedLobe>,
+    sampler: Sampler,
+    tail: Tail,
+}
+
+/// Levels 1 and coarser.
+enum Tail {
+    /// Lobes alone. Parts of a merge counted by area.
+    ByArea(MipTail<OrientedLobe>),
+    /// Lobes and their reflectance, which varies. Parts of a merge counted by area x reflectance.
+    ByReflectance(MipTail<ReflectingLobe>),
 }
 
 impl<'a> Lobes<'a> {
     /// Roughens `base` by `bumps` on one grid. `slope_scale` multiplies the offsets.
     ///
-    /// Under the automatic distribution, GGX lobes are merged from level to level by likelihood, and the best quality
-    /// then fits them to the distribution of the bumps. Under a fixed distribution, and for Beckmann lobes, levels 1
-    /// and coarser are A + 2 c K with the distribution's correction factor c.
-    pub fn new<'b: 'a>(base: &Base<'a>, bumps: &Bumps<'b>, slope_scale: f32, settings: &Settings) -> Self {
+    /// Under the automatic distribution, GGX lobes are merged from level to level by likelihood, where texels count by
+    /// area x reflectance, and coarse levels are then fitted to level 0. Under a fixed distribution, and for Beckmann
+    /// lobes, levels 1 and coarser are A + 2 c K with the distribution's correction factor c.
+    pub fn new<'b: 'a>(
+        base: &Base<'a>,
+        bumps: &Bumps<'b>,
+        slope_scale: f32,
+        sampler: Sampler,
+        settings: &Settings,
+    ) -> Self {
         let level_0 = Level0 { base: base.level_0().clone(), bumps: bumps.rows, slope_scale };
-        let roughened = || level_0.roughened(base, bumps, settings).into();
+        let roughened = || level_0.roughened(base, bumps, sampler, settings).into();
+        let family = settings.lobe;
         let tail = match (settings.distribution, settings.quality) {
-            (Distribution::Normal | Distribution::Uniform, _) => roughened(),
+            (Distribution::Normal | Distribution::Uniform, _) => Tail::ByArea(roughened()),
+            (Distribution::Auto, effort) if family == Family::Ggx && !level_0.base.is_reflectance_constant() => {
+                let points = level_0.magnified(sampler);
+                let rows = ReflectingRows { points: &points, base: &level_0.base };
+                let mut tail = MipTail::with_max_kept(&rows, MAX_KEPT_TEXELS);
+                fit_levels(&rows, &mut tail, family, effort);
+                Tail::ByReflectance(tail)
+            }
             (Distribution::Auto, effort) => {
-                let merged = match settings.lobe {
-                    Family::Ggx => MipTail::with_max_kept(&level_0, MAX_KEPT_TEXELS),
+                let points = level_0.magnified(sampler);
+                let mut tail = match family {
+                    Family::Ggx => MipTail::with_max_kept(&points, MAX_KEPT_TEXELS),
                     // Normal distributions are merged by likelihood when their moments are added.
                     Family::Beckmann => roughened(),
                 };
-                match effort {
-                    Effort::Fast => merged,
-                    Effort::Best => fitted(&level_0, &merged, settings.lobe),
-                }
+                fit_levels(&points, &mut tail, family, effort);
+                Tail::ByArea(tail)
             }
         };
-        Self { level_0, tail }
+        Self { level_0, sampler, tail }
     }
 
     /// Returns the factor that multiplies offsets.
@@ -54,12 +77,57 @@ impl<'a> Lobes<'a> {
 
     /// Writes the lobes of row `y` of `level` to `out`.
     pub fn row(&self, level: usize, y: u32, out: &mut [OrientedLobe]) {
-        self.tail.row(&self.level_0, level, y, out);
+        if level == 0 {
+            return self.level_0.row(y, out);
+        }
+        let points = self.magnified();
+        match &self.tail {
+            Tail::ByArea(tail) => tail.row(&points, level, y, out),
+            Tail::ByReflectance(tail) => tail.with_row(&self.reflecting(&points), level, y, |texels| {
+                out.iter_mut().zip(texels).for_each(|(lobe, texel)| *lobe = texel.lobe);
+            }),
+        }
+    }
+
+    /// Writes the lobes of row `first` of level 0 and of the rows below, as engines magnify them, to `out`. Coarser
+    /// levels stand for these lobes.
+    pub fn magnified_rows(&self, first: u32, out: &mut [OrientedLobe]) {
+        self.magnified().rows(first, out);
+    }
+
+    /// Works like [`Self::magnified_rows`], with the reflectance of each texel.
+    pub fn reflecting_rows(&self, first: u32, out: &mut [ReflectingLobe]) {
+        self.reflecting(&self.magnified()).rows(first, out);
+    }
+
+    /// Returns whether all texels have the same reflectance.
+    pub fn is_reflectance_constant(&self) -> bool {
+        self.level_0.base.is_reflectance_constant()
+    }
+
+    /// Calls `read` with the lobes of row `y` of `level`, which has `width` texels.
+    fn with_row(&self, level: usize, y: u32, width: usize, read: impl FnOnce(&[OrientedLobe])) {
+        match &self.tail {
+            Tail::ByArea(tail) if level > 0 => tail.with_row(&self.magnified(), level, y, read),
+            _ => {
+                let mut lobes = vec![OrientedLobe::default(); width];
+                self.row(level, y, &mut lobes);
+                read(&lobes);
+            }
+        }
+    }
+
+    fn magnified(&self) -> Magnified<'_, Level0<'a>> {
+        self.level_0.magnified(self.sampler)
+    }
+
+    fn reflecting<'r>(&'r self, points: &'r Magnified<'r, Level0<'a>>) -> ReflectingRows<'r, 'a> {
+        ReflectingRows { points, base: &self.level_0.base }
     }
 
     /// Writes the squared alphas of row `y` of `level` to `out`.
     pub fn squared_alphas(&self, level: usize, y: u32, out: &mut [SquaredAlpha]) {
-        self.tail.with_row(&self.level_0, level, y, |lobes| {
+        self.with_row(level, y, out.len(), |lobes| {
             out.iter_mut().zip(lobes).for_each(|(a, lobe)| *a = lobe.squared_alpha);
         });
     }
@@ -74,7 +142,7 @@ impl<'a> Lobes<'a> {
     /// by the slope scale: the offsets that a normal map should hold.
     pub fn offsets(&self, level: usize, y: u32, out: &mut [[f32; 2]]) {
         let scale = 1.0 / self.slope_scale();
-        self.tail.with_row(&self.level_0, level, y, |lobes| {
+        self.with_row(level, y, out.len(), |lobes| {
             map_row(
                 lobes.iter().map(|lobe| lobe.normal),
                 out,
@@ -89,7 +157,11 @@ impl<'a> Lobes<'a> {
 
     /// Returns the only texel of the coarsest level.
     pub fn coarsest(&self) -> OrientedLobe {
-        self.tail.coarsest(&self.level_0)
+        let points = self.magnified();
+        match &self.tail {
+            Tail::ByArea(tail) => tail.coarsest(&points),
+            Tail::ByReflectance(tail) => tail.coarsest(&self.reflecting(&points)).lobe,
+        }
     }
 }
 
@@ -98,63 +170,6 @@ impl<'a> Lobes<'a> {
 /// bakes in 5.0 s instead of 7.1.
 const MAX_KEPT_TEXELS: u64 = 1 << 24;
 
-/// A fit compares a lobe with the lobes that are this many levels finer.
-const FIT_DEPTH: usize = 3;
-/// Half-vectors for each fit. Four times as many gain 0.001 of lobe error on average, measured on real materials.
-const FIT_SAMPLES: usize = 128;
-
-/// Fits the lobes of `merged` to the lobes [`FIT_DEPTH`] levels finer (level 0 for levels 2 and 3) by the lobe error.
-/// Level 1 stays as merged: four texels are too few for a fit.
-fn fitted(level_0: &Level0<'_>, merged: &MipTail<OrientedLobe>, family: Family) -> MipTail<OrientedLobe> {
-    let sizes = level_sizes(level_0.width(), level_0.height());
-    let row = |level, y, out: &mut [OrientedLobe]| merged.row(level_0, level, y, out);
-    let levels: Vec<_> = (1..sizes.len()).map(|level| fitted_level(&sizes, row, level, family)).collect();
-    levels.into()
-}
-
-/// Fits the lobes of one level. `merged` writes a row of a level of `sizes`.
-fn fitted_level(
-    sizes: &[(u32, u32)],
-    merged: impl Fn(usize, u32, &mut [OrientedLobe]) + Sync,
-    level: usize,
-    family: Family,
-) -> Level<OrientedLobe> {
-    let ((width, height), finer) = (sizes[level], level.saturating_sub(FIT_DEPTH));
-    let (finer_width, finer_height) = sizes[finer];
-    let mut texels = vec![OrientedLobe::default(); width as usize * height as usize];
-    texels.par_chunks_mut(width as usize).enumerate().for_each(|(y, out)| {
-        merged(level, y as u32, out);
-        if level == 1 {
-            return;
-        }
-        let down = overlaps(finer_height, height, y as u32);
-        let mut rows = vec![OrientedLobe::default(); finer_width as usize * down.len()];
-        for (row, (finer_y, _)) in rows.chunks_exact_mut(finer_width as usize).zip(&down) {
-            merged(finer, *finer_y, row);
-        }
-        for (x, texel) in out.iter_mut().enumerate() {
-            let across = overlaps(finer_width, width, x as u32);
-            let parts = rows.chunks_exact(finer_width as usize).zip(&down).flat_map(|(row, (_, share_y))| {
-                across.iter().map(move |(finer_x, share_x)| {
-                    let lobe = metric_lobe(family, &row[*finer_x as usize]);
-                    Part { weight: share_x * share_y, normal: lobe.normal(), base: lobe.squared_alpha() }
-                })
-            });
-            let Some(footprint) = Footprint::new(parts.collect()) else { continue };
-            let fit = refine(&Reference::new(family, &footprint, FIT_SAMPLES), &metric_lobe(family, texel));
-            let [uu, uv, vv] = fit.squared_alpha().map(|a| a as f32);
-            let squared_alpha = SquaredAlpha(Symmetric2::new(uu, uv, vv));
-            *texel = OrientedLobe { normal: fit.normal().map(|c| c as f32), squared_alpha };
-        }
-    });
-    Level { width, height, texels }
-}
-
-fn metric_lobe(family: Family, lobe: &OrientedLobe) -> Lobe {
-    let a = lobe.squared_alpha.0;
-    Lobe::new(family, lobe.normal.map(f64::from), [a.uu, a.uv, a.vv].map(f64::from))
-}
-
 /// The lobes of level 0.
 struct Level0<'a> {
     base: BaseRows<'a>,
@@ -162,7 +177,14 @@ struct Level0<'a> {
     slope_scale: f32,
 }
 
-impl Level0<'_> {
+impl<'a> Level0<'a> {
+    /// Returns the points of this level that count in coarser levels.
+    fn magnified(&self, Sampler { wrap, magnification }: Sampler) -> Magnified<'_, Self> {
+        // Resampled texels are no texels of the texture that engines magnify.
+        let is_linear = magnification == Magnification::Linear && self.bumps.unchanged().is_some();
+        Magnified { source: self, wrap: is_linear.then_some(wrap) }
+    }
+
     /// Returns the unit normal of an offset of the bumps.
     #[inline(always)]
     fn normal(&self, [u, v]: [f32; 2]) -> [f32; 3] {
@@ -190,16 +212,23 @@ impl Level0<'_> {
     }
 
     /// Returns levels 1 and coarser as A + 2 c K.
-    fn roughened(&self, base: &Base<'_>, bumps: &Bumps<'_>, settings: &Settings) -> Vec<Level<OrientedLobe>> {
+    fn roughened(
+        &self,
+        base: &Base<'_>,
+        bumps: &Bumps<'_>,
+        sampler: Sampler,
+        settings: &Settings,
+    ) -> Vec<Level<OrientedLobe>> {
+        let rows = MagnifiedBumps { rows: bumps.rows, sampler };
         let levels = bumps.sizes().into_iter().enumerate().skip(1);
         match settings.distribution {
             Distribution::Auto => {
-                let moments = Pyramid::new(Shaped(bumps.rows));
+                let moments = Pyramid::new(Shaped(rows));
                 let row = |level, y, out: &mut [ShapedMoments]| moments.row(level, y, out);
                 levels.map(|(level, size)| self.roughened_level(level, size, base, row, settings)).collect()
             }
             Distribution::Normal | Distribution::Uniform => {
-                let moments = bumps.moments();
+                let moments = Pyramid::new(rows);
                 let row = |level, y, out: &mut [ShapedMoments]| {
                     let mut plain = vec![Moments::default(); out.len()];
                     moments.row(level, y, &mut plain);
@@ -277,3 +306,39 @@ impl TexelRows for Level0<'_> {
         }
     }
 }
+
+/// The lobes of level 0 with their reflectance.
+struct ReflectingRows<'r, 'a> {
+    points: &'r Magnified<'r, Level0<'a>>,
+    base: &'r BaseRows<'a>,
+}
+
+impl TexelRows for ReflectingRows<'_, '_> {
+    type Texel = ReflectingLobe;
+
+    fn width(&self) -> u32 {
+        self.points.width()
+    }
+
+    fn height(&self) -> u32 {
+        self.points.height()
+    }
+
+    fn row(&self, y: u32, out: &mut [ReflectingLobe]) {
+        self.rows(y, out);
+    }
+
+    fn rows(&self, first: u32, out: &mut [ReflectingLobe]) {
+        let (mut lobes, mut reflectance) = (vec![OrientedLobe::default(); out.len()], vec![0.0; out.len()]);
+        self.points.rows(first, &mut lobes);
+        for (y, row) in (first..).zip(reflectance.chunks_exact_mut(self.width() as usize)) {
+            self.base.reflectance_row(y, row);
+        }
+        for ((texel, lobe), reflectance) in out.iter_mut().zip(lobes).zip(reflectance) {
+            *texel = ReflectingLobe { lobe, reflectance };
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -2,7 +2,7 @@
 
 use std::mem;
 
-use crate::codec::uastc::{Effort, Metric};
+use crate::codec::uastc::{Effort, Lobe, Metric};
 use crate::codec::{EncodeError, ORM, PayloadFormat, Texels, encode, fallback};
 use crate::ktx2::{Key, Ktx2Writer, LevelWriter, StoredLevel};
 use crate::memory::{self, OutOfMemory};
@@ -112,17 +112,20 @@ pub fn grid(settings: &Settings, sizes: impl IntoIterator<Item = (u32, u32)>) ->
     if u64::from(width) * u64::from(height) > limit {
         return Err(GridError::TooLarge { width, height, limit });
     }
-    memory::check(kept_bytes(u64::from(width) * u64::from(height), settings.rdo.is_some()))?;
+    let texels = u64::from(width) * u64::from(height);
+    memory::check(kept_bytes(texels, settings.rdo.is_some(), settings.profile.has_pyramid()))?;
     let edge = settings.target.format(3).codec().block_edge;
     Ok((width.next_multiple_of(edge), height.next_multiple_of(edge)))
 }
 
 /// Returns about how many bytes a bake of the default quality keeps in memory for the levels over a grid of `texels`,
 /// beside its images: moments and base lobes up to level 1 of 4096^2, merged lobes up to level 1 of 8192^2. With
-/// `has_rdo` a level is held as RGBA8 beside three copies of its blocks.
-pub fn kept_bytes(texels: u64, has_rdo: bool) -> u64 {
+/// `has_rdo` a level is held as RGBA8 beside three copies of its blocks. With `has_pyramid` the lobes of levels 1 and
+/// coarser are copied.
+pub fn kept_bytes(texels: u64, has_rdo: bool, has_pyramid: bool) -> u64 {
     let rewritten = if has_rdo { 7 * texels } else { 0 };
-    12 * texels.min(1 << 24) + 8 * texels.min(1 << 26) + rewritten
+    let copied = if has_pyramid { 8 * texels } else { 0 };
+    12 * texels.min(1 << 24) + 8 * texels.min(1 << 26) + rewritten + copied
 }
 
 /// Returns whether level 0 may have the size.
@@ -134,17 +137,33 @@ fn is_whole(format: PayloadFormat, width: u32, height: u32) -> bool {
 /// Writes row y of a level to a slice of values: `(level, y, out)`.
 pub type LevelRow<'a> = dyn Fn(usize, u32, &mut [[f32; 4]]) + Sync + 'a;
 
+/// Writes the lobes about the normals of row y of a level: `(level, y, out)`.
+pub type LobeRow<'a> = dyn Fn(usize, u32, &mut [Lobe]) + Sync + 'a;
+
+/// The texels of all levels of a texture.
+#[derive(Clone, Copy)]
+pub struct LevelRows<'a> {
+    /// Their values.
+    pub values: &'a LevelRow<'a>,
+    /// The lobes about the normals that they hold, if they are known.
+    pub lobes: Option<&'a LobeRow<'a>>,
+}
+
 /// Encodes the levels of `sizes` that `encoding` asks for.
-pub fn encode_mip_chain(sizes: &[(u32, u32)], encoding: Encoding, row: &LevelRow<'_>) -> Result<MipChain, EncodeError> {
+pub fn encode_mip_chain(
+    sizes: &[(u32, u32)],
+    encoding: Encoding,
+    rows: LevelRows<'_>,
+) -> Result<MipChain, EncodeError> {
     let first = encoding.first(sizes);
     let kept = &sizes[first..];
     let (width, height) = kept[0];
-    let row = |level: usize, y: u32, out: &mut [[f32; 4]]| row(first + level, y, out);
     let png = || {
-        let row = |y: u32, out: &mut [[f32; 4]]| row(0, y, out);
-        encoding.fallback.then(|| fallback(&Texels { width, height, row: &row }, encoding.effort)).transpose()
+        let row = |y: u32, out: &mut [[f32; 4]]| (rows.values)(first, y, out);
+        let texels = Texels { width, height, row: &row, lobes: None };
+        encoding.fallback.then(|| fallback(&texels, encoding.effort)).transpose()
     };
-    let (levels, fallback) = rayon::join(|| encode_levels(kept, encoding, BAND_BYTES, &row), png);
+    let (levels, fallback) = rayon::join(|| encode_levels(kept, first, encoding, BAND_BYTES, rows), png);
     let (levels, fallback) = (levels?, fallback?);
     Ok(MipChain { format: encoding.format, trimmed: first, width, height, levels, fallback })
 }
@@ -153,12 +172,14 @@ pub fn encode_mip_chain(sizes: &[(u32, u32)], encoding: Encoding, row: &LevelRow
 /// has four bands.
 const BAND_BYTES: usize = 1 << 22;
 
-/// Encodes all levels in bands of `max_bytes` bytes. The next band is encoded while a band is compressed.
+/// Encodes the levels from `finest` on, which have `sizes`, in bands of `max_bytes` bytes. The next band is encoded
+/// while a band is compressed.
 fn encode_levels(
     sizes: &[(u32, u32)],
+    finest: usize,
     encoding: Encoding,
     max_bytes: usize,
-    row: &LevelRow<'_>,
+    rows: LevelRows<'_>,
 ) -> Result<Vec<StoredLevel>, EncodeError> {
     let Encoding { format, effort, .. } = encoding;
     let mut levels = Vec::with_capacity(sizes.len());
@@ -171,10 +192,12 @@ fn encode_levels(
         // A band has whole rows of blocks. Rate-distortion optimisation compares all blocks of a level, so it has one
         // band.
         let block_row = format.level_bytes(width, EDGE);
-        let rows = if encoding.rdo.is_some() { height } else { EDGE * (max_bytes / block_row).max(1) as u32 };
-        for first in (0..height).step_by(rows as usize) {
-            let of_band = |y: u32, out: &mut [[f32; 4]]| row(level, first + y, out);
-            let texels = Texels { width, height: rows.min(height - first), row: &of_band };
+        let band_rows = if encoding.rdo.is_some() { height } else { EDGE * (max_bytes / block_row).max(1) as u32 };
+        for first in (0..height).step_by(band_rows as usize) {
+            let values = |y: u32, out: &mut [[f32; 4]]| (rows.values)(finest + level, first + y, out);
+            let lobes = rows.lobes.map(|row| move |y: u32, out: &mut [Lobe]| row(finest + level, first + y, out));
+            let lobes = lobes.as_ref().map(|row| row as &(dyn Fn(u32, &mut [Lobe]) + Sync));
+            let texels = Texels { width, height: band_rows.min(height - first), row: &values, lobes };
             let (band, last) = rayon::join(|| encode_band(&texels, encoding), || compressed(encoded.take()));
             let storing = match last? {
                 Some(storing) if first > 0 => storing,

@@ -5,6 +5,8 @@ use std::iter::repeat;
 use rayon::prelude::*;
 
 use crate::bump::{Moments, Offset, normal_from_offset};
+use crate::codec::uastc::Lobe;
+use crate::lobe::SquaredAlpha;
 use crate::material::bump_map::BumpMap;
 use crate::material::bumps::Bumps;
 use crate::material::lobes::Lobes;
@@ -16,6 +18,10 @@ use crate::simd::map_row;
 pub struct Normals<'a> {
     level_0: AreaResampled<&'a BumpMap>,
     tail: Tail<'a>,
+    /// The lobes about the normals, by which blocks of normals are chosen.
+    lobes: Option<&'a Lobes<'a>>,
+    /// Divides the slopes that the texture holds. The document's scale multiplies them.
+    scale: f32,
 }
 
 /// Offsets (f_u, f_v) of levels 1 and coarser.
@@ -53,12 +59,27 @@ impl TexelRows for Means<'_> {
 impl<'a> Normals<'a> {
     /// Takes the mean slopes of `bumps`.
     pub fn of_means(bumps: &Bumps<'a>) -> Self {
-        Self { level_0: bumps.rows, tail: Tail::Offsets(MipTail::new(&Means(bumps.rows))) }
+        Self { level_0: bumps.rows, tail: Tail::Offsets(MipTail::new(&Means(bumps.rows))), lobes: None, scale: 1.0 }
     }
 
-    /// Takes the directions of `lobes`, which are on the grid of `bumps`.
+    /// Takes the directions of `lobes`, which are on the grid of `bumps`. Blocks are chosen by the errors of `lobes`.
     pub fn of_lobes<'b: 'a>(bumps: &Bumps<'b>, lobes: &'a Lobes<'a>) -> Self {
-        Self { level_0: bumps.rows, tail: Tail::Lobes(lobes) }
+        Self { level_0: bumps.rows, tail: Tail::Lobes(lobes), lobes: Some(lobes), scale: 1.0 }
+    }
+
+    /// Lets blocks be chosen by direction, for normals that lobes of other layers share.
+    pub fn by_direction(self) -> Self {
+        Self { lobes: None, ..self }
+    }
+
+    /// Divides the slopes that the texture holds by `scale`.
+    pub fn with_scale(self, scale: f32) -> Self {
+        Self { scale, ..self }
+    }
+
+    /// Returns what multiplies the slopes of the texture.
+    pub fn scale(&self) -> f32 {
+        self.scale
     }
 
     /// Copies the directions of `lobes`, so that the lobes need not stay in memory.
@@ -71,7 +92,7 @@ impl<'a> Normals<'a> {
             Level { width, height, texels }
         };
         let levels: Vec<_> = bumps.sizes().iter().enumerate().skip(1).map(level).collect();
-        Self { level_0: bumps.rows, tail: Tail::Offsets(levels.into()) }
+        Self { level_0: bumps.rows, tail: Tail::Offsets(levels.into()), lobes: None, scale: 1.0 }
     }
 }
 
@@ -83,8 +104,9 @@ impl Product for Normals<'_> {
     }
 
     fn row(&self, level: usize, y: u32, out: &mut [[f32; 4]]) {
-        let texel = |offset: Offset| {
-            let [x, y, z] = normal_from_offset(offset);
+        let inverse = 1.0 / self.scale;
+        let texel = |Offset { u, v }: Offset| {
+            let [x, y, z] = normal_from_offset(Offset { u: inverse * u, v: inverse * v });
             [0.5 * x + 0.5, 0.5 * y + 0.5, 0.5 * z + 0.5]
         };
         let store = |value: &mut [f32; 4], [x, y, z]: [f32; 3]| *value = [x, y, z, 1.0];
@@ -98,5 +120,21 @@ impl Product for Normals<'_> {
             Tail::Offsets(tail) => tail.row(&Means(self.level_0), level, y, &mut offsets),
         }
         map_row(offsets.into_iter(), out, |[u, v]| texel(Offset { u, v }), store);
+    }
+
+    fn has_lobes(&self) -> bool {
+        self.lobes.is_some()
+    }
+
+    fn lobe_row(&self, level: usize, y: u32, out: &mut [Lobe]) {
+        let Some(lobes) = self.lobes else { return };
+        let mut squared_alphas = vec![SquaredAlpha::default(); out.len()];
+        lobes.squared_alphas(level, y, &mut squared_alphas);
+        // Texels hold slopes that the scale of the document multiplies.
+        let scale = lobes.slope_scale() * self.scale;
+        let scale = 1.0 / (scale * scale);
+        for (lobe, SquaredAlpha(a)) in out.iter_mut().zip(squared_alphas) {
+            *lobe = Lobe { uu: scale * a.uu, uv: scale * a.uv, vv: scale * a.vv };
+        }
     }
 }

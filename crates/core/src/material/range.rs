@@ -1,4 +1,4 @@
-//! What the texels of the pyramid profile's textures stand for.
+//! What the texels of D and lambda_1 stand for.
 
 use serde::{Deserialize, Serialize};
 
@@ -26,10 +26,10 @@ impl Range {
         Self { min: vec![0.0; channels], max: vec![1.0; channels] }
     }
 
-    /// Returns the range of the same texels after all values are multiplied by `factor`.
-    pub fn scaled(mut self, factor: f32) -> Self {
-        for value in self.min.iter_mut().chain(&mut self.max) {
-            *value *= factor;
+    /// Returns the range of the same texels after the values of each channel are multiplied by a factor.
+    pub fn scaled(mut self, factors: [f32; 3]) -> Self {
+        for values in [&mut self.min, &mut self.max] {
+            values.iter_mut().zip(factors).for_each(|(value, factor)| *value *= factor);
         }
         self
     }

@@ -4,19 +4,39 @@ use crate::lobe::SquaredAlpha;
 use crate::material::base::{Base, BaseTexel, base_lobe};
 use crate::material::bumps::Bumps;
 use crate::material::lobes::Lobes;
+use crate::mip::Sampler;
 use crate::settings::Settings;
 
 /// A base lobe and the lobes that its bumps roughen it to.
 pub struct Roughening<'a> {
     base: Base<'a>,
     lobes: Lobes<'a>,
+    /// Levels at which [`Self::roughened_row`] returns the base lobes.
+    base_levels: Vec<usize>,
 }
 
 impl<'a> Roughening<'a> {
-    /// Roughens `base` by `bumps` on the same grid. `slope_scale` multiplies offsets (`normalTexture.scale`).
-    pub fn new<'b: 'a>(base: Base<'a>, bumps: &Bumps<'b>, slope_scale: f32, settings: &Settings) -> Self {
-        let lobes = Lobes::new(&base, bumps, slope_scale, settings);
-        Self { base, lobes }
+    /// Roughens `base` by `bumps` on the same grid. `slope_scale` multiplies offsets (`normalTexture.scale`), and
+    /// `sampler` says how engines read level 0.
+    pub fn new<'b: 'a>(
+        base: Base<'a>,
+        bumps: &Bumps<'b>,
+        slope_scale: f32,
+        sampler: Sampler,
+        settings: &Settings,
+    ) -> Self {
+        let lobes = Lobes::new(&base, bumps, slope_scale, sampler, settings);
+        Self { base, lobes, base_levels: Vec::new() }
+    }
+
+    /// Keeps the base lobe at `levels`.
+    pub fn with_base_levels(self, levels: &[usize]) -> Self {
+        Self { base_levels: levels.to_vec(), ..self }
+    }
+
+    /// Returns whether the roughened lobes of `level` are the base lobes.
+    pub fn is_base(&self, level: usize) -> bool {
+        self.lobes.are_base(level) || self.base_levels.contains(&level)
     }
 
     /// Frees the memory on two threads. The system takes memory back page by page, for 30 ms after 4096 x 4096.
@@ -51,7 +71,7 @@ impl<'a> Roughening<'a> {
 
     /// Returns the roughened lobes of row `y` of `level`, which has `width` texels.
     pub fn roughened_row(&self, level: usize, y: u32, width: usize) -> Vec<SquaredAlpha> {
-        if self.lobes.are_base(level) {
+        if self.is_base(level) {
             return self.base_row(level, y, width);
         }
         let mut lobes = vec![SquaredAlpha::default(); width];

@@ -26,7 +26,7 @@ pub struct Lobe {
 }
 
 /// Narrower lobes are widened to this alpha, because a lobe without width has no density. Engines clamp far above it.
-const MIN_ALPHA: f64 = 1e-3;
+pub(super) const MIN_ALPHA: f64 = 1e-3;
 
 impl Lobe {
     /// Returns the lobe with squared alphas `a` (uu, uv, vv, positive semidefinite) in the frame of `normal`. T is made
@@ -75,20 +75,25 @@ impl Lobe {
 
     /// Maps a point of the unit square to a half-vector. Evenly spread points give half-vectors that follow the
     /// density.
-    pub fn sample(&self, [radial, azimuth]: [f64; 2]) -> Vector {
-        // The radius within which a share of `radial` of a lobe with A = 1 lies.
-        let radius = match self.family {
-            Family::Ggx => (radial / (1.0 - radial)).sqrt(),
-            Family::Beckmann => (-libm::log(1.0 - radial)).sqrt(),
-        };
-        let (sin, cos) = libm::sincos(TAU * azimuth);
+    pub fn sample(&self, point: [f64; 2]) -> Vector {
+        let [x, y] = unit_slope(self.family, point);
         // A = L L^T with L lower triangular.
         let [uu, uv, vv] = self.a;
         let l = uu.sqrt();
-        let (x, y) = (radius * cos, radius * sin);
         let slope = [l * x, uv / l * x + (vv - uv * uv / uu).max(0.0).sqrt() * y];
         normalised(combine([slope[0], slope[1], 1.0], frame(self.normal)))
     }
+}
+
+/// Maps a point of the unit square to a slope of a lobe with A = 1.
+pub(super) fn unit_slope(family: Family, [radial, azimuth]: [f64; 2]) -> [f64; 2] {
+    // The radius within which a share of `radial` of the lobe lies.
+    let radius = match family {
+        Family::Ggx => (radial / (1.0 - radial)).sqrt(),
+        Family::Beckmann => (-libm::log(1.0 - radial)).sqrt(),
+    };
+    let (sin, cos) = libm::sincos(TAU * azimuth);
+    [radius * cos, radius * sin]
 }
 
 fn with_min_alpha([uu, uv, vv]: [f64; 3]) -> [f64; 3] {

@@ -1,26 +1,41 @@
 //! The footprint of a texel: the level-0 texels that it covers, from which references are made.
 
 use crate::bump::NormalMap;
-use crate::lobe::SquaredAlpha;
+use crate::lobe::{OrientedLobe, SquaredAlpha};
+use crate::math::symmetric::Symmetric2;
 use crate::math::vector::{Vector, dot, normalised};
 
 /// Level 0 of a bumpy surface: the normals that an engine decodes, each with the material's base lobe.
 pub struct Surface {
-    width: u32,
-    height: u32,
-    normals: Vec<Vector>,
-    base: Vec<[f64; 3]>,
+    pub(super) width: u32,
+    pub(super) height: u32,
+    pub(super) normals: Vec<Vector>,
+    pub(super) base: Vec<[f64; 3]>,
 }
 
 /// A level-0 texel that a texel of a coarser level covers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Part {
-    /// Share of the coarser texel's area. The shares of a footprint sum to 1.
+    /// Share of the coarser texel's area, or of its area x reflectance. The shares of a footprint sum to 1.
     pub weight: f64,
     /// Unit normal in (T, B, N).
     pub normal: Vector,
     /// Squared alphas of the base lobe: uu, uv, vv.
     pub base: [f64; 3],
+}
+
+impl Part {
+    /// Returns the lobe of a part, whose weight is its share.
+    pub(super) fn of(weight: f64, lobe: &OrientedLobe) -> Self {
+        let a = lobe.squared_alpha.0;
+        Self { weight, normal: lobe.normal.map(f64::from), base: [a.uu, a.uv, a.vv].map(f64::from) }
+    }
+
+    /// Returns the lobe in single precision.
+    pub(super) fn lobe(&self) -> OrientedLobe {
+        let [uu, uv, vv] = self.base.map(|a| a as f32);
+        OrientedLobe { normal: self.normal.map(|c| c as f32), squared_alpha: SquaredAlpha(Symmetric2::new(uu, uv, vv)) }
+    }
 }
 
 /// All level-0 texels that a texel of a coarser level covers: at least one.

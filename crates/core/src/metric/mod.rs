@@ -5,27 +5,28 @@
 //! decodes ([`Decoded`]), what other tools make of the same normals ([`Peer`]), and the best single lobe ([`oracle`]).
 //! This module takes maps and decoded images, never files.
 
-mod cluster;
 mod decoded;
 mod density;
+mod draws;
+mod fit;
 mod footprint;
+mod magnified;
+mod mixture;
 mod oracle;
 mod peaks;
 mod peers;
 mod reference;
-mod refine;
 mod sample_sites;
 #[cfg(test)]
 mod tests;
 
-pub use cluster::clustered;
 pub use decoded::{Decoded, mean_errors, sample_texels, shown_lobe, shown_normal, with_z};
 pub use density::Lobe;
-pub(crate) use footprint::overlaps;
+pub use draws::{DRAWN, DrawnFootprint};
+pub use fit::{FitEffort, fit};
 pub use footprint::{Footprint, FootprintMoments, Part, Surface};
 pub use oracle::oracle;
 pub use peaks::is_two_peaked;
 pub use peers::Peer;
 pub use reference::{Reference, SAMPLES};
-pub use refine::refine;
-pub use sample_sites::{Level0Row, Precision, Site, sample_sites};
+pub use sample_sites::{Level0Rows, Precision, Site, sample_sites};

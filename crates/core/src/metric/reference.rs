@@ -1,12 +1,10 @@
 //! The lobe error against a reference that is sampled once and shared by all candidates.
 
-use std::array;
-
 use crate::lobe::Family;
 use crate::math::vector::Vector;
 use crate::metric::density::Lobe;
-use crate::metric::footprint::Footprint;
-use crate::simd::dispatch;
+use crate::metric::footprint::{Footprint, Part};
+use crate::metric::mixture::Mixture;
 
 /// Samples of a footprint that keep the error of [`Reference::error`] below 0.002 (test
 /// `doubling_the_samples_changes_little`).
@@ -29,22 +27,23 @@ impl Reference {
     /// Samples `footprint` with the points of the sequence from `first` on. Footprints whose errors are averaged should
     /// not share points.
     pub(super) fn from_point(family: Family, footprint: &Footprint, samples: usize, first: usize) -> Self {
-        let mut lobes: Vec<(f64, Lobe)> =
-            footprint.parts().iter().map(|p| (p.weight, Lobe::new(family, p.normal, p.base))).collect();
+        let mut parts: Vec<&Part> = footprint.parts().iter().collect();
         // Neighbours in the list are neighbours in direction, so that samples are also spread evenly over directions.
-        lobes.sort_by_key(|(_, lobe)| morton_code(lobe.normal()));
+        parts.sort_by_key(|part| morton_code(part.normal));
         let mut points = Vec::with_capacity(samples);
-        let mut lobe_index = 0;
-        let mut below = 0.0;
+        let (mut index, mut below) = (0, 0.0);
         for i in 0..samples {
             let chosen = (i as f64 + 0.5) / samples as f64;
-            while lobe_index + 1 < lobes.len() && below + lobes[lobe_index].0 <= chosen {
-                below += lobes[lobe_index].0;
-                lobe_index += 1;
+            while index + 1 < parts.len() && below + parts[index].weight <= chosen {
+                below += parts[index].weight;
+                index += 1;
             }
-            points.push(lobes[lobe_index].1.sample(even_point(first + i)));
+            let lobe = Lobe::new(family, parts[index].normal, parts[index].base);
+            points.push(lobe.sample(even_point(first + i)));
         }
-        let densities = points.chunks(BATCH).flat_map(|points| sums_of_densities(&lobes, points)).collect();
+        let half_vectors: Vec<_> = points.iter().map(|h| h.map(|c| c as f32)).collect();
+        let lobes: Vec<_> = parts.iter().map(|part| (part.weight as f32, part.lobe())).collect();
+        let densities = Mixture::new(family, &lobes).densities(&half_vectors).into_iter().map(f64::from).collect();
         Self { family, points, densities }
     }
 
@@ -80,25 +79,6 @@ impl Reference {
         let sum: f64 = pairs.map(|(h, density)| (1.0 - lobe.density(*h) / density).max(0.0)).sum();
         sum / count as f64
     }
-}
-
-/// Points that are evaluated together. 16384 lobes do not fit into a cache, but the sums of a few points do.
-const BATCH: usize = 32;
-
-/// Returns the weighted densities of `lobes`, summed in their order, at each of up to [`BATCH`] points.
-fn sums_of_densities(lobes: &[(f64, Lobe)], points: &[Vector]) -> impl Iterator<Item = f64> + use<> {
-    // Coordinates of one axis are side by side, so that the compiler vectorises the loop. The last point is repeated to
-    // fill the batch.
-    let [x, y, z]: [[f64; BATCH]; 3] = [0, 1, 2].map(|axis| array::from_fn(|i| points[i.min(points.len() - 1)][axis]));
-    let mut sums = [0.0; BATCH];
-    dispatch!(fearless_simd::Level::new(), _simd => {
-        for (weight, lobe) in lobes {
-            for i in 0..BATCH {
-                sums[i] += weight * lobe.density([x[i], y[i], z[i]]);
-            }
-        }
-    });
-    sums.into_iter().take(points.len())
 }
 
 /// Returns point `i` of a sequence that fills the unit square evenly: the additive recurrence of the plastic constant

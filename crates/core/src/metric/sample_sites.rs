@@ -6,11 +6,11 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use crate::lobe::{Family, OrientedLobe};
-use crate::metric::cluster::clustered;
+use crate::lobe::{Family, LobeTexel};
 use crate::metric::decoded::sample_texels;
-use crate::metric::footprint::{Footprint, Part, overlaps};
-use crate::metric::reference::{Reference, even_point};
+use crate::metric::draws::{DRAWN, DrawnFootprint};
+use crate::metric::footprint::{Footprint, Part};
+use crate::metric::reference::Reference;
 
 /// How many sites each level has. A level with few texels has more samples for each texel. Time grows with
 /// `half_vectors * parts`.
@@ -20,8 +20,6 @@ pub struct Precision {
     pub texels: usize,
     /// Most level-0 texels drawn from the footprints of a level, all together.
     pub level0: u32,
-    /// Most parts of a footprint after clustering.
-    pub parts: usize,
     /// Half-vectors for all texels of a level together, at most 2048 for one texel.
     pub half_vectors: usize,
 }
@@ -30,15 +28,15 @@ impl Precision {
     /// The precision of a default bake: mean errors of a level within about 0.01 of all samples.
     /// `benches/studies/survey.rs` measures 0.0066 (root mean square), and 0.0056 with twice the level-0 texels. The
     /// choice of texels contributes 0.018 to both.
-    pub const QUICK: Self = Self { texels: 64, level0: 1 << 16, parts: 256, half_vectors: 8192 };
+    pub const QUICK: Self = Self { texels: 64, level0: 1 << 16, half_vectors: 8192 };
 
     fn samples(&self, texels: usize) -> usize {
         (self.half_vectors / texels.max(1)).clamp(1, 2048)
     }
 
     /// Returns the number of rows, and of columns in each row, that are drawn from one of `texels` footprints.
-    fn grid(&self, texels: usize) -> u32 {
-        (self.level0 / texels.max(1) as u32).isqrt().clamp(1, 256)
+    fn strata(&self, texels: usize) -> u32 {
+        (self.level0 / texels.max(1) as u32).isqrt().clamp(1, 2 * DRAWN)
     }
 }
 
@@ -48,7 +46,7 @@ pub struct Site {
     pub level: usize,
     /// Column and row in the level.
     pub texel: (u32, u32),
-    /// The texel's footprint, clustered.
+    /// The drawn part of the texel's footprint.
     pub footprint: Footprint,
     /// The reference that candidates are compared with.
     pub reference: Reference,
@@ -57,116 +55,89 @@ pub struct Site {
 /// A texel that is to be sampled.
 struct SamplePoint {
     level: usize,
-    size: (u32, u32),
-    texel: (u32, u32),
-    grid: u32,
+    drawn: DrawnFootprint,
     samples: usize,
     /// How many sample points of the level precede this one.
     index: usize,
 }
 
-/// Writes one row of level-0 texels.
-pub type Level0Row<'a> = dyn Fn(u32, &mut [OrientedLobe]) + Sync + 'a;
+/// Rows of level 0 that are read together, if they are needed.
+const BAND: u32 = 16;
+
+/// Writes rows of level-0 texels: the row of a number and the rows below.
+pub type Level0Rows<'a, T> = dyn Fn(u32, &mut [T]) + Sync + 'a;
 
 /// Returns the sampled texels of `levels` of a mip chain with `sizes`, whose texels have lobes of `family`, level by
-/// level. `row` is called once for each row of level 0 that is needed. The result depends on neither machine nor
-/// threads.
-pub fn sample_sites(
+/// level. `read` is called once for each band of rows of level 0 that are needed. Texels count by area x reflectance.
+/// The result depends on neither machine nor threads.
+pub fn sample_sites<T: LobeTexel>(
     sizes: &[(u32, u32)],
     levels: Range<usize>,
     family: Family,
     precision: Precision,
-    row: &Level0Row<'_>,
+    read: &Level0Rows<'_, T>,
 ) -> Vec<Site> {
     let Some(&whole) = sizes.first() else { return Vec::new() };
     let mut points = Vec::new();
     for level in levels {
         let Some(&size) = sizes.get(level) else { break };
         let texels = sample_texels(size, precision.texels);
-        let (grid, samples) = (precision.grid(texels.len()), precision.samples(texels.len()));
-        let point = |(index, texel)| SamplePoint { level, size, texel, grid, samples, index };
+        let (strata, samples) = (precision.strata(texels.len()), precision.samples(texels.len()));
+        let point = |(index, texel)| {
+            let drawn = DrawnFootprint { whole, size, texel, strata };
+            SamplePoint { level, drawn, samples, index }
+        };
         points.extend(texels.into_iter().enumerate().map(point));
     }
     // All rows of level 0 that a footprint covers, with the indices of its sample points.
     let mut rows: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
     for (index, point) in points.iter().enumerate() {
-        for (row, _) in point.rows(whole) {
+        for (row, _) in point.drawn.rows() {
             rows.entry(row).or_default().push(index);
         }
     }
     let rows: Vec<(u32, Vec<usize>)> = rows.into_iter().collect();
-    let counts: Vec<usize> = points.iter().map(|point| point.columns(whole, 0).len()).collect();
+    let bands: Vec<&[(u32, Vec<usize>)]> = rows.chunk_by(|a, b| a.0 / BAND == b.0 / BAND).collect();
+    let counts: Vec<usize> = points.iter().map(|point| point.drawn.columns(0).len()).collect();
     // Only lobes are kept here. Parts with shares in double precision, in one list for each texel, cost a bake of
     // 4096 x 4096 texels 14 000 more page faults (`perf stat -e page-faults`).
-    let drawn: Vec<Vec<OrientedLobe>> = rows
-        .par_iter()
-        .map_init(
-            || vec![OrientedLobe::default(); whole.0 as usize],
-            |lobes, (y, users)| {
-                row(*y, lobes);
-                let mut drawn = Vec::with_capacity(users.iter().map(|index| counts[*index]).sum());
-                for index in users {
-                    drawn.extend(points[*index].columns(whole, *y).iter().map(|(column, _)| lobes[*column as usize]));
-                }
-                drawn
-            },
-        )
-        .collect();
-    let mut strips: Vec<Vec<&[OrientedLobe]>> = points.iter().map(|_| Vec::new()).collect();
-    for ((_, users), mut drawn) in rows.iter().zip(drawn.iter().map(Vec::as_slice)) {
+    let width = whole.0 as usize;
+    let draw = |lobes: &mut Vec<T>, band: &[(u32, Vec<usize>)]| -> Vec<Vec<T>> {
+        let (first, last) = (band[0].0, band[band.len() - 1].0);
+        lobes.resize((last - first + 1) as usize * width, T::default());
+        read(first, lobes);
+        let of_row = |(y, users): &(u32, Vec<usize>)| {
+            let lobes = &lobes[(y - first) as usize * width..][..width];
+            let mut drawn = Vec::with_capacity(users.iter().map(|index| counts[*index]).sum());
+            for index in users {
+                drawn.extend(points[*index].drawn.columns(*y).iter().map(|(column, _)| lobes[*column as usize]));
+            }
+            drawn
+        };
+        band.iter().map(of_row).collect()
+    };
+    let drawn: Vec<Vec<Vec<T>>> = bands.par_iter().map_init(Vec::new, |lobes, band| draw(lobes, band)).collect();
+    let mut strips: Vec<Vec<&[T]>> = points.iter().map(|_| Vec::new()).collect();
+    for ((_, users), mut drawn) in rows.iter().zip(drawn.iter().flatten().map(Vec::as_slice)) {
         for index in users {
             let (strip, rest) = drawn.split_at(counts[*index]);
             strips[*index].push(strip);
             drawn = rest;
         }
     }
-    let site = |(point, strips): (&SamplePoint, Vec<&[OrientedLobe]>)| {
-        let parts = point.rows(whole).into_iter().zip(strips).flat_map(|((y, share), strip)| {
-            let columns = point.columns(whole, y).into_iter().zip(strip);
-            columns.map(move |((_, weight), lobe)| part(lobe, share * weight))
+    let site = |(point, strips): (&SamplePoint, Vec<&[T]>)| {
+        let parts = point.drawn.rows().into_iter().zip(strips).flat_map(|((y, share), strip)| {
+            let columns = point.drawn.columns(y).into_iter().zip(strip);
+            columns.map(move |((_, weight), texel)| {
+                let weight = share * weight * texel.reflectance();
+                Part::of(f64::from(weight), texel.lobe())
+            })
         });
-        let footprint = clustered(parts.collect(), precision.parts)?;
+        let footprint = Footprint::new(parts.collect())?;
         let reference = Reference::from_point(family, &footprint, point.samples, point.index * point.samples);
-        Some(Site { level: point.level, texel: point.texel, footprint, reference })
+        Some(Site { level: point.level, texel: point.drawn.texel, footprint, reference })
     };
     points.par_iter().zip(strips).filter_map(site).collect()
-}
-
-impl SamplePoint {
-    /// Returns the rows of level 0, which has the size `whole`, that are drawn for this point, top to bottom, with
-    /// shares.
-    fn rows(&self, whole: (u32, u32)) -> Vec<(u32, f64)> {
-        strata(whole.1, self.size.1, self.texel.1, self.grid, self.level)
-    }
-
-    /// Returns the columns that are drawn from row `y`, equally many from each row. Rows draw different columns,
-    /// because regular bumps could hide between equal ones.
-    fn columns(&self, whole: (u32, u32), y: u32) -> Vec<(u32, f64)> {
-        strata(whole.0, self.size.0, self.texel.0, self.grid, y as usize)
-    }
-}
-
-/// Returns the texels of an axis of length `old` that texel `i` of an axis of length `new` covers, with their shares.
-/// Where there are more than `limit`, one texel is drawn from each of `limit` equal strata. `seed` decides where in its
-/// stratum each texel lies.
-fn strata(old: u32, new: u32, i: u32, limit: u32, seed: usize) -> Vec<(u32, f64)> {
-    let new = new.max(1);
-    let covered = f64::from(old) / f64::from(new);
-    if covered <= f64::from(limit) {
-        return overlaps(old, new, i);
-    }
-    let start = covered * f64::from(i.min(new - 1));
-    let at = |stratum: u32| {
-        let [jitter, _] = even_point(stratum as usize + 61 * seed);
-        let texel = start + (f64::from(stratum) + jitter) * covered / f64::from(limit);
-        ((texel as u32).min(old - 1), 1.0 / f64::from(limit))
-    };
-    (0..limit).map(at).collect()
-}
-
-fn part(lobe: &OrientedLobe, weight: f64) -> Part {
-    let a = lobe.squared_alpha.0;
-    Part { weight, normal: lobe.normal.map(f64::from), base: [a.uu, a.uv, a.vv].map(f64::from) }
 }
 
 #[cfg(test)]

@@ -40,7 +40,7 @@ fn normal_footprint(u: f64, deviations: [f64; 2], base: [f64; 3]) -> Footprint {
     Footprint::new(parts.collect()).unwrap()
 }
 
-/// The vectorised sum is right for whole batches of points and for a shorter last one.
+/// The sum in single precision is right for whole batches of points and for a shorter last one.
 #[test]
 fn densities_sum_all_lobes() {
     for family in FAMILIES {
@@ -50,7 +50,7 @@ fn densities_sum_all_lobes() {
         for (h, found) in reference.points().iter().zip(reference.densities()) {
             let weighted = |p: &Part| p.weight * Lobe::new(family, p.normal, p.base).density(*h);
             let expected: f64 = footprint.parts().iter().map(weighted).sum();
-            assert!((found / expected - 1.0).abs() < 1e-12, "{family:?}: {found} for {expected}");
+            assert!((found / expected - 1.0).abs() < 1e-5, "{family:?}: {found} for {expected}");
         }
     }
 }
@@ -106,7 +106,7 @@ fn samples_follow_the_density() {
 fn a_lobe_has_no_error_for_itself() {
     for family in FAMILIES {
         let one = footprint(&[[0.3, -0.2]], [0.04, 0.01, 0.02]);
-        assert!(error(family, &one, &Lobe::new(family, one.parts()[0].normal, [0.04, 0.01, 0.02])) < 1e-12);
+        assert!(error(family, &one, &Lobe::new(family, one.parts()[0].normal, [0.04, 0.01, 0.02])) < 1e-5);
     }
 }
 

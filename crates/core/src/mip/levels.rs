@@ -2,6 +2,8 @@
 
 use fearless_simd::Level as InstructionSet;
 
+use rayon::prelude::*;
+
 use crate::mip::merge::Merge;
 use crate::mip::reduce::{Level, Taps, build, level_size, level_sizes, reduce_row};
 use crate::mip::rows::TexelRows;
@@ -58,6 +60,26 @@ impl<T: Merge> MipTail<T> {
         }
     }
 
+    /// Calls `update(y, finer, row)` for every row of `level`, in any order. `finer(level, y, out)` writes rows of any
+    /// finer level. Levels that are not kept stay as they are.
+    pub fn update_level(
+        &mut self,
+        source: &impl TexelRows<Texel = T>,
+        level: usize,
+        update: impl Fn(u32, &FinerRow<'_, T>, &mut [T]) + Sync,
+    ) {
+        let unkept = self.unkept;
+        let Some(index) = level.checked_sub(unkept + 1) else { return };
+        let (finer, coarser) = self.kept.split_at_mut(index);
+        let finer_row = |level: usize, y, out: &mut [T]| match level.checked_sub(unkept + 1) {
+            Some(index) => finer[index].row(y, out),
+            None => UnkeptLevel { source, level }.row(y, out),
+        };
+        let Some(Level { width, texels, .. }) = coarser.first_mut() else { return };
+        let rows = texels.par_chunks_exact_mut(*width as usize).enumerate();
+        rows.for_each(|(y, row)| update(y as u32, &finer_row, row));
+    }
+
     /// Returns the single texel of the coarsest level.
     pub fn coarsest(&self, source: &impl TexelRows<Texel = T>) -> T {
         let mut texel = [T::default()];
@@ -65,6 +87,9 @@ impl<T: Merge> MipTail<T> {
         texel[0]
     }
 }
+
+/// Writes row y of a level to a slice of texels: `(level, y, out)`.
+pub type FinerRow<'a, T> = dyn Fn(usize, u32, &mut [T]) + Sync + 'a;
 
 impl<T> From<Vec<Level<T>>> for MipTail<T> {
     fn from(kept: Vec<Level<T>>) -> Self {
@@ -94,9 +119,14 @@ impl<R: TexelRows> TexelRows for UnkeptLevel<'_, R> {
         let finer = Self { source: self.source, level };
         let (width, down) = (finer.width() as usize, Taps::new(finer.height(), y));
         let mut rows = vec![R::Texel::default(); width * down.count];
-        for (tap, row) in rows.chunks_exact_mut(width).enumerate() {
-            finer.row(down.first + tap as u32, row);
-        }
+        finer.rows(down.first, &mut rows);
         reduce_row(InstructionSet::new(), &rows, width, &down, out);
+    }
+
+    fn rows(&self, first: u32, out: &mut [R::Texel]) {
+        match self.level {
+            0 => self.source.rows(first, out),
+            _ => (first..).zip(out.chunks_exact_mut(self.width() as usize)).for_each(|(y, row)| self.row(y, row)),
+        }
     }
 }

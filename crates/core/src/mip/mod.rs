@@ -13,7 +13,7 @@ mod rows;
 mod tests;
 mod wrap;
 
-pub use levels::MipTail;
+pub use levels::{FinerRow, MipTail};
 pub(crate) use merge::MAX_PARTS;
 pub use merge::{Merge, Numbers};
 pub use pyramid::Pyramid;
@@ -21,4 +21,4 @@ pub use reduce::{Level, build, level_size, level_sizes};
 pub(crate) use resample::neighbours;
 pub use resample::{AreaResampled, LinearResampled};
 pub use rows::TexelRows;
-pub use wrap::Wrap;
+pub use wrap::{Magnification, Sampler, Wrap};

@@ -98,17 +98,21 @@ fn reduce<R: TexelRows>(finer: &R, sizes: &[(u32, u32)]) -> Vec<Level<R::Texel>>
     let fine_width = finer.width() as usize;
     let simd = InstructionSet::new();
     parts.into_par_iter().enumerate().for_each_init(
-        || vec![R::Texel::default(); fine_width * MAX_TAPS],
+        || vec![R::Texel::default(); fine_width * (2 * ROWS_TOGETHER + 1)],
         |rows, (band, mut levels)| {
             let (first, tail) = levels.split_at_mut(1);
             let first = &mut *first[0];
             let height = first.len() / sizes[0].0 as usize;
-            for (y, out) in first.chunks_exact_mut(sizes[0].0 as usize).enumerate() {
-                let down = Taps::new(finer.height(), (band * height + y) as u32);
-                for (tap, row) in rows.chunks_exact_mut(fine_width).enumerate().take(down.count) {
-                    finer.row(down.first + tap as u32, row);
+            let width = sizes[0].0 as usize;
+            for (group, out) in first.chunks_mut(width * ROWS_TOGETHER).enumerate() {
+                let down = |y| Taps::new(finer.height(), (band * height + group * ROWS_TOGETHER + y) as u32);
+                let (top, last) = (down(0).first, down(out.len() / width - 1));
+                let count = (last.first - top) as usize + last.count;
+                finer.rows(top, &mut rows[..count * fine_width]);
+                for (y, out) in out.chunks_exact_mut(width).enumerate() {
+                    let down = down(y);
+                    reduce_row(simd, &rows[(down.first - top) as usize * fine_width..], fine_width, &down, out);
                 }
-                reduce_row(simd, rows, fine_width, &down, out);
             }
             // All heights beyond the first level of a band are even.
             let down = Taps::new(2, 0);
@@ -130,6 +134,9 @@ fn reduce<R: TexelRows>(finer: &R, sizes: &[(u32, u32)]) -> Vec<Level<R::Texel>>
 fn default_texels<T: Merge>(count: usize) -> Vec<T> {
     (0..count).into_par_iter().with_min_len(1 << 14).map(|_| T::default()).collect()
 }
+
+/// Rows of a level that are computed from finer rows that were read together.
+const ROWS_TOGETHER: usize = 4;
 
 /// The most levels of a band. A band then has 32 rows of level 0; for 4096 columns of lobes, its levels 1 and 2 fit
 /// into 1 MB.

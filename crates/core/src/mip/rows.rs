@@ -15,6 +15,13 @@ pub trait TexelRows: Sync {
 
     /// Writes row `y` (0 is the top) to `out`, which has `width` texels.
     fn row(&self, y: u32, out: &mut [Self::Texel]);
+
+    /// Writes rows `first` and below to `out`, which has a multiple of `width` texels. Rows that are computed from
+    /// their neighbours are faster together.
+    fn rows(&self, first: u32, out: &mut [Self::Texel]) {
+        let rows = out.chunks_exact_mut(self.width() as usize);
+        (first..).zip(rows).for_each(|(y, row)| self.row(y, row));
+    }
 }
 
 impl<R: TexelRows> TexelRows for &R {
@@ -30,5 +37,9 @@ impl<R: TexelRows> TexelRows for &R {
 
     fn row(&self, y: u32, out: &mut [R::Texel]) {
         (**self).row(y, out);
+    }
+
+    fn rows(&self, first: u32, out: &mut [R::Texel]) {
+        (**self).rows(first, out);
     }
 }

@@ -1,4 +1,4 @@
-//! Wrap modes of samplers.
+//! Wrap modes and magnification filters of samplers.
 
 /// The wrap mode of a sampler along one axis, named as in glTF.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize)]
@@ -31,4 +31,23 @@ impl Wrap {
             }
         }
     }
+}
+
+/// How a sampler magnifies level 0.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Magnification {
+    /// Linear between the centres of texels.
+    #[default]
+    Linear,
+    /// The nearest texel.
+    Nearest,
+}
+
+/// What a sampler does beyond the border of a map and between its texels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Sampler {
+    /// Wrap modes across and down.
+    pub wrap: [Wrap; 2],
+    /// How level 0 is magnified.
+    pub magnification: Magnification,
 }

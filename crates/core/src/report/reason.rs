@@ -83,9 +83,8 @@ impl Reason {
     pub(super) fn remedy(self, settings: &Settings, closer: Option<Model>) -> Option<String> {
         match self {
             Self::Encoding => (settings.target != Target::Float).then(|| "--target float".to_owned()),
-            Self::Isotropic => {
-                Some("the base layer for these bumps, since only that layer can be anisotropic".to_owned())
-            }
+            Self::Isotropic => (settings.model_limit() == Model::Anisotropic)
+                .then(|| "the base layer for these bumps, since only that layer can be anisotropic".to_owned()),
             Self::Fit => match closer {
                 Some(model) => Some(format!("--model {} if the engine shows it correctly", model.name())),
                 None => (settings.quality != Effort::Best).then(|| "--quality best".to_owned()),

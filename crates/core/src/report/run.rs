@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::AssetReport;
 use super::format::{FormatError, check_format};
 use crate::digest::Digest;
+use crate::note::Note;
 use crate::settings::RecordedSettings;
 
 /// The format version of reports.
@@ -24,6 +25,9 @@ pub struct RunReport {
     pub settings: RecordedSettings,
     /// What became of each input, in order.
     pub assets: Vec<AssetOutcome>,
+    /// Notes on the engines of the assets; absent if there are none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub notes: Vec<Note>,
     /// What a server did; absent without a server.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub remote: Option<Counts>,
@@ -31,8 +35,13 @@ pub struct RunReport {
 
 impl RunReport {
     /// Returns a report of this version of the tool.
-    pub fn new(settings: RecordedSettings, assets: Vec<AssetOutcome>, remote: Option<Counts>) -> Self {
-        Self { format_version: REPORT_FORMAT, version: env!("CARGO_PKG_VERSION"), settings, assets, remote }
+    pub fn new(
+        settings: RecordedSettings,
+        assets: Vec<AssetOutcome>,
+        notes: Vec<Note>,
+        remote: Option<Counts>,
+    ) -> Self {
+        Self { format_version: REPORT_FORMAT, version: env!("CARGO_PKG_VERSION"), settings, assets, notes, remote }
     }
 }
 

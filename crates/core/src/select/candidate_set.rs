@@ -1,20 +1,20 @@
 //! The candidates for the roughness data of a layer, with their costs.
 
 use crate::codec::PayloadFormat;
-use crate::material::{BumpMap, Encoding, Normals, Roughening};
-use crate::mip::{AreaResampled, Pyramid, Wrap};
+use crate::material::{Encoding, Normals, PyramidLevels, Roughening};
+use crate::mip::Wrap;
 use crate::settings::{Model, Settings};
 
 /// A layer whose model is to be chosen, and what limits the choice.
-pub struct CandidateSet<'a, 'f, 'r> {
+pub struct CandidateSet<'a, 'f> {
     /// The base lobe and the bumps that roughen it.
     pub roughening: &'a Roughening<'f>,
     /// The error bound, the requested model and the target.
     pub settings: &'a Settings,
     /// The normal texture of the portable profile, if that profile is written.
     pub normals: Option<&'a Normals<'a>>,
-    /// Moments and correction factor c of the pyramid profile, if that profile is written.
-    pub pyramid: Option<(&'a Pyramid<AreaResampled<&'r BumpMap>>, f32)>,
+    /// Levels and correction factor c of the pyramid profile, if that profile is written.
+    pub pyramid: Option<(&'a dyn PyramidLevels, f32)>,
     /// The sampler's mode, across and down.
     pub wrap: [Wrap; 2],
     /// The model with the most parameters that the layer can have.
@@ -25,7 +25,7 @@ pub struct CandidateSet<'a, 'f, 'r> {
     pub first: usize,
 }
 
-impl CandidateSet<'_, '_, '_> {
+impl CandidateSet<'_, '_> {
     /// Returns the models of all candidates, in the order of rising shader cost.
     pub(super) fn models(&self) -> impl Iterator<Item = Model> {
         [Model::None, Model::Isotropic, Model::Anisotropic].into_iter().filter(|model| self.offers(*model))

@@ -1,7 +1,7 @@
 //! The evaluation of candidates at sample points, and the choice among them.
 
 use crate::codec::EncodeError;
-use crate::lobe::OrientedLobe;
+use crate::lobe::{OrientedLobe, ReflectingLobe};
 use crate::metric::{Precision, Site, sample_sites};
 use crate::report::{Candidate, Choice};
 use crate::select::candidate_set::CandidateSet;
@@ -23,7 +23,7 @@ struct Samples {
     sites: Vec<Site>,
 }
 
-impl CandidateSet<'_, '_, '_> {
+impl CandidateSet<'_, '_> {
     /// Evaluates all candidates and chooses one. Under a fixed model, all models are evaluated in full size, so that
     /// the report shows their errors.
     ///
@@ -32,9 +32,10 @@ impl CandidateSet<'_, '_, '_> {
     pub fn choose(&self) -> Result<Choice, EncodeError> {
         let samples = self.samples();
         let shown = Shown::new(self, samples.sites.iter(), true)?;
+        let none = shown.errors(&samples.sites.iter().collect::<Vec<_>>(), Model::None, self.first)?;
         let mut evaluated = Vec::new();
         for model in self.models() {
-            evaluated.extend(self.evaluate(model, &samples, &shown)?);
+            evaluated.extend(self.evaluate(model, &samples, &shown, &none)?);
         }
         let chosen = self.index_of_choice(&evaluated);
         let Evaluated { candidate, errors } = &evaluated[chosen];
@@ -47,27 +48,53 @@ impl CandidateSet<'_, '_, '_> {
         let sizes = self.roughening.sizes();
         let finest = self.finest.min(sizes.len() - 1);
         let lobes = self.roughening.lobes();
-        let row = |y, out: &mut [OrientedLobe]| lobes.row(0, y, out);
-        let sites = sample_sites(&sizes, finest..sizes.len(), self.settings.lobe, Precision::QUICK, &row);
+        let family = self.settings.lobe;
+        // Level 0 is compared with its own texels.
+        let width = sizes[0].0 as usize;
+        let texels = |first, out: &mut [OrientedLobe]| {
+            (first..).zip(out.chunks_exact_mut(width)).for_each(|(y, row)| lobes.row(0, y, row));
+        };
+        let mut sites = sample_sites(&sizes, finest..1, family, Precision::QUICK, &texels);
+        let coarser = finest.max(1)..sizes.len();
+        sites.extend(if lobes.is_reflectance_constant() {
+            let rows = |first, out: &mut [OrientedLobe]| lobes.magnified_rows(first, out);
+            sample_sites(&sizes, coarser, family, Precision::QUICK, &rows)
+        } else {
+            let rows = |first, out: &mut [ReflectingLobe]| lobes.reflecting_rows(first, out);
+            sample_sites(&sizes, coarser, family, Precision::QUICK, &rows)
+        });
         Samples { sizes, finest, sites }
     }
 
-    /// Evaluates `model` in each of its sizes, smallest first.
+    /// Evaluates `model` in each of its sizes, smallest first. `none` are the errors of the base lobe, which a level of
+    /// the portable profile keeps where the model has a larger error.
     fn evaluate(
         &self,
         model: Model,
         samples: &Samples,
-        shown: &Shown<'_, '_, '_>,
+        shown: &Shown<'_, '_>,
+        none: &Errors,
     ) -> Result<Vec<Evaluated>, EncodeError> {
         let Samples { sizes, finest, sites } = samples;
+        let base_errors = by_level(sites, none, *finest, sizes.len());
         let full = shown.errors(&sites.iter().collect::<Vec<_>>(), model, self.first)?;
         let evaluated = |first: usize| {
-            let errors = self.errors_of_size(&full, model, first, sites, shown)?;
+            let mut errors = self.errors_of_size(&full, model, first, sites, shown)?;
+            let own_errors = by_level(sites, &errors, *finest, sizes.len());
+            let levels = (*finest..).zip(own_errors.iter().zip(&base_errors));
+            // Levels that are magnified from the first level have no texels of their own.
+            let may_keep = |level| level >= first && self.pyramid.is_none();
+            let is_worse = |(level, (own, base)): &(usize, (&f32, &f32))| own > base && may_keep(*level);
+            let base_levels: Vec<usize> = levels.filter(is_worse).map(|(level, _)| level).collect();
+            for i in (0..sites.len()).filter(|i| base_levels.contains(&sites[*i].level)) {
+                errors[i] = none[i];
+            }
             let candidate = Candidate {
                 model,
                 first,
                 bytes: self.bytes(model, first, sizes),
                 errors: by_level(sites, &errors, *finest, sizes.len()),
+                base_levels,
             };
             Ok(Evaluated { candidate, errors })
         };
@@ -82,7 +109,7 @@ impl CandidateSet<'_, '_, '_> {
         model: Model,
         first: usize,
         sites: &[Site],
-        shown: &Shown<'_, '_, '_>,
+        shown: &Shown<'_, '_>,
     ) -> Result<Errors, EncodeError> {
         let mut errors = full.clone();
         let lacking: Vec<usize> = (0..sites.len()).filter(|i| sites[*i].level < first).collect();

@@ -21,7 +21,7 @@ const ORACLE_SAMPLES: usize = 256;
 /// # Errors
 /// [`EncodeError`] if the blocks at the sample points cannot be encoded.
 pub(super) fn misses(
-    set: &CandidateSet<'_, '_, '_>,
+    set: &CandidateSet<'_, '_>,
     sites: &[Site],
     chosen: &Candidate,
     errors: &Errors,
@@ -58,7 +58,7 @@ struct Measurements<'s> {
 
 impl<'s> Measurements<'s> {
     fn new(
-        set: &CandidateSet<'_, '_, '_>,
+        set: &CandidateSet<'_, '_>,
         sites: Vec<&'s Site>,
         errors: Errors,
         chosen: &Candidate,

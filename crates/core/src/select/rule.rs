@@ -3,18 +3,34 @@
 /// Differences between mean errors that samples of few texels cannot tell apart.
 const NOISE: f32 = 0.01;
 
+/// The mean error over the screen that may be lost for a cheaper candidate.
+const NEGLIGIBLE: f64 = 0.001;
+
 /// Returns the index of the candidate to take; `None` if there is no candidate. `errors` holds, in the order of rising
 /// cost, the error of each candidate at every level that can be sampled.
 ///
-/// The most accurate candidate is the one with the smallest sum of excesses over `max_error`. Taken is the cheapest
-/// candidate that passes two tests: at levels where the most accurate candidate meets `max_error`, it meets `max_error`
-/// too; at other levels it is as accurate as the most accurate candidate, up to `NOISE`. So a bound that can be met
-/// is met at the least cost, and a bound that cannot be met is no reason to save anything visible.
+/// The most accurate candidate is the one with the smallest mean excess over `max_error`. Taken is the cheapest
+/// candidate that is as accurate: at each level it is allowed `max_error` where the most accurate candidate meets
+/// `max_error`, and elsewhere the error of that candidate plus `NOISE`; its mean excess over these bounds is below
+/// `NEGLIGIBLE`. So a bound that can be met is met at the least cost, and a bound that cannot be met is no reason to
+/// save anything visible.
 pub fn choose(errors: &[Vec<f32>], max_error: f32) -> Option<usize> {
-    let excess = |errors: &Vec<f32>| errors.iter().map(|e| f64::from((e - max_error).max(0.0))).sum::<f64>();
+    let excess = |errors: &[f32]| mean(errors, |_, e| (e - max_error).max(0.0));
     let best = errors.iter().min_by(|a, b| excess(a).total_cmp(&excess(b)))?;
-    let bound = |best: &f32| if *best <= max_error { max_error } else { best + NOISE };
-    errors.iter().position(|errors| errors.iter().zip(best).all(|(e, best)| *e <= bound(best)))
+    let bound = |level: usize| if best[level] <= max_error { max_error } else { best[level] + NOISE };
+    errors.iter().position(|errors| mean(errors, |level, e| (e - bound(level)).max(0.0)) < NEGLIGIBLE)
+}
+
+/// Returns the mean of `of(level, error)` over the screen. A plane that reaches to the horizon shows each level on half
+/// as much of the screen as the next finer level.
+fn mean(errors: &[f32], of: impl Fn(usize, f32) -> f32) -> f64 {
+    let (mut total, mut sum) = (0.0, 0.0);
+    for (level, error) in errors.iter().enumerate() {
+        let share = 0.5_f64.powi(level as i32);
+        total += share;
+        sum += share * f64::from(of(level, *error));
+    }
+    if total > 0.0 { sum / total } else { 0.0 }
 }
 
 #[cfg(test)]

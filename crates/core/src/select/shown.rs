@@ -4,7 +4,10 @@ use rayon::prelude::*;
 
 use crate::codec::EncodeError;
 use crate::lobe::SquaredAlpha;
-use crate::material::{AnisotropyTexture, Encoding, LevelRow, Product, Quantity, QuantityTexture, RoughnessTexture};
+use crate::material::{
+    AnisotropyTexture, Encoding, LevelRows, OffsetTexture, Product, Quantity, QuantityTexture, RoughnessTexture,
+    slopes_of_texel, with_rows,
+};
 use crate::math::symmetric::Symmetric2;
 use crate::metric::{Lobe, Site, shown_lobe, shown_normal, with_z};
 use crate::select::candidate_set::CandidateSet;
@@ -15,8 +18,8 @@ use crate::settings::Model;
 pub(super) type Errors = Vec<f64>;
 
 /// The textures of all candidates, read at the sample points as engines read them.
-pub(super) struct Shown<'t, 'f, 'r> {
-    set: &'t CandidateSet<'t, 'f, 'r>,
+pub(super) struct Shown<'t, 'f> {
+    set: &'t CandidateSet<'t, 'f>,
     sizes: Vec<(u32, u32)>,
     texels: Vec<LevelTexel>,
     /// Normals of the portable and of the pyramid profile, by sample point; empty for a profile that is not written.
@@ -24,10 +27,10 @@ pub(super) struct Shown<'t, 'f, 'r> {
     is_encoded: bool,
 }
 
-impl<'t, 'f, 'r> Shown<'t, 'f, 'r> {
+impl<'t, 'f> Shown<'t, 'f> {
     /// Reads the normals at `sites`. Textures are read encoded, or as the values before encoding.
     pub(super) fn new<'s>(
-        set: &'t CandidateSet<'t, 'f, 'r>,
+        set: &'t CandidateSet<'t, 'f>,
         sites: impl Iterator<Item = &'s Site>,
         is_encoded: bool,
     ) -> Result<Self, EncodeError> {
@@ -40,7 +43,7 @@ impl<'t, 'f, 'r> Shown<'t, 'f, 'r> {
 
     fn portable_normals(&self) -> Result<Vec<[f64; 3]>, EncodeError> {
         let Some(normals) = self.set.normals else { return Ok(Vec::new()) };
-        let scale = self.set.roughening.lobes().slope_scale();
+        let scale = normals.scale() * self.set.roughening.lobes().slope_scale();
         let encoding = Encoding::of_normals(self.set.settings);
         let texels = self.read(normals, self.set.first, encoding)?;
         let has_z = !self.is_encoded || encoding.format.has_z();
@@ -49,13 +52,15 @@ impl<'t, 'f, 'r> Shown<'t, 'f, 'r> {
     }
 
     fn pyramid_normals(&self) -> Result<Vec<[f64; 3]>, EncodeError> {
-        let Some((moments, _)) = self.set.pyramid else { return Ok(Vec::new()) };
-        let scale = self.set.roughening.lobes().slope_scale();
-        let encoding = Encoding::of(self.set.settings, 2).starting_at(self.set.first);
-        let texture = QuantityTexture::new(moments, Quantity::Offset, encoding);
+        let Some((levels, _)) = self.set.pyramid else { return Ok(Vec::new()) };
+        let encoding = Encoding::of_normals(self.set.settings).starting_at(self.set.first);
+        let texture = OffsetTexture::new(levels, encoding);
+        let scale = f64::from(texture.scale * self.set.roughening.lobes().slope_scale());
         let texels = self.read(&texture, self.set.first, encoding)?;
-        let normal = |texel: [f32; 4]| {
-            let [u, v] = texture.range.values(texel).map(|f: f32| f64::from(f * scale));
+        let has_z = !self.is_encoded || encoding.format.has_z();
+        let normal = |[x, y, z, _]: [f32; 4]| {
+            let texel = if has_z { [x, y, z] } else { with_z([x, y]) };
+            let [u, v] = slopes_of_texel(texel.map(f64::from)).map(|f| scale * f);
             [-u, -v, 1.0]
         };
         Ok(texels.into_iter().map(normal).collect())
@@ -81,13 +86,14 @@ impl<'t, 'f, 'r> Shown<'t, 'f, 'r> {
     /// Returns the larger error of the profiles at each sample point for lobes whose alphas may exceed 1.
     pub(super) fn unclamped_errors(&self, sites: &[&Site], model: Model, first: usize) -> Result<Errors, EncodeError> {
         let encoding = Encoding::of(self.set.settings, 3);
-        let lobes = self.read_rows(&self.sizes, first, encoding, &|level, y, out| {
+        let row = |level, y, out: &mut [[f32; 4]]| {
             let lobes = match model {
                 Model::None => self.set.roughening.base_row(level, y, out.len()),
                 _ => self.set.roughening.roughened_row(level, y, out.len()),
             };
             store_alphas(lobes, out);
-        })?;
+        };
+        let lobes = self.read_rows(&self.sizes, first, encoding, LevelRows { values: &row, lobes: None })?;
         let lobe = |i: usize| {
             let [uu, uv, vv, _] = lobes[i];
             let a = SquaredAlpha(Symmetric2::new(uu, uv, vv));
@@ -134,7 +140,7 @@ impl<'t, 'f, 'r> Shown<'t, 'f, 'r> {
 
     /// Returns the squared alphas A + 2 c K that a plugin computes from D or lambda_1.
     fn pyramid_alphas(&self, model: Model, first: usize) -> Result<Vec<[f64; 3]>, EncodeError> {
-        let Some((moments, correction)) = self.set.pyramid else { return Ok(Vec::new()) };
+        let Some((levels, correction)) = self.set.pyramid else { return Ok(Vec::new()) };
         let base = self.base_alphas()?;
         let quantity = match model {
             Model::Isotropic => Quantity::Lambda1,
@@ -143,7 +149,7 @@ impl<'t, 'f, 'r> Shown<'t, 'f, 'r> {
         };
         let scale = self.set.roughening.lobes().slope_scale();
         let encoding = Encoding::of(self.set.settings, quantity.channels() as u32).starting_at(first);
-        let texture = QuantityTexture::new(moments, quantity, encoding);
+        let texture = QuantityTexture::new(levels, quantity, encoding);
         let texels = self.read(&texture, first, encoding)?;
         let weight = 2.0 * f64::from(correction * scale * scale);
         let roughened = |([uu, uv, vv], texel): ([f64; 3], [f32; 4])| {
@@ -162,13 +168,14 @@ impl<'t, 'f, 'r> Shown<'t, 'f, 'r> {
         let row = |level, y, out: &mut [[f32; 4]]| {
             store_alphas(self.set.roughening.base_row(level, y, out.len()), out);
         };
-        let base = TextureSampler { sizes: &self.sizes, first: 0, encoding: None, row: &row, wrap: self.set.wrap };
+        let rows = LevelRows { values: &row, lobes: None };
+        let base = TextureSampler { sizes: &self.sizes, first: 0, encoding: None, rows, wrap: self.set.wrap };
         let texels = base.at(&self.sizes, &self.texels)?;
         Ok(texels.into_iter().map(|[uu, uv, vv, _]| [uu, uv, vv].map(f64::from)).collect())
     }
 
     fn read(&self, product: &dyn Product, first: usize, encoding: Encoding) -> Result<Vec<[f32; 4]>, EncodeError> {
-        self.read_rows(&product.sizes(), first, encoding, &|level, y, out| product.row(level, y, out))
+        with_rows(product, |rows| self.read_rows(&product.sizes(), first, encoding, rows))
     }
 
     /// Reads a texture of `sizes`, whose finest level is `first`, at all sample points.
@@ -177,10 +184,10 @@ impl<'t, 'f, 'r> Shown<'t, 'f, 'r> {
         sizes: &[(u32, u32)],
         first: usize,
         encoding: Encoding,
-        row: &LevelRow<'_>,
+        rows: LevelRows<'_>,
     ) -> Result<Vec<[f32; 4]>, EncodeError> {
         let encoding = self.is_encoded.then_some(encoding);
-        TextureSampler { sizes, first, encoding, row, wrap: self.set.wrap }.at(&self.sizes, &self.texels)
+        TextureSampler { sizes, first, encoding, rows, wrap: self.set.wrap }.at(&self.sizes, &self.texels)
     }
 }
 

@@ -4,9 +4,10 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use rayon::prelude::*;
 
+use crate::codec::uastc::Lobe;
 use crate::codec::{EncodeError, Texels, encode};
 use crate::ktx2::decode_payload;
-use crate::material::{EDGE, Encoding, LevelRow};
+use crate::material::{EDGE, Encoding, LevelRows};
 use crate::mip::{Wrap, neighbours};
 
 /// A texel of a level.
@@ -28,8 +29,8 @@ pub struct TextureSampler<'a> {
     pub first: usize,
     /// How it is encoded; `None` reads the values themselves.
     pub encoding: Option<Encoding>,
-    /// The values of the texture.
-    pub row: &'a LevelRow<'a>,
+    /// The texels of the texture.
+    pub rows: LevelRows<'a>,
     /// The sampler's mode, across and down.
     pub wrap: [Wrap; 2],
 }
@@ -86,23 +87,39 @@ impl TextureSampler<'_> {
             rows.entry((level, row)).or_default().push(column);
         }
         let rows: Vec<_> = rows.into_iter().collect();
-        let values: Vec<Vec<[[f32; 4]; 16]>> =
-            rows.par_iter().map(|((level, row), columns)| self.blocks_of_row(*level, *row, columns)).collect();
+        let values: Vec<Vec<[[f32; 4]; 16]>> = rows
+            .par_iter()
+            .map(|((level, row), columns)| self.blocks_of_row(*level, *row, columns, self.rows.values, [0.0; 4]))
+            .collect();
         let mut values: Vec<[[f32; 4]; 16]> = values.into_iter().flatten().collect();
         if let Some(encoding) = self.encoding {
-            encode_and_decode(encoding, &mut values)?;
+            let lobes = self.rows.lobes.map(|row_of_lobes| {
+                let of_row = |((level, row), columns): &((usize, u32), Vec<u32>)| {
+                    self.blocks_of_row(*level, *row, columns, row_of_lobes, Lobe::isotropic(1.0))
+                };
+                let lobes: Vec<Vec<[Lobe; 16]>> = rows.par_iter().map(of_row).collect();
+                lobes.concat()
+            });
+            encode_and_decode(encoding, &mut values, lobes.as_deref())?;
         }
         Ok(blocks.iter().copied().zip(values).collect())
     }
 
-    /// Returns the values of the blocks `columns` of a row of blocks.
-    fn blocks_of_row(&self, level: usize, row: u32, columns: &[u32]) -> Vec<[[f32; 4]; 16]> {
+    /// Returns what `row_of` writes for the blocks `columns` of a row of blocks.
+    fn blocks_of_row<T: Copy>(
+        &self,
+        level: usize,
+        row: u32,
+        columns: &[u32],
+        row_of: &(dyn Fn(usize, u32, &mut [T]) + Sync),
+        empty: T,
+    ) -> Vec<[T; 16]> {
         let (width, height) = self.sizes[level];
-        let mut blocks = vec![[[0.0; 4]; 16]; columns.len()];
-        let mut line = vec![[0.0; 4]; width as usize];
+        let mut blocks = vec![[empty; 16]; columns.len()];
+        let mut line = vec![empty; width as usize];
         for dy in 0..EDGE {
             // Encoders repeat the last row and column.
-            (self.row)(level, (row * EDGE + dy).min(height - 1), &mut line);
+            row_of(level, (row * EDGE + dy).min(height - 1), &mut line);
             for (block, column) in blocks.iter_mut().zip(columns) {
                 for dx in 0..EDGE {
                     let x = (column * EDGE + dx).min(width - 1);
@@ -126,20 +143,21 @@ struct Tap {
 }
 
 /// Encodes and decodes blocks as a texture of one row of blocks. Every encoder treats its blocks one by one.
-fn encode_and_decode(encoding: Encoding, blocks: &mut [[[f32; 4]; 16]]) -> Result<(), EncodeError> {
+fn encode_and_decode(
+    encoding: Encoding,
+    blocks: &mut [[[f32; 4]; 16]],
+    lobes: Option<&[[Lobe; 16]]>,
+) -> Result<(), EncodeError> {
     let width = blocks.len() as u32 * EDGE;
     if width == 0 {
         return Ok(());
     }
     let format = encoding.format;
     let bytes = {
-        let row = |y: u32, out: &mut [[f32; 4]]| {
-            let from = (y * EDGE) as usize;
-            for (out, block) in out.chunks_exact_mut(EDGE as usize).zip(blocks.iter()) {
-                out.copy_from_slice(&block[from..from + EDGE as usize]);
-            }
-        };
-        encode(&Texels { width, height: EDGE, row: &row }, format, encoding.metric, encoding.effort)?
+        let row = |y: u32, out: &mut [[f32; 4]]| write_row(blocks, y, out);
+        let lobe_row = lobes.map(|lobes| move |y: u32, out: &mut [Lobe]| write_row(lobes, y, out));
+        let lobes = lobe_row.as_ref().map(|row| row as &(dyn Fn(u32, &mut [Lobe]) + Sync));
+        encode(&Texels { width, height: EDGE, row: &row, lobes }, format, encoding.metric, encoding.effort)?
     };
     let failed =
         || EncodeError::Encoder { format, width, height: EDGE, reason: "its blocks cannot be decoded".to_owned() };
@@ -153,6 +171,14 @@ fn encode_and_decode(encoding: Encoding, blocks: &mut [[[f32; 4]; 16]]) -> Resul
         }
     }
     Ok(())
+}
+
+/// Writes row `y` of a row of `blocks`.
+fn write_row<T: Copy>(blocks: &[[T; 16]], y: u32, out: &mut [T]) {
+    let from = (y * EDGE) as usize;
+    for (out, block) in out.chunks_exact_mut(EDGE as usize).zip(blocks) {
+        out.copy_from_slice(&block[from..from + EDGE as usize]);
+    }
 }
 
 /// Returns the binary logarithm of the longer side, rounded down.

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Form, Model, Profile, Settings, View};
+use super::{Form, MaxModel, Model, Profile, Settings, View};
 use crate::bump::Frame;
 use crate::codec::Target;
 use crate::codec::uastc::Effort;
@@ -38,9 +38,15 @@ pub struct RecordedSettings {
     /// [`Settings::model`], if the texture has another model; absent otherwise.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub asked: Option<Model>,
+    /// [`Settings::max_model`]; absent if every model is allowed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub max_model: Option<MaxModel>,
     /// [`Settings::rdo`]; absent if it is not set.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rdo: Option<f64>,
+    /// [`Settings::scale_normals`]; absent if it is not set.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub scale_normals: bool,
     /// [`Settings::view`]; absent if it is not set.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub view: Option<View>,
@@ -62,7 +68,9 @@ impl RecordedSettings {
             frame: settings.frame,
             height_scale: settings.height_scale.map(f64::from),
             asked: (model != settings.model).then_some(settings.model),
+            max_model: Some(settings.max_model).filter(|max_model| *max_model != MaxModel::Anisotropic),
             rdo: settings.rdo,
+            scale_normals: settings.scale_normals,
             view: settings.view,
         }
     }

@@ -11,10 +11,10 @@ use super::findings::{Code, Finding, Findings};
 use super::materials::check_materials;
 use super::partial_file::PartialFile;
 use super::provenance::check_document_provenance;
+use super::pyramid_levels::{OffsetFile, RoughnessFile, check_pyramid_levels};
 use super::scope::Scope;
 use super::texture::{Usage, check_texture};
 use super::texture_references::{TextureReferences, Textures};
-use super::variance::{Levels, RangedTexture, check_variance};
 use crate::bake::SourceError;
 use crate::gltf::document::{Container, Document, DocumentError};
 use crate::gltf::roughness_pyramid::RoughnessPyramid;
@@ -157,42 +157,44 @@ impl Images<'_> {
         self.referenced.image(&location(image)?).ok()
     }
 
-    /// Checks the textures of each extension, and their variance in a deep check.
+    /// Checks the textures of each extension, and their levels in a deep check.
     fn check_pyramids(&self, pyramids: &[(String, RoughnessPyramid)], textures: &Textures, findings: &mut Findings) {
-        // Materials that share textures and ranges share the result of the variance check.
-        let mut variances: BTreeMap<String, Vec<(u32, String)>> = BTreeMap::new();
+        // Materials that share textures and ranges share the result.
+        let mut results: BTreeMap<String, Vec<(u32, String)>> = BTreeMap::new();
         for (pointer, pyramid) in pyramids {
             check_contents(pointer, pyramid, textures, &self.contents, findings);
             if self.scope.is_deep {
-                let key = self.variance_key(pyramid, textures);
-                let found = variances.entry(key).or_insert_with(|| self.check_variance(pyramid, textures));
+                let key = self.levels_key(pyramid, textures);
+                let found = results.entry(key).or_insert_with(|| self.check_levels(pyramid, textures));
                 for (level, message) in found {
-                    findings.add(Code::Variance, format!("{pointer}, level {level}"), message.as_str());
+                    findings.add(Code::PyramidLevel, format!("{pointer}, level {level}"), message.as_str());
                 }
             }
         }
     }
 
-    /// Returns a key of everything that the variance of a pyramid depends on.
-    fn variance_key(&self, pyramid: &RoughnessPyramid, textures: &Textures) -> String {
+    /// Returns a key of everything that the levels of a pyramid depend on.
+    fn levels_key(&self, pyramid: &RoughnessPyramid, textures: &Textures) -> String {
         let image = |texture: usize| textures.get(texture).basisu;
         let roughness = pyramid.roughness_texture.as_ref().map(|info| image(info.index));
-        let ranges = (&pyramid.offset_min, &pyramid.offset_max, &pyramid.roughness_min, &pyramid.roughness_max);
-        format!("{:?}", (image(pyramid.offset_texture.index), roughness, pyramid.roughness_model, ranges))
+        let RoughnessPyramid { offset_channels, offset_scale, roughness_min, roughness_max, .. } = pyramid;
+        let values = (offset_channels, offset_scale, roughness_min, roughness_max);
+        format!("{:?}", (image(pyramid.offset_texture.index), roughness, pyramid.roughness_model, values))
     }
 
-    fn check_variance(&self, pyramid: &RoughnessPyramid, textures: &Textures) -> Vec<(u32, String)> {
+    fn check_levels(&self, pyramid: &RoughnessPyramid, textures: &Textures) -> Vec<(u32, String)> {
         let Some(offset) = self.ktx2(pyramid.offset_texture.index, textures) else { return Vec::new() };
         let roughness = pyramid.roughness_texture.as_ref().and_then(|info| self.ktx2(info.index, textures));
         let roughness = match (&pyramid.roughness_model, &roughness, &pyramid.roughness_min, &pyramid.roughness_max) {
             (Some(model), Some(bytes), Some(min), Some(max)) => {
-                Ktx2::parse(bytes.as_ktx2()).ok().map(|file| (*model, RangedTexture { file, min, max }))
+                let file = Ktx2::parse(bytes.as_ktx2()).ok();
+                file.map(|file| RoughnessFile { file, model: *model, min, max })
             }
             _ => None,
         };
         let Ok(file) = Ktx2::parse(offset.as_ktx2()) else { return Vec::new() };
-        let offset = RangedTexture { file, min: &pyramid.offset_min, max: &pyramid.offset_max };
-        check_variance(&Levels { offset, roughness })
+        let offset = OffsetFile { file, has_z: pyramid.has_z(), scale: pyramid.offset_scale };
+        check_pyramid_levels(&offset, roughness.as_ref())
     }
 }
 

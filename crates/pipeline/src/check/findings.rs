@@ -102,7 +102,7 @@ codes! {
     UndecodableLevel 1401 Error "a level cannot be decoded";
     NormalLength 1402 Error "normals are not of unit length";
     NotFinite 1403 Error "texels are NaN or infinite";
-    Variance 1404 Error "variance is not conserved from level to level";
+    PyramidLevel 1404 Error "the first level of a pyramid does not explain another level";
     // 15xx: provenance.
     NoProvenance 1501 Note "the texture has no provenance";
     BadProvenance 1502 Error "the provenance cannot be read";

@@ -40,7 +40,10 @@ pub fn check_materials(root: &Root, value: &Value, textures: &Textures, findings
         if let Some(found) = extension(EXTENSION) {
             let pointer = format!("/materials/{index}/extensions/{EXTENSION}");
             match RoughnessPyramid::read(found) {
-                Ok(pyramid) => uses.pyramids.push((pointer, pyramid)),
+                Ok(pyramid) => {
+                    uses.normals.insert(pyramid.offset_texture.index);
+                    uses.pyramids.push((pointer, pyramid));
+                }
                 Err(reason) => {
                     let message = format!(
                         "expected what schemas/material.{EXTENSION}.schema.json describes, found: {reason}; bake again"

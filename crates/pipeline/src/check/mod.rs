@@ -17,13 +17,13 @@ mod formats;
 mod materials;
 mod partial_file;
 mod provenance;
+mod pyramid_levels;
 mod scope;
 mod settings;
 mod source_digests;
 mod storage;
 mod texture;
 mod texture_references;
-mod variance;
 
 pub use checked_files::{SourceAsset, Sources};
 pub use checker::{Checked, Checker};

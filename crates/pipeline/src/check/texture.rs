@@ -37,7 +37,7 @@ pub fn check_texture(bytes: &[u8], usage: Usage, scope: &Scope<'_>, findings: &m
     check_basisu(&file, usage.by_basisu, findings);
     let content = check_provenance(&file, scope, findings).map(|provenance| provenance.content);
     if scope.is_deep {
-        check_decoded_levels(&file, usage.normals || content.as_deref() == Some("normal"), findings);
+        check_decoded_levels(&file, usage.normals || matches!(content.as_deref(), Some("normal" | "offset")), findings);
     }
     content
 }

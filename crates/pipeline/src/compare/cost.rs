@@ -134,8 +134,7 @@ impl Cost {
 
 fn textures(material: &Material) -> Vec<&Texture> {
     let normals = match &material.bumps {
-        Bumps::Normals { texture, .. } => Some(texture),
-        Bumps::Offsets(ranged) => Some(&ranged.texture),
+        Bumps::Normals { texture, .. } | Bumps::Offsets { texture, .. } => Some(texture),
         Bumps::Flat => None,
     };
     let anisotropy = material.anisotropy.as_ref().and_then(|a| a.texture.as_ref());

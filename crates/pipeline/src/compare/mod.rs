@@ -92,7 +92,7 @@ pub fn compare(
 fn normals(material: &Material) -> Option<&Texture> {
     match &material.bumps {
         Bumps::Normals { texture, .. } => Some(texture),
-        Bumps::Flat | Bumps::Offsets(_) => None,
+        Bumps::Flat | Bumps::Offsets { .. } => None,
     }
 }
 

@@ -4,27 +4,28 @@ use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 
 use crate::codec::Target;
-use crate::settings::{Form, Model, Profile};
+use crate::note::{self, Note};
+use crate::settings::{Form, MaxModel, Model, Profile};
 
 /// An engine.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum Engine {
     /// three.js: its anisotropic lobes reflect the surroundings wrongly.
     Three,
-    /// Babylon.js.
+    /// Babylon.js: its anisotropic lobes reflect the surroundings wrongly; turn its specular antialiasing off.
     Babylon,
-    /// PlayCanvas.
+    /// PlayCanvas: its anisotropic lobes are too narrow.
     Playcanvas,
     /// Filament: its glTF loader has no anisotropy.
     Filament,
     /// Bevy: refuses files that need KHR_texture_basisu, and its anisotropic lobes are too narrow.
     Bevy,
-    /// Godot: its glTF import has no anisotropy.
+    /// Godot: its glTF import has no anisotropy; turn its roughness limiter off.
     Godot,
 }
 
-/// What an engine's own loader and shader need. docs/engines.md has the measurements.
+/// What an engine's own loader and shader need. docs/engines.md has the measurements and the sources.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Preset {
     /// The name in `roughcast.toml` and on the command line.
@@ -33,14 +34,41 @@ pub struct Preset {
     pub target: Target,
     /// The references to textures that its loader reads.
     pub form: Form,
-    /// The only model that its shader shows right; `None` if the shader shows all models right.
-    model: Option<Model>,
+    /// Whether it multiplies slopes by `normalTexture.scale`, as glTF says.
+    pub reads_normal_scale: bool,
+    /// Its support of `KHR_materials_anisotropy`.
+    anisotropy: Anisotropy,
+    /// How its user turns off what widens baked lobes a second time; `None` if nothing does so by default.
+    limiter: Option<Limiter>,
 }
 
-/// Returns a row of [`Engine::preset`].
-const fn row(name: &'static str, target: Target, form: Form, model: Option<Model>) -> Preset {
-    Preset { name, target, form, model }
+/// An engine's own support of `KHR_materials_anisotropy`. No engine of the table shades such lobes correctly.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Anisotropy {
+    /// Its loader does not read the extension.
+    Unread,
+    /// Its shader is wrong. A plugin or another shader can show the lobes.
+    Wrong,
 }
+
+/// What an engine does by default to roughness wherever the normals of pixels differ.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Limiter {
+    /// The name of the engine for a person.
+    engine: &'static str,
+    /// How its user turns that off.
+    switch: &'static str,
+}
+
+const BABYLON_LIMITER: Limiter = Limiter {
+    engine: "Babylon.js",
+    switch: "set enableSpecularAntiAliasing of each loaded material to false, in onMaterialLoaded of the glTF loader",
+};
+
+const GODOT_LIMITER: Limiter = Limiter {
+    engine: "Godot",
+    switch: "turn the project setting rendering/anti_aliasing/screen_space_roughness_limiter/enabled off",
+};
 
 impl Engine {
     /// Returns the names of all engines.
@@ -49,20 +77,34 @@ impl Engine {
     }
 
     /// Returns the preset of the engine.
-    pub fn preset(self) -> &'static Preset {
+    pub fn preset(self) -> Preset {
+        let (target, form, anisotropy, limiter) = (Target::Basis, Form::Fallback, Anisotropy::Wrong, None);
+        let defaults = |name| Preset { name, target, form, reads_normal_scale: true, anisotropy, limiter };
         match self {
-            // Its shader reflects the surroundings wrongly where lobes are anisotropic.
-            Self::Three => const { &row("three", Target::Basis, Form::Fallback, Some(Model::Isotropic)) },
-            Self::Babylon => const { &row("babylon", Target::Basis, Form::Fallback, None) },
-            Self::Playcanvas => const { &row("playcanvas", Target::Basis, Form::Fallback, None) },
-            // Its glTF loader has no anisotropy.
-            Self::Filament => const { &row("filament", Target::Basis, Form::Fallback, Some(Model::Isotropic)) },
-            // Its loader refuses files that need KHR_texture_basisu, and its shader squares the alphas of anisotropic
-            // lobes once more.
-            Self::Bevy => const { &row("bevy", Target::Basis, Form::Dual, Some(Model::Isotropic)) },
-            // Its glTF import has no anisotropy.
-            Self::Godot => const { &row("godot", Target::Basis, Form::Fallback, Some(Model::Isotropic)) },
+            // Its shader looks the environment up once, with the shorter axis of the lobe and a bent normal.
+            Self::Three => defaults("three"),
+            // Its shader has the formulas of three.js.
+            Self::Babylon => Preset { limiter: Some(BABYLON_LIMITER), ..defaults("babylon") },
+            // Its shader squares the alphas of anisotropic lobes once more.
+            // For normalTexture.scale it mixes the normal with that of the surface.
+            Self::Playcanvas => Preset { reads_normal_scale: false, ..defaults("playcanvas") },
+            Self::Filament => Preset { anisotropy: Anisotropy::Unread, ..defaults("filament") },
+            // Its loader refuses files that need KHR_texture_basisu and ignores normalTexture.scale, and its shader
+            // squares the alphas of anisotropic lobes once more.
+            Self::Bevy => Preset { form: Form::Dual, reads_normal_scale: false, ..defaults("bevy") },
+            // For normalTexture.scale it mixes the normal with that of the surface.
+            Self::Godot => Preset {
+                reads_normal_scale: false,
+                anisotropy: Anisotropy::Unread,
+                limiter: Some(GODOT_LIMITER),
+                ..defaults("godot")
+            },
         }
+    }
+
+    /// Returns the note on the engine's own limiter; `None` if the engine has none that is on by default.
+    pub fn limiter_note(self) -> Option<Note> {
+        self.preset().limiter.map(|Limiter { engine, switch }| note::engine_limiter(engine, switch))
     }
 }
 
@@ -70,7 +112,15 @@ impl Preset {
     /// Returns the model that a bake of `profile` needs. The engine's own shader decides on the model if the core
     /// material is baked; offsets and D alone are for a plugin, which shows every model.
     pub fn model(&self, profile: Profile) -> Option<Model> {
-        self.model.filter(|_| profile.is_portable())
+        profile.is_portable().then_some(Model::Isotropic)
+    }
+
+    /// Returns the model with the most parameters that the engine can show in a bake of `profile`.
+    pub fn max_model(&self, profile: Profile) -> Option<MaxModel> {
+        profile.is_portable().then_some(match self.anisotropy {
+            Anisotropy::Unread => MaxModel::Isotropic,
+            Anisotropy::Wrong => MaxModel::Anisotropic,
+        })
     }
 }
 

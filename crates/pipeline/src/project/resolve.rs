@@ -3,6 +3,7 @@
 
 use std::fmt::{self, Display};
 
+use crate::project::engines::Engine;
 use crate::project::values::{Origins, Values};
 use crate::settings::{Settings, SettingsError};
 use crate::text::printable;
@@ -23,6 +24,8 @@ pub struct Resolved {
     pub values: Values,
     /// The settings.
     pub settings: Settings,
+    /// The engine whose preset holds.
+    pub engine: Option<Engine>,
     origins: Origins,
 }
 
@@ -40,6 +43,8 @@ pub fn resolve(sources: &[ConfigSource]) -> Result<Resolved, SettingsError> {
                 target: Some(preset.target),
                 gltf: Some(preset.form),
                 model: preset.model(profile),
+                max_model: preset.max_model(profile),
+                scale_normals: Some(preset.reads_normal_scale),
                 ..Values::default()
             };
             origins.record(&needs, &format!("{origin}, engine = {}", preset.name));
@@ -48,8 +53,8 @@ pub fn resolve(sources: &[ConfigSource]) -> Result<Resolved, SettingsError> {
         origins.record(explicit, origin);
         values = values.overridden_by(explicit);
     }
-    values.engine = None;
-    Ok(Resolved { settings: values.settings()?, values, origins })
+    let engine = values.engine.take();
+    Ok(Resolved { settings: values.settings()?, values, engine, origins })
 }
 
 /// Writes lines of TOML, each with the origin of its value, as a terminal may show them.

@@ -5,14 +5,17 @@ mod error;
 
 pub use error::SelectionError;
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use self::configs::{Configs, FoundConfig};
+use super::engines::Engine;
 use super::inputs::{self, Input, InputError};
 use super::record::is_baked;
 use super::resolve::{ConfigSource, Resolved, resolve};
 use super::trust::NamedServer;
 use super::values::Values;
+use crate::note::Note;
 use crate::settings::Settings;
 
 /// Which `roughcast.toml` holds for an asset.
@@ -60,6 +63,13 @@ impl Selected {
     /// Returns whether outputs may be written. Among sources no output is safe, not even the outputs of other inputs.
     pub fn is_safe(&self) -> bool {
         !self.errors.iter().any(|error| matches!(error, InputError::OutputIsInput { .. }))
+    }
+
+    /// Returns a note for each engine of a preset whose own limiter should be turned off.
+    pub fn notes_on_engines(&self) -> Vec<Note> {
+        let baked = self.assets.iter().filter(|(_, resolved)| resolved.settings.profile.is_portable());
+        let engines: BTreeSet<Engine> = baked.filter_map(|(_, resolved)| resolved.engine).collect();
+        engines.into_iter().filter_map(Engine::limiter_note).collect()
     }
 
     /// Returns a note on documents that were left out; `None` where there are none.

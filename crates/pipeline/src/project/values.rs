@@ -8,7 +8,7 @@ use crate::codec::Target;
 use crate::codec::uastc::Effort;
 use crate::lobe::{Distribution, Family};
 use crate::project::engines::Engine;
-use crate::settings::{Form, Model, Profile, Settings, SettingsError, View, limit};
+use crate::settings::{Form, MaxModel, Model, Profile, Settings, SettingsError, View, limit};
 
 /// Declares the settings, each once: the struct that holds them, and what is done with every one of them.
 macro_rules! values {
@@ -97,6 +97,7 @@ macro_rules! values {
 values! {
     profile: Profile,
     model: Model,
+    max_model: MaxModel,
     max_error: f64,
     quality: Effort,
     rdo: f64,
@@ -108,6 +109,7 @@ values! {
     engine: Engine,
     gltf: Form,
     glb: bool,
+    scale_normals: bool,
     frame: FrameKind,
     main_direction: [f64; 3],
     height_scale: f64,
@@ -135,6 +137,7 @@ impl Values {
         Self {
             profile: Some(defaults.profile),
             model: Some(defaults.model),
+            max_model: Some(defaults.max_model),
             // 0.1 in single precision is another number in double precision.
             max_error: Some(0.1),
             quality: Some(defaults.quality),
@@ -145,6 +148,7 @@ impl Values {
             provenance: Some(defaults.provenance),
             gltf: Some(defaults.gltf),
             glb: Some(defaults.glb),
+            scale_normals: Some(defaults.scale_normals),
             frame: Some(defaults.frame.kind()),
             main_direction: Some([0.0, 1.0, 0.0]),
             fov: Some(View::DEFAULT_FOV),
@@ -171,6 +175,7 @@ impl Values {
         let mut settings = defaults;
         settings.profile = self.profile.unwrap_or_default();
         settings.model = self.model.unwrap_or_default();
+        settings.max_model = self.max_model.unwrap_or_default();
         settings.max_error = max_error.map_or(settings.max_error, |e| e as f32);
         settings.distribution = self.distribution.unwrap_or_default();
         settings.lobe = self.lobe.unwrap_or_default();
@@ -179,6 +184,7 @@ impl Values {
         settings.rdo = rdo;
         settings.gltf = form;
         settings.glb = glb;
+        settings.scale_normals = self.scale_normals.unwrap_or(defaults.scale_normals);
         settings.frame = self.frame()?;
         settings.height_scale = height_scale.map(|s| s as f32);
         settings.view = self.view()?;

@@ -97,7 +97,11 @@ impl Reader<'_> {
             let at = |bounds: &[f64]| [0, 1, 2].map(|c| bounds.get(c).copied().unwrap_or(0.0));
             Ok(RangedTexture { texture: self.texture(index)?.texture, min: at(min), max: at(max) })
         };
-        let bumps = ranged(pyramid.offset_texture.index, &pyramid.offset_min, &pyramid.offset_max)?;
+        let bumps = Bumps::Offsets {
+            texture: self.texture(pyramid.offset_texture.index)?.texture,
+            scale: pyramid.offset_scale,
+            has_z: pyramid.has_z(),
+        };
         let lost = match (&pyramid.roughness_model, &pyramid.roughness_texture) {
             (Some(model), Some(texture)) => {
                 let bounds = |bounds: &Option<Vec<f64>>| bounds.clone().unwrap_or_default();
@@ -109,7 +113,7 @@ impl Reader<'_> {
             }
             _ => LostBumps::RoughenedTextures,
         };
-        Ok((Bumps::Offsets(bumps), lost))
+        Ok((bumps, lost))
     }
 
     fn texture(&self, index: usize) -> Result<Loaded, ReadBackError> {

@@ -4,6 +4,7 @@ use super::sampler::Texture;
 use crate::bump::{Offset, normal_from_offset};
 use crate::lobe::Factor;
 use crate::lobe::{Anisotropy, Roughness};
+use crate::material::slopes_of_texel;
 use crate::math::symmetric::Symmetric2;
 use crate::math::vector::{Vector, normalised};
 
@@ -38,8 +39,15 @@ pub enum Bumps {
         /// Whether z is stored. If not, z is rebuilt from x and y after filtering.
         has_z: bool,
     },
-    /// The pyramid profile's (f_u, f_v).
-    Offsets(RangedTexture),
+    /// The pyramid profile's offsets, as unit normals of scaled offsets.
+    Offsets {
+        /// The texels.
+        texture: Texture,
+        /// What multiplies the slopes of the stored normals.
+        scale: [f64; 2],
+        /// Whether z is stored. If not, z is rebuilt from x and y after filtering.
+        has_z: bool,
+    },
 }
 
 /// The roughness of the bumps that filtering removed.
@@ -94,12 +102,13 @@ impl Material {
         let normal = match &self.bumps {
             Bumps::Flat => [0.0, 0.0, 1.0],
             Bumps::Normals { texture, scale, has_z } => {
-                let [x, y, z] = decoded(read(texture));
-                let z = if *has_z { z } else { (1.0 - x * x - y * y).max(0.0).sqrt() };
+                let [x, y, z] = decoded(with_z(read(texture), *has_z));
                 normalised([x * scale, y * scale, z])
             }
-            Bumps::Offsets(ranged) => {
-                let [u, v, _] = ranged.value(read(&ranged.texture));
+            Bumps::Offsets { texture, scale, has_z } => {
+                let [x, y, z, _] = with_z(read(texture), *has_z);
+                let slopes = slopes_of_texel([x, y, z]);
+                let [u, v] = [0, 1].map(|c| slopes[c] * scale[c]);
                 normal_from_offset(Offset { u: u as f32, v: v as f32 }).map(f64::from)
             }
         };
@@ -136,6 +145,13 @@ impl Material {
         };
         Anisotropy { roughness, strength, direction }.squared_alpha().0
     }
+}
+
+/// Returns a texel of normals with the z that a reader rebuilds if there is none.
+fn with_z([r, g, b, a]: [f64; 4], has_z: bool) -> [f64; 4] {
+    let [x, y] = [r, g].map(|c| 2.0 * c - 1.0);
+    let z = if has_z { b } else { 0.5 + 0.5 * (1.0 - x * x - y * y).max(0.0).sqrt() };
+    [r, g, z, a]
 }
 
 fn decoded(texel: [f64; 4]) -> Vector {

@@ -119,7 +119,7 @@ impl RunError {
             Self::OutOfMemory(_)
             | Self::Bake(BakeError::Grid(GridError::OutOfMemory(_)))
             | Self::Bake(BakeError::Encode(EncodeError::OutOfMemory(_))) => true,
-            Self::Bake(BakeError::Image(ImageError::Decode { error, .. })) => error.is_out_of_memory(),
+            Self::Bake(BakeError::Image(error)) => error.is_out_of_memory(),
             other => other.io().is_some_and(|error| error.kind() == io::ErrorKind::OutOfMemory),
         }
     }

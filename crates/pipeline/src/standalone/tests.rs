@@ -14,7 +14,7 @@ fn recorded(texels: BumpTexels) -> Value {
     };
     let range = RecordedRange::new(&Range { min: vec![-0.1], max: vec![0.1] });
     let bake = RecordedSettings::new(&options.settings, Model::None);
-    json!(MapSettings { bake, range: Some(range), map: options.recorded() })
+    json!(MapSettings { bake, range: Some(range), scale: Some(0.5), map: options.recorded() })
 }
 
 #[test]
@@ -25,7 +25,7 @@ fn records_settings_range_and_texels_of_a_standalone_map() {
     assert_eq!(normals["map"].to_string(), map.to_string());
     assert_eq!(normals["range"].to_string(), json!({ "min": [-double], "max": [double] }).to_string());
     let names: Vec<_> = normals.as_object().expect("an object").keys().map(String::as_str).collect();
-    assert_eq!(names[names.len() - 4..], ["heightScale", "asked", "range", "map"]);
+    assert_eq!(names[names.len() - 5..], ["heightScale", "asked", "range", "scale", "map"]);
     let heights = recorded(BumpTexels::Heights { scale: 0.1, wrap: [Wrap::Repeat, Wrap::Clamp] });
     let map = json!({
         "height": true, "heightScale": double, "wrap": ["repeat", "clamp"], "layer": null, "roughnessFactor": double

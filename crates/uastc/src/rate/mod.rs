@@ -51,8 +51,9 @@ type Errors = [f64; 2];
 ///
 /// `blocks` must be the result of [`Encoder::encode`](crate::Encoder::encode) for `image` with `metric`. Two errors are
 /// summed over all texels of the image: the error by `metric` and the error by [`Metric::Rgb`]. Both grow by less than
-/// `max_loss` dB. Nothing is rewritten if `max_loss` is not above 0. Blocks of grey and alpha (modes 15 to 17) and
-/// blocks with alpha are never rewritten.
+/// `max_loss` dB. The lobes of an image do not count: each block is compared with 256 recent blocks, which only squared
+/// distances make cheap. Nothing is rewritten if `max_loss` is not above 0. Blocks of grey and alpha (modes 15 to 17)
+/// and blocks with alpha are never rewritten.
 ///
 /// The work runs in parallel on the current rayon pool. The bytes depend neither on the machine nor on the number of
 /// threads.

@@ -28,7 +28,7 @@ fn every_mode_with<S: Simd>(simd: S, texels: &Texels) -> Vec<Stored> {
     let all = moments(simd, &lanes, None);
     let axis = principal_axis(simd, &all.scatter);
     let splat = |number: usize| Wide::splat(simd, number as f32);
-    let ones = &[1.0; 3];
+    let ones = &[splat(1); 3];
     let mut blocks: Vec<Blocks<S>> = Vec::new();
     for rounds in [1, 3] {
         blocks.push(one_line(simd, &lanes, &all, &axis, ones, &MODE_0, rounds));

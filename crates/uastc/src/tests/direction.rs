@@ -3,7 +3,9 @@
 use super::decode::{every_mode, expected};
 use super::*;
 use crate::blocks::Blocks;
-use crate::direction::{LONG_PENALTY, REBUILT_Z_SHARE, SHORT_PENALTY, normals as unit_normals};
+use crate::direction::{
+    LONG_PENALTY, REBUILT_Z_SHARE, Refinement, SHORT_PENALTY, SquaredDistances, normals as unit_normals,
+};
 use crate::hints::Hints;
 use crate::lanes::channels;
 use crate::pack::Block;
@@ -62,7 +64,8 @@ fn least_error(block: &Block, source: &Texels) -> f64 {
 fn aim(block: &mut Block, source: &Texels, rounds: usize, passes: usize) {
     dispatch!(Level::new(), simd => {
         let mut blocks = Blocks::load(simd, [&*block; LANES]);
-        blocks.fit_directions(simd, &unit_normals(&channels(simd, [source; LANES])), rounds, passes);
+        let normals = unit_normals(&channels(simd, [source; LANES]));
+        blocks.fit_directions(simd, SquaredDistances(&normals), Refinement { rounds, hops: 0, passes });
         *block = blocks.store().block(0);
     });
 }

@@ -1,7 +1,7 @@
 //! Tests of whole images: padding, sizes, threads and instruction sets.
 
 use super::*;
-use crate::SizeError;
+use crate::{Lobe, SizeError};
 use texel_simd::instruction_sets;
 
 fn picture(width: usize, height: usize) -> Vec<u8> {
@@ -73,6 +73,61 @@ fn bytes_do_not_depend_on_threads() {
     }
 }
 
+/// Returns lobes of several widths and shapes, one for each texel.
+fn lobes(count: usize) -> Vec<Lobe> {
+    let mut random = Random(23);
+    (0..count)
+        .map(|_| {
+            let [uu, vv] = [(); 2].map(|()| (0.3 * random.unit()).powi(2) as f32);
+            Lobe { uu, uv: (random.unit() - 0.5) as f32 * uu.min(vv), vv }
+        })
+        .collect()
+}
+
+#[test]
+fn bytes_with_lobes_do_not_depend_on_threads() {
+    let (texels, lobes) = (picture(67, 45), lobes(67 * 45));
+    let image = image(&texels, (67, 45)).with_lobes(&lobes).unwrap();
+    for effort in EFFORTS {
+        let with = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| Encoder::new(Metric::Direction, effort).encode(&image))
+        };
+        assert_eq!(with(1), with(4));
+    }
+}
+
+#[test]
+fn bytes_with_lobes_do_not_depend_on_the_instruction_set() {
+    let (texels, width) = wide_row();
+    let lobes = lobes(4 * width);
+    let image = image(&texels, (width, 4)).with_lobes(&lobes).unwrap();
+    for effort in EFFORTS {
+        let encoder = Encoder::new(Metric::Direction, effort);
+        let expected = encoder.encode(&image);
+        for instructions in instruction_sets() {
+            let mut limited = encoder;
+            limited.instructions = instructions;
+            assert_eq!(limited.encode(&image), expected, "{effort:?}");
+        }
+    }
+}
+
+#[test]
+fn rows_and_the_whole_image_with_lobes_encode_to_the_same_blocks() {
+    let (texels, lobes) = (picture(13, 7), lobes(13 * 7));
+    let (lines, lobe_lines): (Vec<_>, Vec<_>) =
+        (texels.as_chunks::<4>().0.chunks(13).collect(), lobes.chunks(13).collect());
+    let encoder = Encoder::new(Metric::Direction, Effort::Fast);
+    let mut blocks = vec![[0; BLOCK_BYTES]; 8];
+    for (row, blocks) in blocks.chunks_mut(4).enumerate() {
+        let at = |y: usize| (4 * row + y).min(6);
+        let rows = std::array::from_fn(|y| lines[at(y)]);
+        encoder.encode_rows_with_lobes(rows, std::array::from_fn(|y| lobe_lines[at(y)]), blocks).unwrap();
+    }
+    assert_eq!(blocks, encoder.encode(&image(&texels, (13, 7)).with_lobes(&lobes).unwrap()));
+}
+
 /// Returns a row of blocks of all kinds, and its width in texels.
 fn wide_row() -> (Vec<u8>, usize) {
     let kinds = all_kinds();
@@ -121,14 +176,25 @@ fn bytes_are_pinned() {
             found.push(hash(&blocks));
         }
     }
+    let lobes = lobes(16);
+    for effort in EFFORTS {
+        let block = |texels: &Texels| {
+            let image = image(texels.as_flattened(), (4, 4)).with_lobes(&lobes).unwrap();
+            Encoder::new(Metric::Direction, effort).encode(&image)[0]
+        };
+        found.push(hash(&all_kinds().iter().flat_map(block).collect::<Vec<u8>>()));
+    }
     assert_eq!(found, PINNED, "{found:#x?}");
 }
 
-const PINNED: [u64; 6] = [
+/// The hashes of three metrics with each effort, then of lobes with each effort.
+const PINNED: [u64; 8] = [
     0x76bf_93c3_48e2_8199,
     0xb41c_734c_4384_323d,
     0x03e4_961d_f67b_f0e2,
     0x75ac_9061_2cf2_219c,
     0x4478_6bc1_7979_a054,
     0xe5fe_d923_d7e4_372d,
+    0x604f_0ac2_face_a00a,
+    0xb7f0_8d0c_3935_5e68,
 ];

@@ -5,6 +5,7 @@ mod decode;
 mod direction;
 mod hints;
 mod level;
+mod lobe;
 mod quality;
 mod rate;
 

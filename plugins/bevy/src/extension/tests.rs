@@ -3,10 +3,10 @@ use serde_json::json;
 
 fn definition() -> Value {
     json!({
-        "formatVersion": 1,
+        "formatVersion": 2,
         "offsetTexture": { "index": 1, "extensions": { "KHR_texture_transform": { "scale": [2, 3], "texCoord": 1 } } },
-        "offsetMin": [-1, -2],
-        "offsetMax": [1, 2],
+        "offsetChannels": 3,
+        "offsetScale": [1, -2],
         "roughnessModel": "covarianceFactor",
         "roughnessTexture": { "index": 2 },
         "roughnessMin": [0, -0.5, 0],
@@ -22,12 +22,14 @@ fn reads_what_the_schema_allows() {
     assert_eq!(extension.roughness_range(), [Vec3::new(0.0, -0.5, 0.0), Vec3::new(0.5, 0.5, 0.25)]);
     assert_eq!(extension.offset_texture.channel(), 1);
     assert_eq!(extension.offset_texture.uv_transform() * Vec3::ONE, Vec3::new(2.0, 3.0, 1.0));
+    assert!(extension.has_z());
     let smooth = json!({
-        "formatVersion": 1,
-        "offsetTexture": { "index": 0 }, "offsetMin": [0, 0], "offsetMax": [1, 1], "correctionFactor": 1,
+        "formatVersion": 2,
+        "offsetTexture": { "index": 0 }, "offsetChannels": 2, "offsetScale": [1, 1], "correctionFactor": 1,
         "frame": "mainDirection", "mainDirection": [0, 1, 0],
     });
-    assert_eq!(Extension::read(&smooth).unwrap().roughness_range(), [Vec3::ZERO; 2]);
+    let smooth = Extension::read(&smooth).unwrap();
+    assert_eq!((smooth.has_z(), smooth.roughness_range()), (false, [Vec3::ZERO; 2]));
 }
 
 #[test]
@@ -44,10 +46,11 @@ fn a_base_lobe_has_the_defaults_of_gltf() {
 #[test]
 fn names_what_the_schema_does_not_allow() {
     let cases = [
-        ("formatVersion", json!(null), "formatVersion: expected 1, found none"),
-        ("formatVersion", json!(2), "formatVersion: expected 1, found 2"),
+        ("formatVersion", json!(null), "formatVersion: expected 2, found none"),
+        ("formatVersion", json!(1), "formatVersion: expected 2, found 1"),
         ("offsetTexture", json!(null), "offsetTexture"),
-        ("offsetMin", json!([1]), "length 1"),
+        ("offsetScale", json!([1]), "length 1"),
+        ("offsetChannels", json!(4), "offsetChannels: expected 2 or 3, found 4"),
         ("roughnessModel", json!("variance"), "unknown variant `variance`"),
         ("roughnessTexture", json!(null), "roughnessTexture with roughnessModel"),
         ("roughnessMax", json!([1, 1]), "roughnessMax: expected 3 number(s), found 2"),

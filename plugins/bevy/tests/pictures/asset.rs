@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use bevy::math::Vec2;
+use bevy::math::{Vec2, Vec3};
 use serde_json::{Value, json};
 
 /// Texels along a side of the normal map.
@@ -57,19 +57,19 @@ impl Asset {
         Baked { path: format!("{name}/plane.gltf"), document: serde_json::from_slice(&document).unwrap() }
     }
 
-    /// Returns the roughness of the last level, as `roughcast inspect` decodes it.
-    pub fn last_roughness(&self, baked: &Baked) -> f32 {
-        let levels = self.folder.join("levels");
+    /// Returns the texel of the last level of the texture of `content`, as `roughcast inspect` decodes it.
+    pub fn last_texel(&self, baked: &Baked, content: &str) -> Vec3 {
+        let levels = self.folder.join(format!("levels of {content}"));
         let mut tool = Command::new(&self.tool);
         tool.arg("inspect").arg(self.folder.join(&baked.path)).arg("--extract").arg(&levels).stdout(Stdio::null());
         assert!(tool.status().unwrap().success());
         let last = format!(".level{}.png", SIZE.ilog2());
         let is_last = |path: &PathBuf| {
             let name = path.file_name().unwrap().to_string_lossy();
-            name.contains("roughness") && name.ends_with(&last)
+            name.contains(content) && name.ends_with(&last)
         };
         let path = fs::read_dir(levels).unwrap().map(|entry| entry.unwrap().path()).find(is_last).unwrap();
-        f32::from(image::open(path).unwrap().to_rgb8().get_pixel(0, 0).0[1]) / 255.0
+        Vec3::from(image::open(path).unwrap().to_rgb8().get_pixel(0, 0).0.map(|c| f32::from(c) / 255.0))
     }
 
     /// Writes a plane without bumps whose lobe is anisotropic along u, and returns its path.
@@ -96,6 +96,23 @@ impl Baked {
     /// Returns c of the pyramid.
     pub fn correction_factor(&self) -> f32 {
         self.extension()["correctionFactor"].as_f64().unwrap() as f32
+    }
+
+    /// Returns the slope of a texel of the offset texture.
+    pub fn slope(&self, texel: Vec3) -> Vec2 {
+        let scale = self.extension()["offsetScale"].as_array().unwrap();
+        let normal = 2.0 * texel - 1.0;
+        -normal.truncate() / normal.z * Vec2::from([0, 1].map(|c| scale[c].as_f64().unwrap() as f32))
+    }
+
+    /// Returns D or lambda_1 of a texel of the roughness texture.
+    pub fn roughness(&self, texel: Vec3) -> Vec3 {
+        let bounds = |member: &str| {
+            let values = self.extension()[member].as_array().unwrap();
+            Vec3::from([0, 1, 2].map(|c| values.get(c).map_or(0.0, |value| value.as_f64().unwrap() as f32)))
+        };
+        let min = bounds("roughnessMin");
+        min + texel * (bounds("roughnessMax") - min)
     }
 
     /// Returns the frame of the pyramid.

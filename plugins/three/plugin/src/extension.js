@@ -4,7 +4,7 @@
 export const EXTENSION = 'ROUGHCAST_materials_roughness_pyramid';
 
 /** The format version that the plugin reads. */
-const FORMAT_VERSION = 1;
+const FORMAT_VERSION = 2;
 
 /** Channels of the roughness texture, by model. */
 const CHANNELS = { covarianceFactor: 3, standardDeviation: 1 };
@@ -29,7 +29,7 @@ export function readExtension(definition) {
     throw wrong('correctionFactor', 'a number of at least 0', correctionFactor);
   }
   return {
-    offset: ranged(definition, 'offset', 2),
+    offset: readOffset(definition),
     roughness: readRoughness(definition),
     correctionFactor,
     frame,
@@ -60,23 +60,31 @@ function defined(members) {
   return Object.fromEntries(Object.entries(members).filter(([, value]) => value !== undefined));
 }
 
+function readOffset(definition) {
+  const channels = definition.offsetChannels;
+  if (channels !== 2 && channels !== 3) throw wrong('offsetChannels', '2 or 3', channels);
+  return {
+    texture: textureInfo(definition, 'offsetTexture'),
+    channels,
+    scale: numbers(definition, 'offsetScale', 2),
+  };
+}
+
 function readRoughness(definition) {
   if (definition.roughnessModel === undefined && definition.roughnessTexture === undefined) return null;
   const model = oneOf(definition, 'roughnessModel', Object.keys(CHANNELS));
-  return { model, ...ranged(definition, 'roughness', CHANNELS[model]) };
+  return {
+    model,
+    texture: textureInfo(definition, 'roughnessTexture'),
+    min: numbers(definition, 'roughnessMin', CHANNELS[model]),
+    max: numbers(definition, 'roughnessMax', CHANNELS[model]),
+  };
 }
 
-/** Returns a texture with the values that texels of 0 and 1 stand for. */
-function ranged(definition, name, channels) {
-  const texture = definition[`${name}Texture`];
-  if (!Number.isInteger(texture?.index) || texture.index < 0) {
-    throw wrong(`${name}Texture`, 'a textureInfo', texture);
-  }
-  return {
-    texture,
-    min: numbers(definition, `${name}Min`, channels),
-    max: numbers(definition, `${name}Max`, channels),
-  };
+function textureInfo(definition, name) {
+  const texture = definition[name];
+  if (!Number.isInteger(texture?.index) || texture.index < 0) throw wrong(name, 'a textureInfo', texture);
+  return texture;
 }
 
 function numbers(definition, name, count) {

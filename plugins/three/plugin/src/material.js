@@ -24,17 +24,16 @@ export function applyPyramid(material, pyramid) {
     );
   }
   const { offset, roughness } = pyramid;
-  const variant = { model: roughness?.model ?? 'none', frame: pyramid.frame };
+  const variant = { model: roughness?.model ?? 'none', frame: pyramid.frame, channels: offset.channels };
   const uniforms = {
-    roughcastOffsetMin: { value: new Vector2(...offset.min) },
-    roughcastOffsetMax: { value: new Vector2(...offset.max) },
+    roughcastOffsetScale: { value: new Vector2(...offset.scale) },
     roughcastRoughnessMin: { value: vector3(roughness?.min) },
     roughcastRoughnessMax: { value: vector3(roughness?.max) },
     roughcastCorrection: { value: pyramid.correctionFactor },
     roughcastMain: { value: vector3(pyramid.mainDirection) },
   };
   material.normalMap = offset.map;
-  // The ranges include the scale of the normal texture. three.js itself applies the sign of B.
+  // The scale of the offsets includes the scale of the normal texture. three.js itself applies the sign of B.
   material.normalScale.set(1, 1);
   material.bumpMap = roughness?.map ?? null;
 
@@ -47,7 +46,7 @@ export function applyPyramid(material, pyramid) {
     const roughened = after(replaced(tilted, ANCHORS.lights, lights), ANCHORS.lobe, shader.roughen);
     program.fragmentShader = shader.declarations(variant) + withReflections(roughened);
   };
-  return patch(material, `roughcast ${variant.model} ${variant.frame}`, edit, (copy) => {
+  return patch(material, `roughcast ${variant.model} ${variant.frame} ${variant.channels}`, edit, (copy) => {
     const scale = copy.normalScale.clone();
     applyPyramid(copy, pyramid).normalScale.copy(scale);
   });

@@ -3,16 +3,16 @@
 // transforms of both.
 
 /** Goes first in the fragment shader: definitions and uniforms. */
-export const declarations = ({ model, frame }) => /* glsl */ `
+export const declarations = ({ model, frame, channels }) => /* glsl */ `
 #define ROUGHCAST_FRAME_${frame === 'mainDirection' ? 'MAIN' : frame.toUpperCase()}
 ${model === 'covarianceFactor' ? '#define ROUGHCAST_FACTOR' : ''}
 ${model === 'standardDeviation' ? '#define ROUGHCAST_DEVIATION' : ''}
+${channels === 2 ? '#define ROUGHCAST_REBUILT_Z' : ''}
 #if defined( ROUGHCAST_FACTOR ) && ! defined( USE_ANISOTROPY )
   // D needs the anisotropic lobe. The base lobe of a material without anisotropy is isotropic.
   #define USE_ANISOTROPY
 #endif
-uniform vec2 roughcastOffsetMin;
-uniform vec2 roughcastOffsetMax;
+uniform vec2 roughcastOffsetScale;
 uniform vec3 roughcastRoughnessMin;
 uniform vec3 roughcastRoughnessMax;
 uniform float roughcastCorrection;
@@ -77,7 +77,12 @@ export const normal = /* glsl */ `
       vec2 stretch = vec2( length( px * ty.y - py * tx.y ), length( py * tx.x - px * ty.x ) );
       roughcastScale *= abs( det ) / max( stretch, vec2( 1e-20 ) );
     #endif
-    vec2 f = roughcastScale * mix( roughcastOffsetMin, roughcastOffsetMax, texture2D( normalMap, vNormalMapUv ).rg );
+    // Unit normals of offsets that are divided by their scale.
+    vec3 stored = 2.0 * texture2D( normalMap, vNormalMapUv ).xyz - 1.0;
+    #ifdef ROUGHCAST_REBUILT_Z
+      stored.z = sqrt( max( 1.0 - dot( stored.xy, stored.xy ), 0.0 ) );
+    #endif
+    vec2 f = - roughcastScale * roughcastOffsetScale * stored.xy / max( stored.z, 1.0 / 32.0 );
     normal = normalize( normal - f.x * roughcastE1 - f.y * roughcastE2 );
   }
 `;

@@ -4,10 +4,10 @@ import { EXTENSION, readExtension } from '../src/index.js';
 import { withBaseLobe } from '../src/extension.js';
 
 const definition = () => ({
-  formatVersion: 1,
+  formatVersion: 2,
   offsetTexture: { index: 3, texCoord: 1 },
-  offsetMin: [-1, -0.5],
-  offsetMax: [1, 0.5],
+  offsetChannels: 3,
+  offsetScale: [0.5, -0.25],
   roughnessModel: 'covarianceFactor',
   roughnessTexture: { index: 4 },
   roughnessMin: [0, -0.1, 0],
@@ -18,7 +18,7 @@ const definition = () => ({
 
 test('reads what the tool writes', () => {
   const { offset, roughness, ...rest } = readExtension(definition());
-  assert.deepEqual(offset, { texture: { index: 3, texCoord: 1 }, min: [-1, -0.5], max: [1, 0.5] });
+  assert.deepEqual(offset, { texture: { index: 3, texCoord: 1 }, channels: 3, scale: [0.5, -0.25] });
   assert.deepEqual(roughness, {
     model: 'covarianceFactor',
     texture: { index: 4 },
@@ -43,10 +43,10 @@ test('reads the main direction with its frame only', () => {
 
 test('names each wrong property', () => {
   const wrong = {
-    formatVersion: [undefined, 0, 2, '1'],
+    formatVersion: [undefined, 0, 1, 3, '2'],
     offsetTexture: [undefined, null, 3, {}, { index: -1 }, { index: 0.5 }],
-    offsetMin: [undefined, [0], [0, 0, 0], [0, NaN], ['0', 0], { length: 2 }],
-    offsetMax: [[1, Infinity]],
+    offsetChannels: [undefined, 1, 4, '3'],
+    offsetScale: [undefined, [0], [0, 0, 0], [0, NaN], ['0', 0], [1, Infinity], { length: 2 }],
     roughnessModel: [undefined, 'beckmann', 'toString', 1],
     roughnessTexture: [undefined, { index: '4' }],
     roughnessMin: [undefined, [0]],

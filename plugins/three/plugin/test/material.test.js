@@ -4,7 +4,7 @@ import { MeshBasicMaterial, MeshPhysicalMaterial, MeshStandardMaterial, ShaderLi
 import { applyPyramid, applyReflections } from '../src/index.js';
 
 const pyramid = (changes = {}) => ({
-  offset: { map: new Texture(), min: [-1, -1], max: [1, 1] },
+  offset: { map: new Texture(), channels: 3, scale: [0.5, -0.25] },
   roughness: { model: 'covarianceFactor', map: new Texture(), min: [0, 0, 0], max: [1, 1, 1] },
   correctionFactor: 0.7,
   frame: 'unit',
@@ -31,8 +31,9 @@ test('puts the maps into their slots and the ranges into uniforms', () => {
   assert.equal(material.bumpMap, data.roughness.map);
   const { uniforms, fragmentShader } = compiled(material);
   assert.equal(uniforms.roughcastCorrection.value, 0.7);
-  assert.deepEqual(uniforms.roughcastOffsetMin.value.toArray(), [-1, -1]);
+  assert.deepEqual(uniforms.roughcastOffsetScale.value.toArray(), [0.5, -0.25]);
   assert.match(fragmentShader, /define ROUGHCAST_FACTOR/);
+  assert.doesNotMatch(fragmentShader, /define ROUGHCAST_REBUILT_Z/);
   assert.doesNotMatch(fragmentShader, /#include <normal_fragment_maps>/);
 });
 
@@ -55,9 +56,15 @@ test('compiles a program for each variant', () => {
     pyramid({ roughness: lambda1 }),
     pyramid({ roughness: null }),
     pyramid({ frame: 'natural' }),
+    pyramid({ offset: { ...pyramid().offset, channels: 2 } }),
   ];
   const keys = variants.map((variant) => applyPyramid(new MeshStandardMaterial(), variant).customProgramCacheKey());
-  assert.equal(new Set([...keys, new MeshStandardMaterial().customProgramCacheKey()]).size, 5);
+  assert.equal(new Set([...keys, new MeshStandardMaterial().customProgramCacheKey()]).size, 6);
+});
+
+test('rebuilds z where it is not stored', () => {
+  const material = applyPyramid(new MeshStandardMaterial(), pyramid({ offset: { ...pyramid().offset, channels: 2 } }));
+  assert.match(compiled(material).fragmentShader, /define ROUGHCAST_REBUILT_Z/);
 });
 
 test('keeps patches of others', () => {

@@ -4,10 +4,10 @@ import { MeshBasicMaterial, MeshStandardMaterial, Texture } from 'three';
 import { EXTENSION, RoughcastPlugin } from '../src/index.js';
 
 const definition = {
-  formatVersion: 1,
+  formatVersion: 2,
   offsetTexture: { index: 0 },
-  offsetMin: [-1, -1],
-  offsetMax: [1, 1],
+  offsetChannels: 3,
+  offsetScale: [1, 1],
   correctionFactor: 1,
   frame: 'unit',
 };
@@ -61,6 +61,9 @@ test('warns of an extension that cannot be used and shows the material without i
   const broken = await load(t, { [EXTENSION]: { ...definition, frame: 'world' } });
   assert.equal(broken.material.normalMap, null);
   assert.match(broken.warnings[0], /materials\[0\].*frame/);
+  const old = await load(t, { [EXTENSION]: { ...definition, formatVersion: 1 } });
+  assert.equal(old.material.normalMap, null);
+  assert.match(old.warnings[0], /formatVersion: expected 2 .*, found 1/);
   const untextured = await load(t, { [EXTENSION]: definition }, { texture: null });
   assert.equal(untextured.material.normalMap, null);
   assert.match(untextured.warnings[0], /cannot be loaded/);

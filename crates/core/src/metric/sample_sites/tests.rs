@@ -11,9 +11,9 @@ fn slope(x: u32, y: u32) -> [f32; 2] {
 
 const SIDE: u32 = 96;
 
-fn level0(y: u32, out: &mut [OrientedLobe]) {
-    for (x, lobe) in (0..).zip(out) {
-        let [u, v] = slope(x, y);
+fn level0(first: u32, out: &mut [OrientedLobe]) {
+    for (i, lobe) in (0..).zip(out) {
+        let [u, v] = slope(i % SIDE, first + i / SIDE);
         *lobe = OrientedLobe::new(Offset { u, v }, SquaredAlpha::isotropic(Alpha(0.15)));
     }
 }
@@ -25,57 +25,6 @@ fn surface() -> Surface {
     };
     let normals: Vec<_> = (0..SIDE * SIDE).map(normal).collect();
     Surface::new(SIDE, SIDE, &normals, &vec![SquaredAlpha::isotropic(Alpha(0.15)); normals.len()]).unwrap()
-}
-
-/// Clustering keeps the total weight, the mean slope, and the covariance including the base lobes.
-#[test]
-fn clusters_keep_moments() {
-    let whole = surface().footprint((1, 1), (0, 0));
-    for limit in [1, 7, 64, 256] {
-        let few = clustered(whole.parts().to_vec(), limit).unwrap();
-        assert!(few.parts().len() <= limit && few.parts().len() * 2 > limit, "{limit}: {}", few.parts().len());
-        let (a, b) = (whole.moments(), few.moments());
-        for i in 0..2 {
-            assert!((a.mean[i] - b.mean[i]).abs() < 1e-9);
-        }
-        for i in 0..3 {
-            let total = |m: &FootprintMoments| m.base[i] + 2.0 * m.covariance[i];
-            assert!((total(&a) - total(&b)).abs() < 1e-9, "{limit}: {} {}", total(&a), total(&b));
-        }
-    }
-}
-
-#[test]
-fn few_parts_are_not_merged_and_equal_parts_become_one() {
-    let parts = surface().footprint((24, 24), (3, 5)).parts().to_vec();
-    assert_eq!(clustered(parts.clone(), 16), Footprint::new(parts));
-    let same = vec![Part { weight: 0.1, normal: [0.1, 0.2, 0.9], base: [0.04, 0.0, 0.04] }; 10];
-    let one = clustered(same, 4).unwrap();
-    assert_eq!(one.parts().len(), 1);
-    assert!((one.parts()[0].base[0] - 0.04).abs() < 1e-9 && one.parts()[0].weight == 1.0);
-    assert_eq!(clustered(Vec::new(), 4), None);
-}
-
-/// Anisotropic lobes of equal width in all directions must not merge into isotropic ones.
-#[test]
-fn clusters_keep_directions_apart() {
-    let rotated = |i: u32| {
-        let (sin, cos) = (f64::from(i) * 0.618).sin_cos();
-        let [major, minor] = [0.09, 0.0009];
-        let base =
-            [major * cos * cos + minor * sin * sin, (major - minor) * sin * cos, major * sin * sin + minor * cos * cos];
-        Part { weight: 1.0, normal: [0.0, 0.0, 1.0], base }
-    };
-    let parts: Vec<Part> = (0..4096).map(rotated).collect();
-    let whole = Reference::new(Family::Ggx, &Footprint::new(parts.clone()).unwrap(), 4096);
-    let few = Reference::new(Family::Ggx, &clustered(parts, 256).unwrap(), 4096);
-    for lobe in [
-        Lobe::new(Family::Ggx, [0.0, 0.0, 1.0], [0.09, 0.0, 0.0009]),
-        Lobe::isotropic(Family::Ggx, [0.0, 0.0, 1.0], 0.2),
-    ] {
-        let (full, quick) = (whole.error(&lobe), few.error(&lobe));
-        assert!((full - quick).abs() < 0.01, "{full} {quick}");
-    }
 }
 
 /// Compares estimates from sample sites with the errors of all samples.

@@ -6,8 +6,8 @@ use crate::ktx2::Ktx2;
 use crate::lobe::{Alpha, Family, Roughness, SquaredAlpha};
 use crate::material::{Base, BaseRows, BumpMap, Bumps, Normals, Roughening};
 use crate::metric::{Decoded, Surface, mean_errors, sample_texels};
-use crate::mip::Wrap;
-use crate::report::{Content, Reason};
+use crate::mip::{Sampler, Wrap};
+use crate::report::{Content, Miss, Reason};
 use crate::select::evaluate::*;
 use crate::settings::{Profile, Settings};
 
@@ -76,11 +76,13 @@ fn flat_maps_and_matt_materials_need_no_model() {
 
 #[test]
 fn brushed_metal_needs_the_anisotropic_model_and_noise_the_isotropic_model() {
-    let metal = choice_of(&normals(64, brushed), 0.4, &settings(0.12));
+    let metal = choice_of(&normals(64, brushed), 0.4, &settings(0.09));
     assert_eq!(taken(&metal).0, Model::Anisotropic, "{metal:#?}");
-    let noise = choice_of(&normals(64, rough_noise), 0.4, &settings(0.2));
+    let noise = choice_of(&normals(64, rough_noise), 0.4, &settings(0.12));
     assert_eq!(taken(&noise).0, Model::Isotropic, "{noise:#?}");
-    assert!(noise.misses.is_empty());
+    // The blocks of normals of level 0 cannot hold noise.
+    let is_limit = |miss: &Miss| (miss.level, &miss.reason) == (0, &Reason::Encoding);
+    assert!(noise.misses.iter().all(is_limit), "{noise:#?}");
 }
 
 /// Cost is shader work, then bytes: none, then isotropic from small to large, then anisotropic.
@@ -120,14 +122,14 @@ fn smaller_textures_have_the_blocks_of_the_full_size() {
 fn bakes_the_chosen_size() {
     // Noise of the finest grain: roughness is the same everywhere from level 1 on, and a little at level 0 is allowed.
     let image = normals(64, |x, y| [0.3 * noise(x, y, 1), 0.3 * noise(x, y, 2)]);
-    let baked = bake(&image, 0.4, &settings(0.13));
+    let baked = bake(&image, 0.4, &settings(0.06));
     let choice = baked.choice.as_ref().unwrap();
     let (model, first) = taken(choice);
     assert!(model == Model::Isotropic && first > 0, "{choice:#?}");
     let roughness = baked.textures.iter().find(|t| t.content == Content::Roughness).unwrap();
     assert_eq!((roughness.mip_chain.width, roughness.mip_chain.trimmed), (64 >> first, first));
     // With a fixed model nothing is saved.
-    let fixed = bake(&image, 0.4, &Settings { model: Model::Isotropic, ..settings(0.13) });
+    let fixed = bake(&image, 0.4, &Settings { model: Model::Isotropic, ..settings(0.06) });
     assert_eq!(fixed.textures[1].mip_chain.width, 64);
 }
 
@@ -162,7 +164,8 @@ fn errors_are_those_of_the_baked_files() {
         let baked = bake(&image, 0.4, &settings);
         let choice = baked.choice.as_ref().unwrap();
         let map = NormalMap::new(image, NormalLayout::Xyz, false).unwrap();
-        let surface = Surface::of_map(&map, SquaredAlpha::isotropic(Alpha::from(Roughness(0.4))));
+        let texels = Surface::of_map(&map, SquaredAlpha::isotropic(Alpha::from(Roughness(0.4))));
+        let magnified = texels.magnified();
         for (level, found) in choice.taken().unwrap().errors.iter().enumerate() {
             let size = (64 >> level, 64 >> level);
             let of = |content| {
@@ -175,8 +178,8 @@ fn errors_are_those_of_the_baked_files() {
                 roughness_factor: 1.0,
                 anisotropy: Some(of(Content::Anisotropy)),
             };
-            let texels = sample_texels(size, 128);
-            let [full] = mean_errors(&surface, family, size, &texels, |(x, y), _, reference| {
+            let surface = if level == 0 { &texels } else { &magnified };
+            let [full] = mean_errors(surface, family, size, &sample_texels(size, 128), |(x, y), _, reference| {
                 [reference.error(&decoded.lobe(family, x, y).unwrap())]
             });
             assert!((f64::from(*found) - full).abs() < 0.015, "{target:?}, level {level}: {found} {full}");
@@ -215,7 +218,7 @@ fn distinguishes_two_peaks_from_too_simple_a_model() {
         "{note}"
     );
     // The model none was requested, and a single lobe would meet the bound.
-    let none = choice_of(&normals(64, rough_noise), 0.4, &Settings { model: Model::None, ..settings(0.14) });
+    let none = choice_of(&normals(64, rough_noise), 0.4, &Settings { model: Model::None, ..settings(0.1) });
     assert!(!none.misses.is_empty());
     assert!(none.misses.iter().all(|m| m.level == 0 || m.reason == Reason::Fit), "{:#?}", none.misses);
     assert_eq!((none.misses[0].level, none.misses[0].reason), (0, Reason::Encoding));
@@ -229,7 +232,7 @@ fn levels_that_cannot_be_sampled_do_not_count() {
     let bumps = Bumps::new(&bump_map, (64, 64));
     let base = Base::new(BaseRows::new(64, 64, None, 0.4, None, [Wrap::Repeat; 2]));
     let settings = settings(0.1);
-    let roughening = Roughening::new(base, &bumps, 1.0, &settings);
+    let roughening = Roughening::new(base, &bumps, 1.0, Sampler::default(), &settings);
     let normals = Normals::of_lobes(&bumps, roughening.lobes());
     let candidates = |finest| CandidateSet {
         roughening: &roughening,

@@ -1,6 +1,6 @@
 use crate::codec::Target;
 use crate::ktx2::Ktx2;
-use crate::material::encode_mip_chain;
+use crate::material::{LevelRows, encode_mip_chain};
 use crate::mip::level_sizes;
 use crate::select::texture_samples::*;
 use crate::settings::Settings;
@@ -10,6 +10,15 @@ fn values(level: usize, y: u32, out: &mut [[f32; 4]]) {
     for (x, texel) in out.iter_mut().enumerate() {
         let wave = |scale: f32| 0.5 + 0.4 * (scale * (x as f32 + 3.0 * y as f32) + level as f32).sin();
         *texel = [wave(0.7), wave(1.1), wave(0.3), 1.0];
+    }
+}
+
+/// Writes lobes of several widths and shapes.
+fn lobes(level: usize, y: u32, out: &mut [Lobe]) {
+    for (x, lobe) in out.iter_mut().enumerate() {
+        let alpha = |scale: f32| 0.1 + 0.08 * (scale * (x as f32 + 2.0 * y as f32) + level as f32).sin();
+        let (a, b) = (alpha(0.4), alpha(0.9));
+        *lobe = Lobe { uu: a * a, uv: 0.3 * a * b, vv: b * b };
     }
 }
 
@@ -27,16 +36,14 @@ fn texels_are_those_of_the_encoded_texture() {
                 continue;
             }
             let sizes = level_sizes(width, height);
-            for channels in 1..=3 {
-                let encoding = Encoding::of(&Settings { target, ..Settings::default() }, channels);
-                let mip_chain = encode_mip_chain(&sizes, encoding, &values).unwrap();
-                let texture = TextureSampler {
-                    sizes: &sizes,
-                    first: 0,
-                    encoding: Some(encoding),
-                    row: &values,
-                    wrap: [Wrap::Repeat; 2],
-                };
+            let settings = Settings { target, ..Settings::default() };
+            let rows = LevelRows { values: &values, lobes: None };
+            let normals = LevelRows { lobes: Some(&lobes), ..rows };
+            let channels = (1..=3).map(|channels| (Encoding::of(&settings, channels), rows, channels));
+            for (encoding, rows, channels) in channels.chain([(Encoding::of_normals(&settings), normals, 2)]) {
+                let mip_chain = encode_mip_chain(&sizes, encoding, rows).unwrap();
+                let texture =
+                    TextureSampler { sizes: &sizes, first: 0, encoding: Some(encoding), rows, wrap: [Wrap::Repeat; 2] };
                 let file = mip_chain.to_ktx2(&[]).unwrap();
                 let file = Ktx2::parse(&file).unwrap();
                 for (level, &size) in sizes.iter().enumerate() {
@@ -63,9 +70,10 @@ fn missing_levels_are_magnified_as_a_sampler_does() {
             *texel = [level as f32, x as f32, y as f32, 1.0];
         }
     };
+    let rows = LevelRows { values: &row, lobes: None };
     let point = |(level, x, y)| LevelTexel { level, x, y };
     let at = |first, wrap, texel| {
-        let texture = TextureSampler { sizes: &sizes, first, encoding: None, row: &row, wrap: [wrap; 2] };
+        let texture = TextureSampler { sizes: &sizes, first, encoding: None, rows, wrap: [wrap; 2] };
         texture.at(&sizes, &[point(texel)]).unwrap()[0]
     };
     assert_eq!(at(0, Wrap::Repeat, (0, 5, 3)), [0.0, 5.0, 3.0, 1.0]);
@@ -76,7 +84,7 @@ fn missing_levels_are_magnified_as_a_sampler_does() {
     assert_eq!(at(1, Wrap::Repeat, (0, 0, 3)), [1.0, 0.75, 1.25, 1.0]);
     assert_eq!(at(1, Wrap::Clamp, (0, 0, 3)), [1.0, 0.0, 1.25, 1.0]);
     // A texture of half the size holds its level 0 where the grid has level 1.
-    let small = TextureSampler { sizes: &sizes[1..], first: 0, encoding: None, row: &row, wrap: [Wrap::Repeat; 2] };
+    let small = TextureSampler { sizes: &sizes[1..], first: 0, encoding: None, rows, wrap: [Wrap::Repeat; 2] };
     assert_eq!(
         small.at(&sizes, &[point((1, 2, 3)), point((3, 0, 0))]).unwrap(),
         [[0.0, 2.0, 3.0, 1.0], [2.0, 0.0, 0.0, 1.0]]

@@ -18,6 +18,7 @@ fn appends_settings_that_have_no_default() {
     let settings = Settings {
         frame: Frame::MainDirection([0.6, 0.8, 0.0]),
         height_scale: Some(0.2),
+        max_model: MaxModel::Isotropic,
         rdo: Some(0.5),
         view: Some(View::new(2.0, 1080)),
         quality: Effort::Best,
@@ -27,7 +28,7 @@ fn appends_settings_that_have_no_default() {
         r#"{"profile":"portable","model":"none","maxError":0.10000000149011612,"distribution":"auto","lobe":"ggx","#,
         r#""target":"basis","quality":"best","gltf":"fallback","#,
         r#""frame":{"mainDirection":[0.6000000238418579,0.800000011920929,0.0]},"heightScale":0.20000000298023224,"#,
-        r#""asked":"auto","rdo":0.5,"#,
+        r#""asked":"auto","maxModel":"isotropic","rdo":0.5,"#,
         r#""view":{"nearest":2.0,"screenHeight":1080,"fov":45.0,"aspect":1.778,"trim":false}}"#
     );
     assert_eq!(text(&settings, Model::None), expected);

@@ -80,7 +80,7 @@ fn an_engine_sets_its_preset_beneath_other_values_of_its_source() {
     assert_eq!(needs("a.gltf"), ["basis", "dual", "isotropic"]);
     assert_eq!(needs("b.gltf"), ["basis", "fallback", "anisotropic"]);
     assert_eq!(needs("c.gltf"), ["float", "fallback", "none"]);
-    assert_eq!(needs("d.gltf"), ["basis", "fallback", "none"]);
+    assert_eq!(needs("d.gltf"), ["basis", "fallback", "isotropic"]);
     assert_eq!(needs("e.gltf"), ["basis", "fallback", "isotropic"]);
     // A plugin shades this asset, not the shader of the engine.
     assert_eq!(needs("e_far.gltf"), ["basis", "fallback", "none"]);

@@ -17,7 +17,8 @@ fn read(texture: &Texture) -> [f64; 4] {
 #[test]
 fn pyramid_profile_applies_range_and_correction_factor() {
     let material = Material {
-        bumps: Bumps::Offsets(ranged([0.75, 0.5, 0.0, 0.0], [-1.0, -1.0, 0.0], [1.0, 1.0, 1.0])),
+        // The unit normal (-0.6, 0, 0.8) of a slope of 0.75, of which two thirds are shown.
+        bumps: Bumps::Offsets { texture: constant([0.2, 0.5, 0.9, 0.0]), scale: [2.0 / 3.0, 5.0], has_z: true },
         roughness: Some(constant([0.0, 0.5, 0.0, 0.0])),
         roughness_factor: 1.0,
         anisotropy: None,
@@ -30,6 +31,9 @@ fn pyramid_profile_applies_range_and_correction_factor() {
         assert!((point.normal[i] - expected[i]).abs() < 1e-6, "{point:?}");
         assert!((point.squared_alpha[i] - a[i]).abs() < 1e-6, "{point:?}");
     }
+    let bumps = Bumps::Offsets { texture: constant([0.2, 0.5, 0.0, 0.0]), scale: [2.0 / 3.0, 5.0], has_z: false };
+    let rebuilt = Material { bumps, ..material.clone() }.point(&read);
+    assert!((0..3).all(|i| (rebuilt.normal[i] - expected[i]).abs() < 1e-6), "{rebuilt:?}");
     let lost = LostBumps::Lambda1(ranged([0.5, 0.0, 0.0, 0.0], [0.0; 3], [0.4; 3]), 0.9);
     let point = Material { lost, ..material }.point(&read);
     assert!((point.squared_alpha[0] - 0.0625 - 1.8 * 0.04).abs() < 1e-6);

@@ -3,6 +3,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread;
 
 use super::*;
+use crate::run::job::JobInput;
 
 #[test]
 fn permits_stay_within_the_budget() {
@@ -44,9 +45,11 @@ fn the_largest_image_decides_on_the_memory_of_a_job() {
         cost: 0,
         command: Vec::new(),
     };
-    assert_eq!(memory(&job(inputs(&["a.gltf"]))), 25 * 500);
-    assert_eq!(memory(&job(inputs(&["a.gltf", "mesh.bin", "absent.png"]))), 25 * 500);
+    assert_eq!(memory(&job(inputs(&["a.gltf"]))), 32 * 500);
+    assert_eq!(memory(&job(inputs(&["a.gltf", "mesh.bin", "absent.png"]))), 32 * 500);
     assert_eq!(memory(&job(inputs(&["a.gltf", "small.png", "large.png"]))), 25 * 60_000);
+    // One of three images may be a base colour.
+    assert_eq!(memory(&job(inputs(&["a.gltf", "small.png", "large.png", "small.png"]))), 32 * 60_000);
 }
 
 /// Reads sizes from headers that are wrong or end early.
