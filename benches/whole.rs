@@ -33,7 +33,7 @@ fn whole(bencher: Bencher, form: Form, model: Model) {
     let files = files();
     let document = Document::parse(&files[&PathBuf::from("asset.gltf")]).expect("a document");
     let read = |path: &std::path::Path| Ok(files[path].clone());
-    let source = Source { document: &document, stem: "asset", files: &read };
+    let source = Source::new("asset", &document, &read);
     let settings = Settings::default().with_gltf(form).with_model(model);
     let texels = common::size() * common::size();
     bencher.counter(ItemsCount::new(texels)).bench(|| bake_asset(black_box(&source), &settings, &|_| ()).map(drop));

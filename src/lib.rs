@@ -75,14 +75,14 @@
 //! use std::error::Error;
 //! use std::{fs, path::Path};
 //!
-//! /// Bakes `assets/rock.glb` to `rock.glb` in the folder that Cargo names to build scripts as OUT_DIR.
+//! /// Bakes `assets/rock.glb` to `rock.glb`, one file, in the folder that Cargo names to build scripts as OUT_DIR.
 //! fn build(package: &Path, out_dir: &Path) -> Result<(), Box<dyn Error>> {
 //!     let folder = package.join("assets");
 //!     let read = |path: &Path| {
 //!         println!("cargo::rerun-if-changed={}", folder.join(path).display());
 //!         fs::read(folder.join(path))
 //!     };
-//!     let settings = roughcast::Settings::default().with_glb(true);
+//!     let settings = roughcast::Settings::default();
 //!     let baked = roughcast::bake_asset("rock", &read(Path::new("rock.glb"))?, &read, &settings)?;
 //!     fs::write(out_dir.join("rock.glb"), baked.document)?;
 //!     Ok(())

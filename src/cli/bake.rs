@@ -4,14 +4,14 @@ use std::fs::File;
 use std::io::{self, Write};
 use std::ops::ControlFlow;
 use std::path::PathBuf;
-use std::time::SystemTime;
+use std::time::{Instant, SystemTime};
 
 use super::options::cache::CacheOptions;
 use super::options::job_choice::{JobOptions, JobsError};
 use super::options::remote::{RemoteOptionError, RemoteOptions};
 use super::options::selection::{SelectionOptions, print_problems};
 use super::terminal::outcome::Outcome;
-use super::terminal::summary::summary;
+use super::terminal::summary::{summary, total};
 use super::work::{Work, Worked};
 use crate::cache::CacheError;
 use crate::note::Note;
@@ -25,9 +25,12 @@ use crate::text::printable;
 
 /// Bake glTF assets: KTX2 textures with the lost roughness in their mips, and a glTF that refers to them.
 ///
-/// Reads .gltf and .glb files and folders of them. Writes to another folder and never changes a source.
+/// Reads .gltf and .glb files and folders of them. Writes a .glb for a .glb, with the KTX2 textures inside, and a .gltf
+/// with external textures for a .gltf. Never changes a source.
 #[derive(Debug, clap::Args)]
-#[command(after_help = "Example:\n  roughcast bake assets/helmet.gltf -o baked --engine bevy")]
+#[command(after_help = "Examples:\n  roughcast bake helmet.glb -o helmet-baked.glb\n  \
+    roughcast bake helmet.gltf -o helmet.glb\n  \
+    roughcast bake assets -o baked --engine bevy")]
 pub struct Args {
     /// .gltf or .glb files, or folders that are searched for them.
     #[arg(required_unless_present = "plan", value_name = "INPUT")]
@@ -119,6 +122,7 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
 
 impl Args {
     fn bake(&self, out: &mut dyn Write, err: &mut dyn Write) -> Result<Outcome, BakeCommandError> {
+        let start = Instant::now();
         let cache = self.cache.open()?;
         let mut order = match self.order(out, err)? {
             ControlFlow::Continue(order) => order,
@@ -145,6 +149,7 @@ impl Args {
             touch_cached(&worked.assets);
         }
         if !self.quiet && !self.json {
+            out.write_all(total(&worked.assets, start.elapsed()).as_bytes())?;
             order.notes.iter().try_for_each(|note| writeln!(out, "note: {note}"))?;
         }
         let mut outcome = order.outcome;

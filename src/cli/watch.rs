@@ -10,7 +10,7 @@ use super::options::selection::SelectionOptions;
 use super::terminal::outcome::Outcome;
 use super::terminal::summary::summary;
 use crate::cache::CacheError;
-use crate::project::{Selection, SelectionError};
+use crate::project::{Selection, SelectionError, named_container};
 use crate::text::printable;
 use crate::watch::{Event, EventSink, Hook, WatchOptions, Watcher};
 
@@ -56,6 +56,8 @@ pub struct Args {
 enum WatchCommandError {
     #[error("{}: expected a folder, found a file; bake it with `roughcast bake`", path.display())]
     File { path: PathBuf },
+    #[error("-o {}: expected a folder, found the name of a document, of which a folder has many; name a folder", path.display())]
+    Named { path: PathBuf },
     #[error(transparent)]
     Selection(#[from] SelectionError),
     #[error(transparent)]
@@ -94,6 +96,9 @@ impl Args {
             return Err(WatchCommandError::File { path: folder.clone() });
         }
         let selection = self.selection.selection();
+        if let Some(path) = selection.output.as_ref().filter(|output| named_container(output).is_some()) {
+            return Err(WatchCommandError::Named { path: path.clone() });
+        }
         let output = self.output(&selection)?;
         Ok(WatchOptions {
             folder: folder.clone(),

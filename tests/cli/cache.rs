@@ -59,7 +59,7 @@ fn a_second_run_bakes_nothing_and_touches_nothing() {
     let image = folder.join("assets/knobs/textures/surface.png");
     fs::write(&image, fs::read(&image).expect("an image")).expect("a file");
     fs::remove_dir_all(folder.join("out/brushed")).expect("a folder");
-    fs::write(folder.join("out/waves/waves.gltf"), "wrong").expect("a file");
+    fs::write(folder.join("out/waves/waves.glb"), "wrong").expect("a file");
     fs::write(folder.join("out/knobs/knobs.bin"), "wrong").expect("a file");
     assert_eq!(statuses(folder, ""), ["cached"; 4]);
     assert_eq!(hashes(&folder.join("out")), before);

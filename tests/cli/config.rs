@@ -55,7 +55,7 @@ fn flags_win_and_every_value_names_its_origin() {
     for (asset, name, expected) in [
         (brushed, "max-error", "max-error = 0.5|assets/roughcast.toml"),
         (brushed, "model", "model = \"anisotropic\"|command line"),
-        (brushed, "gltf", "gltf = \"fallback\"|default"),
+        (brushed, "gltf", "gltf = \"auto\"|default"),
         (brushed, "glb", "glb = false|command line"),
         (waves, "model", "model = \"anisotropic\"|command line"),
         (waves, "gltf", "gltf = \"dual\"|assets/roughcast.toml, override of waves.glb, engine = bevy"),
@@ -70,7 +70,7 @@ fn flags_win_and_every_value_names_its_origin() {
 fn the_file_may_name_the_output() {
     let scene = scene("output = '../baked'\nmodel = 'none'\n");
     done(scene.path(), "bake assets -q");
-    assert!(scene.path().join("baked/props/waves.gltf").is_file());
+    assert!(scene.path().join("baked/props/waves.glb").is_file());
     done(scene.path(), "bake assets -q -o other");
     assert_eq!(hashes(&scene.path().join("baked")), hashes(&scene.path().join("other")));
     fs::remove_file(scene.path().join("assets/roughcast.toml")).expect("a file");

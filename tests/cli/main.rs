@@ -7,6 +7,7 @@ mod bytes;
 mod cache;
 mod compare;
 mod config;
+mod containers;
 mod farm;
 mod fixtures;
 mod goldens;

@@ -75,7 +75,7 @@ fn jobs_that_no_part_ran_are_missing() {
     fs::remove_dir_all(folder.join("out/waves")).expect("a folder");
     let lost = |folder: &Path, reports: &str| run(folder, &format!("plan merge plan.json {reports} --rest rest.json"));
     let merged = lost(folder, "0.json 1.json 2.json");
-    let gone = "missing assets/waves/waves.glb: expected out/waves/waves.gltf, found nothing there";
+    let gone = "missing assets/waves/waves.glb: expected out/waves/waves.glb, found nothing there";
     assert_eq!(first_lines(&merged), (4, vec!["3 jobs: 2 done, 0 failed, 1 missing", gone]));
     assert_eq!(first_lines(&lost(folder, "")), first_lines(&merged), "the outputs alone suffice");
     let reported = done(folder, "plan merge plan.json 0.json 1.json 2.json --no-outputs");

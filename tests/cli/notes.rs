@@ -9,7 +9,7 @@ use tempfile::tempdir;
 
 use super::process::{bake, copy, fixtures, roughcast};
 
-const NOTE: &str = "note: the bump map is a JPEG";
+const NOTE: &str = "the bump map is a JPEG";
 
 /// Writes the image `from` as a JPEG.
 fn to_jpeg(from: &Path, to: &Path) {

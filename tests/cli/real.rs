@@ -10,7 +10,7 @@ use super::process::{bake, done, fixtures};
 #[test]
 fn a_real_material_bakes_without_findings() {
     let folder = tempdir().expect("a folder");
-    let run = bake(&fixtures().join("real"), folder.path(), &["--profile", "both"]);
+    let run = bake(&fixtures().join("real"), folder.path(), &["--profile", "both", "--verbose"]);
     assert!(run.out.contains("gravel.gltf: ") && run.out.contains("Wet gravel: "), "{}", run.out);
     // RC1510: no lobe is within the default --max-error, as for any rough bumps.
     done(folder.path(), "check . --deep --allow RC1510");

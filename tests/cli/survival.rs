@@ -145,7 +145,7 @@ fn reports_names_that_are_not_utf_8() {
     // A folder may have any name. The name of an asset is part of the URIs of its outputs.
     let out = folder.path().join("out").join(not_utf8);
     bake(&assets, &out, OPTIONS[0]);
-    assert!(out.join("waves.gltf").is_file());
+    assert!(out.join("waves.glb").is_file());
     let mut name = OsString::from(not_utf8);
     name.push(".glb");
     fs::copy(assets.join("waves.glb"), assets.join(name)).expect("a file");
@@ -169,7 +169,7 @@ fn ends_at_links_in_circles() {
     assert_eq!(run.code, 1, "{}", run.err);
     assert!(run.err.lines().all(|line| line.starts_with("error: ") && line.contains("expected")), "{}", run.err);
     assert!(run.err.contains("assets/up") && run.err.contains("assets/round"), "{}", run.err);
-    assert!(folder.join("out/waves.gltf").is_file(), "the other asset is not baked");
+    assert!(folder.join("out/waves.glb").is_file(), "the other asset is not baked");
     symlink("circle", folder.join("circle")).expect("a link");
     let run = roughcast_in(folder, ["bake", "assets/waves.glb", "-o", "circle", "--model=isotropic"]);
     assert_eq!((run.code, run.err.lines().count()), (1, 1), "{}", run.err);

@@ -29,7 +29,7 @@ pub fn document(bytes: &[u8]) {
     };
     let _ = check_document("fuzzed.gltf", bytes, &read, &Scope { is_deep: true, ..Scope::default() });
     let Ok(document) = Document::parse(bytes) else { return };
-    let source = Source { stem: "fuzzed", document: &document, files: &read };
+    let source = Source::new("fuzzed", &document, &read);
     if let Ok(root) = document.json().value("") {
         let root = root.unwrap_or_default();
         let _ = inspect_document(&root, &ReferencedFiles::new(&document, &root, &read, true));

@@ -45,8 +45,9 @@ pub enum Error {
 ///
 /// `document` holds the bytes of a .gltf or .glb file, and `stem` is its file name without the extension: the outputs
 /// are named after it. `files` reads the files that the document names; a closure from a relative path to bytes is
-/// enough. The result holds the new document and new files, whose paths are relative to it. A document without bumps
-/// comes back byte for byte.
+/// enough. The result holds the new document and new files, whose paths are relative to it. A .glb stays a .glb with
+/// everything inside, unless [`Settings::glb`] or [`Settings::gltf`] asks for a .gltf. A document without bumps that keeps
+/// its container comes back byte for byte.
 ///
 /// # Errors
 /// [`Error`] for the first thing that is wrong with the settings, the document or a file.
@@ -68,7 +69,7 @@ pub fn bake_asset_with_progress(
     settings.validate()?;
     settings.target.check_available()?;
     let document = Document::parse(document)?;
-    Ok(bake::bake_asset(&Source { stem, document: &document, files }, settings, progress)?)
+    Ok(bake::bake_asset(&Source::new(stem, &document, files), settings, progress)?)
 }
 
 /// What a standalone map became.

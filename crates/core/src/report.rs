@@ -10,6 +10,8 @@ pub use map::{MAP_FORMAT, MapReport};
 pub use reason::{Evidence, Reason};
 pub use run::{AssetOutcome, Counts, Origin, PartAsset, PartReport, REPORT_FORMAT, ReportError, RunReport, Status};
 
+use std::ops::Add;
+
 use serde::{Deserialize, Serialize};
 
 use crate::gltf::material::{LayerKind, Material};
@@ -26,6 +28,47 @@ pub struct AssetReport {
     pub layers: Vec<LayerReport>,
     /// The textures that were made.
     pub textures: Vec<TextureReport>,
+    /// What the bytes of the document and of the new files hold.
+    pub sizes: OutputSizes,
+}
+
+/// Bytes of outputs by what they hold.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "camelCase")]
+#[non_exhaustive]
+pub struct OutputSizes {
+    /// KTX2 textures.
+    pub ktx2: u64,
+    /// PNG copies of level 0 of these textures, for engines without KTX2.
+    pub fallback: u64,
+    /// All other images.
+    pub images: u64,
+    /// Buffers without their images: meshes, skins and animations.
+    pub geometry: u64,
+    /// The JSON of the document, and the headers of a .glb.
+    pub json: u64,
+}
+
+impl OutputSizes {
+    /// Returns the bytes of all outputs together. Sums stay at the largest number that they can hold, since sizes may
+    /// come from a cache that others write to.
+    pub fn total(&self) -> u64 {
+        [self.fallback, self.images, self.geometry, self.json].into_iter().fold(self.ktx2, u64::saturating_add)
+    }
+}
+
+impl Add for OutputSizes {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            ktx2: self.ktx2.saturating_add(other.ktx2),
+            fallback: self.fallback.saturating_add(other.fallback),
+            images: self.images.saturating_add(other.images),
+            geometry: self.geometry.saturating_add(other.geometry),
+            json: self.json.saturating_add(other.json),
+        }
+    }
 }
 
 /// The report of one layer of a material.
@@ -202,7 +245,8 @@ fn ranges(numbers: impl Iterator<Item = usize>) -> String {
 #[serde(rename_all = "camelCase")]
 #[non_exhaustive]
 pub struct TextureReport {
-    /// Path relative to the document, or of the file of a standalone map.
+    /// Path relative to the document, or of the file of a standalone map. In a .glb it is the path that the file would
+    /// have beside a .gltf.
     pub path: String,
     /// What the texels are.
     pub content: Content,

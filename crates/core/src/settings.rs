@@ -1,5 +1,6 @@
 //! What a bake can be asked for. [`RecordedSettings`] lists the settings that change the bytes of a texture.
 
+mod container;
 mod error;
 pub mod limit;
 mod recorded;
@@ -96,15 +97,19 @@ pub enum MaxModel {
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum Form {
+    /// [`Form::Strict`] in a .glb, which would hold every texture twice otherwise, and [`Form::Fallback`] in a .gltf.
+    #[default]
+    #[cfg_attr(feature = "cli", value(help = "strict in a .glb, fallback in a .gltf"))]
+    Auto,
     /// A PNG of level 0 is the `source` of the texture, and `KHR_texture_basisu` names the KTX2. Engines without KTX2
     /// show the PNG. Conforms to the specification.
-    #[default]
     #[cfg_attr(feature = "cli", value(help = "PNG of level 0 as source, KTX2 on KHR_texture_basisu"))]
     Fallback,
     /// Only the KTX2 is there, and `KHR_texture_basisu` is required. Conforms to the specification.
     #[cfg_attr(feature = "cli", value(help = "KTX2 only, KHR_texture_basisu required"))]
     Strict,
-    /// `source` and `KHR_texture_basisu` both name the KTX2: against the specification, but every engine loads it.
+    /// `source` and `KHR_texture_basisu` both name the KTX2: against the specification, but every engine loads it. The
+    /// KTX2 is a file, so that the document is a .gltf.
     #[cfg_attr(
         feature = "cli",
         value(help = "KTX2 as source and on KHR_texture_basisu: off the specification, loads everywhere")
@@ -141,8 +146,9 @@ pub struct Settings {
     pub rdo: Option<f64>,
     /// How the document refers to textures.
     pub gltf: Form,
-    /// Whether a .glb is written instead of a .gltf with external files.
-    pub glb: bool,
+    /// Whether a .glb with everything inside is written, or a .gltf with external files. `None` keeps the container of
+    /// the source document, unless [`Form::Dual`] needs external files.
+    pub glb: Option<bool>,
     /// Whether `normalTexture.scale` may change, so that the slopes of low bumps use all values of their texture. An
     /// engine that ignores the scale shows such bumps too strong.
     pub scale_normals: bool,
@@ -172,7 +178,7 @@ impl Default for Settings {
             quality: Effort::Fast,
             rdo: None,
             gltf: Form::default(),
-            glb: false,
+            glb: None,
             scale_normals: false,
             frame: Frame::default(),
             height_scale: None,
@@ -206,7 +212,6 @@ impl Settings {
         with_target: target, Target;
         with_quality: quality, Effort;
         with_gltf: gltf, Form;
-        with_glb: glb, bool;
         with_scale_normals: scale_normals, bool;
         with_max_texels: max_texels, u64;
         with_provenance: provenance, bool;
@@ -269,7 +274,7 @@ impl Settings {
     /// # Errors
     /// [`SettingsError`] for the first value that is out of range, or for two that exclude each other.
     pub fn validate(&self) -> Result<(), SettingsError> {
-        if self.glb && self.gltf == Form::Dual {
+        if self.glb == Some(true) && self.gltf == Form::Dual {
             return Err(SettingsError::DualInGlb);
         }
         limit::MAX_ERROR.check(f64::from(self.max_error))?;

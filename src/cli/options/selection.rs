@@ -12,8 +12,9 @@ use crate::project::{ConfigChoice, Selected, Selection, Values};
 /// Where outputs go and how they are made.
 #[derive(Debug, clap::Args)]
 pub struct SelectionOptions {
-    /// Output folder. [default: `output` in roughcast.toml]
-    #[arg(short, long, value_name = "DIR")]
+    /// Output folder; or, for one input, the document: FILE.glb with everything inside, or FILE.gltf with its files
+    /// beside it. [default: `output` in roughcast.toml]
+    #[arg(short, long, value_name = "DIR|FILE")]
     pub output: Option<PathBuf>,
     #[command(flatten)]
     settings: SettingOptions,

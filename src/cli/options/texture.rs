@@ -51,18 +51,19 @@ pub struct TextureOptions {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "glTF options")]
 pub struct DocumentOptions {
-    /// How textures are referenced: with a PNG for engines without KTX2, without, or with the KTX2 in both places.
-    /// [default: fallback]
+    /// How textures are referenced. A PNG copy of each is for engines without KTX2: beside a .gltf they load one of the
+    /// two, but a .glb would make every engine load both. [default: auto, or what --engine needs]
     #[arg(long, value_enum)]
     gltf: Option<Form>,
-    /// Preset of --target, --gltf, --model, --max-model and --scale-normals for an engine; the options themselves win.
-    /// A note names the engine's own limiter of roughness if that should be turned off.
+    /// Preset of --target, --gltf, --glb, --model, --max-model and --scale-normals for an engine; the options themselves
+    /// win over it. A note names the engine's own limiter of roughness if that should be turned off.
     #[arg(long, value_enum)]
     engine: Option<Engine>,
     /// The model with the most parameters that --model auto may choose. [default: anisotropic]
     #[arg(long, value_enum)]
     max_model: Option<MaxModel>,
-    /// Write .glb files with everything embedded.
+    /// Write .glb files with everything inside, or with --glb=false .gltf files with external textures. [default: as each
+    /// input, except .gltf for --engine bevy and godot and for --gltf dual]
     #[arg(long, num_args = 0..=1, require_equals = true, default_missing_value = "true", value_name = "BOOL")]
     glb: Option<bool>,
     /// Divide the slopes of low bumps in their texture and multiply normalTexture.scale, so that they lose less to the

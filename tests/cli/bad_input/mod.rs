@@ -1,6 +1,7 @@
 //! Tests that bad input gives one clear error and exit code 1, and that every other asset is still baked.
 
 mod documents;
+mod foreign;
 mod images;
 mod outputs;
 mod paths;
@@ -51,7 +52,7 @@ impl Scene {
         let before = hashes(&self.input());
         let run = self.bake(options);
         assert_eq!(hashes(&self.input()), before, "a source changed");
-        assert!(self.output().join("good/waves.gltf").is_file(), "the good asset is not baked: {}", run.err);
+        assert!(self.output().join("good/waves.glb").is_file(), "the good asset is not baked: {}", run.err);
         let line = one_line(&run);
         assert!(!self.output().join("bad").exists(), "half an asset was left behind");
         line

@@ -75,7 +75,7 @@ fn rejects_two_inputs_for_one_output() {
     let good = scene.input().join("good/waves.glb");
     let line = refused(&scene, &[&good, &other], &scene.output());
     assert_contains(&line, &["other/waves.glb", "good/waves.glb", "different folders"]);
-    assert!(scene.output().join("waves.gltf").is_file(), "the first is not baked");
+    assert!(scene.output().join("waves.glb").is_file(), "the first is not baked");
 }
 
 #[test]

@@ -20,7 +20,7 @@ fn rejects_a_folder_instead_of_a_file() {
     fs::create_dir(scene.bad("brushed_normal.png")).expect("a folder");
     assert_contains(
         &scene.error_line(&[]),
-        &["bad/brushed.gltf: ", "Brushed steel", "brushed_normal.png", "not an ordinary"],
+        &["bad/brushed.gltf: ", "Brushed steel", "brushed_normal.png", "found: a folder"],
     );
 }
 
@@ -68,7 +68,7 @@ fn rejects_inputs_that_are_not_assets() {
         let output = scene.output();
         let run = roughcast(["bake".as_ref(), bad.as_os_str(), good.as_os_str(), "-o".as_ref(), output.as_os_str()]);
         assert_contains(&one_line(&run), &["expected", part]);
-        assert!(output.join("waves.gltf").is_file(), "the other input is not baked");
+        assert!(output.join("waves.glb").is_file(), "the other input is not baked");
         fs::remove_dir_all(output).expect("a folder");
     }
 }

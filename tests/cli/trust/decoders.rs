@@ -50,7 +50,7 @@ impl Scene {
     fn error_line(&self, limit: Option<u64>, codes: &[i32]) -> String {
         let run = self.bake(limit);
         assert!(codes.contains(&run.code), "exit {}, {}", run.code, run.err);
-        assert!(self.is_baked("good/waves.gltf"), "the good asset is not baked: {}", run.err);
+        assert!(self.is_baked("good/waves.glb"), "the good asset is not baked: {}", run.err);
         assert!(!self.is_baked("bad/brushed.gltf"), "the bad asset is baked: {}", run.err);
         assert_eq!(run.err.lines().count(), 1, "expected one line, found:\n{}", run.err);
         run.err
@@ -136,7 +136,7 @@ fn a_pipe_in_the_cache_is_not_an_entry() {
     fs::remove_dir_all(scene.folder.path().join("out")).expect("a folder");
     let again = bake();
     assert_eq!(again.code, 0, "{}", again.err);
-    assert!(scene.is_baked("waves.gltf"));
+    assert!(scene.is_baked("waves.glb"));
 }
 
 /// Returns a JPEG of noise with 128 x 128 texels.

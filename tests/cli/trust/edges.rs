@@ -62,7 +62,7 @@ fn an_asset_may_have_a_name_that_no_uri_can_contain() {
         let folder = tempdir().expect("a folder");
         fs::create_dir(folder.path().join("A")).expect("a folder");
         fs::copy(fixtures().join("waves/waves.glb"), folder.path().join("A").join(name)).expect("a file");
-        done(folder.path(), "bake A -o O --model none");
+        done(folder.path(), "bake A -o O --model none --glb=false");
         assert!(folder.path().join("O").join(name).with_extension("gltf").is_file(), "{name}");
         assert!(folder.path().join("O").join(textures).is_dir(), "{name}");
         let check = run(folder.path(), "check O --source A");

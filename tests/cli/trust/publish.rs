@@ -42,7 +42,7 @@ fn a_file_that_changes_before_it_is_copied_is_not_published() {
     let (source, out) = (folder.join("in/brushed.gltf"), folder.join("out"));
     let settings = resolve(&[]).expect("defaults").values;
     let cache = Cache::new(Some(&folder.join("cache")), None, 1 << 30).expect("a cache");
-    let job = Job::new(&source, &out, &settings).expect("a job");
+    let job = Job::new(&source, &out, None, &settings).expect("a job");
     // Fills the cache.
     let _ = prepare(&job, Some(Lookup::new(&job, &cache)), &MemoryBudget::new(1), &|_| ());
     for is_cached in [false, true] {
@@ -130,8 +130,8 @@ fn assets_whose_names_differ_in_case_only_are_refused() {
             |line: &str| pair.iter().all(|name| line.contains(name)) && line.contains("rename one of them");
         assert!(found.err.lines().any(is_recorded), "{pair:?}: {}", found.err);
     }
-    let documents: Vec<String> = names(&folder.join("out")).into_iter().filter(|name| name.ends_with("f")).collect();
-    assert_eq!(documents, ["Deep/x.gltf", "Lake.gltf"]);
+    let documents: Vec<String> = names(&folder.join("out")).into_iter().filter(|name| name.ends_with(".glb")).collect();
+    assert_eq!(documents, ["Deep/x.glb", "Lake.glb"]);
 }
 
 #[test]
@@ -172,7 +172,7 @@ fn an_output_of_another_source_is_not_replaced() {
     fs::copy(fixtures().join("waves/waves.glb"), folder.join("brushed.glb")).expect("a file");
     // The output is kept even if nothing is to be baked.
     for options in ["", "--cache cache", "--cache cache"] {
-        done(folder, "bake brushed.glb -o out -q");
+        done(folder, "bake brushed.glb -o out -q --glb=false");
         let before = hashes(&folder.join("out"));
         let found = run(folder, &format!("bake in/brushed.gltf -o out -q {options}"));
         assert_eq!((found.code, found.err.lines().count()), (1, 1), "{}", found.err);
@@ -240,9 +240,11 @@ fn outputs_of_earlier_bakes_are_left_out_of_folders_with_one_note() {
     let note = "note: left out 3 file(s) that Roughcast has baked, such as ./earlier/brushed.gltf; name a file itself to \
         bake it anyway\n";
     assert_eq!((found.code, found.err.as_str()), (0, note));
-    let documents: Vec<String> =
-        names(&folder.join("out")).into_iter().filter(|name| name.ends_with(".gltf")).collect();
-    assert_eq!(documents, ["brushed/brushed.gltf", "waves/waves.gltf"]);
+    let documents: Vec<String> = names(&folder.join("out"))
+        .into_iter()
+        .filter(|name| name.ends_with(".gltf") || name.ends_with(".glb"))
+        .collect();
+    assert_eq!(documents, ["brushed/brushed.gltf", "waves/waves.glb"]);
     done(folder, "bake . -o out -q");
     let planned = run(folder, "plan . -o out");
     assert_eq!((planned.code, planned.out.lines().count(), planned.err.as_str()), (0, 2, note));

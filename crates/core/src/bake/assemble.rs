@@ -13,9 +13,10 @@ use super::ktx2_files::ktx2_files;
 use super::names::Names;
 use super::new_file::NewFile;
 use super::output_document;
+use super::output_sizes::output_sizes;
 use super::provenance::DocumentProvenance;
 use super::reader::Reader;
-use crate::gltf::document::Document;
+use crate::gltf::document::{Container, Document};
 use crate::gltf::extensions::declare;
 use crate::gltf::json::Json;
 use crate::gltf::rewrite::{NewImage, NewTexture, add_textures};
@@ -54,16 +55,18 @@ pub struct Assembly<'a> {
 }
 
 impl<'a> Assembly<'a> {
-    /// Starts with a copy of the source document in the requested container.
+    /// Starts with a copy of the source document in the container of `settings`, which are resolved for the document.
     pub fn new(reader: &'a Reader<'a>, settings: &'a Settings) -> Result<Self, BakeError> {
         let source = reader.source;
-        let (document, bin) =
-            if settings.glb { (output_document::to_glb(reader)?, None) } else { output_document::to_gltf(source)? };
+        let (document, bin) = match settings.container(source.document.container()) {
+            Container::Glb => (output_document::to_glb(reader)?, None),
+            Container::Gltf => output_document::to_gltf(source)?,
+        };
         Ok(Self {
             reader,
             settings,
             document,
-            names: Names::new(source.stem),
+            names: Names::new(source.output_stem),
             recorded: BTreeSet::new(),
             textures: Vec::new(),
             stored: Vec::new(),
@@ -124,7 +127,7 @@ impl<'a> Assembly<'a> {
     }
 
     fn add_image(&mut self, path: &str, extension: &str, bytes: Vec<u8>) -> Result<NewImage, BakeError> {
-        if self.settings.glb {
+        if self.document.container() == Container::Glb {
             let view = output_document::embed(&mut self.document, &bytes)?;
             let mime = if extension == "ktx2" { "image/ktx2" } else { "image/png" };
             return Ok(NewImage::BufferView { view, mime });
@@ -151,10 +154,12 @@ impl<'a> Assembly<'a> {
         let mut copies = output_document::files(self.document.json())?;
         let new: HashSet<&Path> = self.files.iter().map(|file| file.path.as_path()).collect();
         copies.retain(|copy| !new.contains(copy.as_path()));
+        let document = self.document.to_bytes()?;
+        self.report.sizes = output_sizes(&self.document, document.len(), &self.files)?;
         self.report.layers.extend(flat);
         self.report.layers.sort_by_key(|layer| (layer.index, layer.layer));
         Ok(BakedAsset {
-            document: self.document.to_bytes()?,
+            document,
             container: self.document.container(),
             files: self.files,
             copies,
@@ -165,7 +170,7 @@ impl<'a> Assembly<'a> {
     /// Moves files into a .glb, and removes what only replaced images needed from the binary chunk.
     fn finish_container(&mut self) -> Result<(), BakeError> {
         let source = self.reader.source;
-        if self.settings.glb {
+        if self.document.container() == Container::Glb {
             output_document::embed_images(&mut self.document, source)?;
             output_document::compact_glb(&mut self.document, source.document)?;
         }

@@ -11,31 +11,35 @@ use super::error::BakeError;
 use super::geometry::Geometry;
 use super::group::group_by_bump_map;
 use super::output_document;
+use super::output_sizes::output_sizes;
 use super::reader::Reader;
 use super::source::{Source, SourceError};
-use crate::gltf::document::check_version;
+use crate::gltf::document::{Container, check_version};
 use crate::gltf::material::materials;
 use crate::report::{AssetReport, LayerReport};
 use crate::settings::Settings;
 
 /// Bakes every material of `source` that has bumps. `advance` is called after each bump map with the share of the work
-/// that is done. An asset without bumps is returned byte for byte.
+/// that is done. An asset without bumps is returned byte for byte, unless another container is asked
+/// for.
 ///
 /// # Errors
 /// [`BakeError`] for the first fault of the asset.
 pub fn bake_asset(source: &Source<'_>, settings: &Settings, advance: &dyn Fn(f32)) -> Result<BakedAsset, BakeError> {
+    let settings = &settings.resolved_for(source.document.container());
+    let container = settings.container(source.document.container());
     // Step 1: read the document.
     let root: Value = source.document.json().value("")?.unwrap_or_default();
     check_version(&root)?;
     let materials = materials(&root).into_iter().collect::<Result<Vec<_>, _>>()?;
     check_files(source)?;
-    let reader = Reader::new(source, &root, settings.glb || Geometry::is_needed(settings))?;
+    let reader = Reader::new(source, &root, container == Container::Glb || Geometry::is_needed(settings))?;
     let geometry = Geometry::new(&reader, settings);
     let flat: Vec<LayerReport> = materials.iter().filter(|m| m.layers.is_empty()).map(LayerReport::flat).collect();
     // Step 2: group the layers by bump map.
     let groups = group_by_bump_map(&root, materials, settings, &geometry)?;
     let mut assembly = Assembly::new(&reader, settings)?;
-    if groups.is_empty() {
+    if groups.is_empty() && container == source.document.container() {
         return unchanged(source, flat);
     }
     // Steps 3 to 8 for each bump map; step 9, the assembly, takes each as it comes.
@@ -55,11 +59,13 @@ fn check_files(source: &Source<'_>) -> Result<(), BakeError> {
 
 /// Returns the asset as it is.
 fn unchanged(source: &Source<'_>, layers: Vec<LayerReport>) -> Result<BakedAsset, BakeError> {
+    let document = source.document.to_bytes()?;
+    let sizes = output_sizes(source.document, document.len(), &[])?;
     Ok(BakedAsset {
-        document: source.document.to_bytes()?,
+        document,
         container: source.document.container(),
         files: Vec::new(),
         copies: output_document::files(source.document.json())?,
-        report: AssetReport { layers, ..AssetReport::default() },
+        report: AssetReport { layers, sizes, ..AssetReport::default() },
     })
 }

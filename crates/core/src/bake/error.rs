@@ -75,7 +75,7 @@ pub enum ContainerError {
     /// Buffers that cannot be joined.
     #[error(
         "expected buffer views without extensions to join {count} buffers in one .glb, found some that refer to buffers \
-         in ways of their own; bake to .gltf, without --glb"
+         in ways of their own; bake to .gltf, by `-o` with a .gltf name or by --glb=false"
     )]
     Buffers {
         /// How many buffers there are.

@@ -38,6 +38,7 @@ mod names;
 mod new_file;
 mod offsets;
 mod output_document;
+mod output_sizes;
 mod planned_files;
 mod products;
 mod provenance;

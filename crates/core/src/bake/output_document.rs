@@ -28,7 +28,7 @@ pub fn to_gltf(source: &Source<'_>) -> Result<(Document, Option<NewFile>), Conta
     let Some(bin) = source.document.buffer_0() else {
         return Ok((Document::gltf(json), None));
     };
-    let stem = portable_stem(source.stem);
+    let stem = portable_stem(source.output_stem);
     let path = format!("{stem}.roughcast/{stem}.bin");
     json.set("/buffers/0/uri", &encode_path(&path))?;
     let length: usize = json.read("/buffers/0/byteLength")?.unwrap_or(bin.len());

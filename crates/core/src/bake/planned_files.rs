@@ -17,10 +17,12 @@ pub struct PlannedFiles {
     pub files: Vec<PathBuf>,
     /// Files that buffers name. The output names them, too, unless it is a .glb.
     pub buffers: Vec<PathBuf>,
-    /// Whether a material has bumps. A document without bumps is returned unchanged.
+    /// Whether a material has bumps. A document without bumps is returned unchanged if it keeps its container.
     pub has_bumps: bool,
     /// The container of the document.
     pub container: Container,
+    /// Whether a buffer of the document is the BIN chunk of a .glb, which becomes a file beside a .gltf.
+    pub has_bin: bool,
 }
 
 /// Returns the facts of `document`.
@@ -37,5 +39,6 @@ pub fn planned_files(document: &Document) -> Result<PlannedFiles, BakeError> {
         buffers: output_document::buffer_files(json)?,
         has_bumps: materials.iter().any(|material| !material.layers.is_empty()),
         container: document.container(),
+        has_bin: document.buffer_0().is_some(),
     })
 }

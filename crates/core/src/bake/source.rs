@@ -58,8 +58,10 @@ impl<F: Fn(&Path) -> io::Result<Vec<u8>> + Sync> Files for F {
 /// A document and the files beside it.
 #[derive(Clone, Copy)]
 pub struct Source<'a> {
-    /// File name without extension; output files are named after it.
+    /// File name without extension, which provenance records.
     pub stem: &'a str,
+    /// The name of the output document without extension. New files are named after it.
+    pub output_stem: &'a str,
     /// The document.
     pub document: &'a Document,
     /// The files.
@@ -138,7 +140,12 @@ fn missing(paths: &[PathBuf]) -> String {
 /// Largest data URI that is decoded, in bytes: more than a texture of the largest allowed size has.
 pub(super) const MAX_DATA_URI: usize = 2 << 30;
 
-impl Source<'_> {
+impl<'a> Source<'a> {
+    /// Returns a source whose outputs have its own name.
+    pub fn new(stem: &'a str, document: &'a Document, files: &'a dyn Files) -> Self {
+        Self { stem, output_stem: stem, document, files }
+    }
+
     /// Reads the bytes that `uri` names.
     pub fn uri(&self, uri: &str) -> Result<Vec<u8>, SourceError> {
         self.uri_by(uri, |path| self.files.read(path))

@@ -1,5 +1,6 @@
 //! Errors of reading KTX2 files.
 
+use crate::foreign::Foreign;
 use crate::memory::OutOfMemory;
 
 /// Why a KTX2 file could not be read. The caller adds the name of the file.
@@ -9,6 +10,12 @@ pub enum ReadError {
     /// The file does not begin with the identifier of KTX 2.
     #[error("not a KTX2 file: the identifier is missing")]
     NotKtx2,
+    /// The file cannot be a texture at all.
+    #[error("expected a KTX2 file, found {found}")]
+    Foreign {
+        /// What the file is.
+        found: Foreign,
+    },
     /// A section lies outside the file.
     #[error("the KTX2 file is cut off: a section ends after the {length} bytes of the file; copy or export it again")]
     Truncated {

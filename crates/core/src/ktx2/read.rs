@@ -8,6 +8,7 @@ use std::io;
 use ktx2::{Header, ParseError, Reader, SupercompressionScheme, dfd};
 
 use crate::codec::Identity;
+use crate::foreign::Foreign;
 use crate::image::{Image, Samples};
 use crate::ktx2::error::ReadError;
 use crate::ktx2::formats::{Coding, block_of};
@@ -38,10 +39,11 @@ impl<'a> Ktx2<'a> {
     /// are inside the file.
     ///
     /// # Errors
-    /// [`ReadError::NotKtx2`], [`ReadError::Truncated`], [`ReadError::Malformed`], [`ReadError::TooManyKeys`].
+    /// [`ReadError::NotKtx2`], [`ReadError::Foreign`], [`ReadError::Truncated`], [`ReadError::Malformed`],
+    /// [`ReadError::TooManyKeys`].
     pub fn parse(bytes: &'a [u8]) -> Result<Ktx2<'a>, ReadError> {
         if !bytes.starts_with(&ktx2::MAGIC) {
-            return Err(ReadError::NotKtx2);
+            return Err(Foreign::detect(bytes).map_or(ReadError::NotKtx2, |found| ReadError::Foreign { found }));
         }
         let failed = |error| from_parser(&error, bytes);
         let start = bytes.first_chunk().ok_or(ParseError::UnexpectedEnd);

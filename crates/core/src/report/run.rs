@@ -67,7 +67,9 @@ pub struct AssetOutcome {
     pub settings: Option<RecordedSettings>,
     /// Seconds from reading to writing.
     pub seconds: f64,
-    /// Bytes written.
+    /// Bytes of the document and of the files that it names; 0 where the asset failed.
+    pub input_bytes: u64,
+    /// Bytes of the outputs; `sizes` has what they hold.
     pub bytes: u64,
     /// What went wrong.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -91,6 +93,7 @@ impl AssetOutcome {
             remote: None,
             settings: None,
             seconds,
+            input_bytes: 0,
             bytes: 0,
             error: Some(error),
             retry,

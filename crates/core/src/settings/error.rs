@@ -23,6 +23,9 @@ pub enum SettingsError {
         needs: &'static str,
     },
     /// A .glb has no external texture that both references could name.
-    #[error("--gltf dual needs external textures, which --glb does not have: leave one of them out")]
+    #[error(
+        "expected a .gltf for --gltf dual, which --engine bevy sets too, since both references name an external .ktx2; \
+         found that a .glb is asked for: write a .gltf, or choose another form"
+    )]
     DualInGlb,
 }

@@ -16,7 +16,7 @@ const DIGEST_LENGTH: usize = 64;
 pub(super) const MAX_ENTRY_BYTES: u64 = 64 << 20;
 
 /// The format version of entries.
-pub const ENTRY_FORMAT: u32 = 3;
+pub const ENTRY_FORMAT: u32 = 4;
 
 /// The outputs of a job.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -21,7 +21,7 @@ pub fn id(number: u8) -> Digest {
 pub fn baked(content: &[u8]) -> BakedAsset {
     let document = Document::parse(br#"{ "asset": { "version": "2.0" } }"#).expect("a document");
     let no_files = |_: &Path| -> io::Result<Vec<u8>> { Err(io::ErrorKind::NotFound.into()) };
-    let source = Source { stem: "a", document: &document, files: &no_files };
+    let source = Source::new("a", &document, &no_files);
     let mut baked = bake_asset(&source, &Settings::default(), &|_| ()).expect("a document without bumps");
     baked.document = b"{}".to_vec();
     baked.files = vec![NewFile::new("a.roughcast/a.ktx2", content.to_vec())];

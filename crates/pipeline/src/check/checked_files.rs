@@ -7,9 +7,10 @@ use std::path::{Path, PathBuf};
 
 use walkdir::WalkDir;
 
+use crate::bake::output_stem_of;
 use crate::gltf::document::Document;
 use crate::input_file::read_file;
-use crate::project::{Input, InputError, Resolved, Selection, SelectionError};
+use crate::project::{Input, InputError, Resolved, Selection, SelectionError, recorded};
 
 /// A file to check.
 pub struct CheckedFile {
@@ -30,9 +31,15 @@ impl CheckedFile {
         has_extension(&self.path, "ktx2")
     }
 
-    /// Returns the key of the asset of [`Sources`] whose output the file is.
-    pub fn key(&self) -> PathBuf {
-        self.path.with_extension("")
+    /// Returns the key of the asset of `sources` whose output the file is. If no asset has that name, the document may
+    /// record the name of its source.
+    pub fn key(&self, sources: &Sources) -> PathBuf {
+        let key = self.path.with_extension("");
+        if sources.folder.is_none() || sources.assets.contains_key(&key) {
+            return key;
+        }
+        let recorded = recorded_source(&self.path).map(|source| self.path.with_file_name(output_stem_of(&source)));
+        recorded.filter(|recorded| sources.assets.contains_key(recorded)).unwrap_or(key)
     }
 }
 
@@ -94,8 +101,8 @@ impl Sources {
             let (inputs, output) = if is_folder {
                 (vec![source.to_owned()], argument.as_path())
             } else {
-                let name = argument.file_name().unwrap_or_default();
-                (source_file(&source.join(name)).into_iter().collect(), argument.parent().unwrap_or(Path::new("")))
+                let file = source_file_of(argument, source);
+                (file.into_iter().collect(), argument.parent().unwrap_or(Path::new("")))
             };
             // A missing source is a finding of the output that needs the source.
             let selected = selection.find_into(&inputs, output)?;
@@ -122,6 +129,19 @@ pub fn source_document(path: &Path) -> Result<Document, String> {
     let existing = source_file(path).ok_or("no .gltf or .glb of that name")?;
     let bytes = read_file(&existing).map_err(|e| e.to_string())?;
     Document::parse(&bytes).map_err(|e| e.to_string())
+}
+
+/// Returns the file below the folder `source` that `baked` was baked from: by its name, else by what it records.
+fn source_file_of(baked: &Path, source: &Path) -> Option<PathBuf> {
+    let named = source_file(&source.join(baked.file_name().unwrap_or_default()));
+    named.or_else(|| source_file(&source.join(recorded_source(baked)?)))
+}
+
+/// Returns the file name of its source that the document at `baked` records.
+fn recorded_source(baked: &Path) -> Option<PathBuf> {
+    let source = PathBuf::from(recorded(baked)?.source?);
+    // The record may be anybody's, so that folders in it do not count.
+    source.file_name().map(PathBuf::from)
 }
 
 fn source_file(path: &Path) -> Option<PathBuf> {

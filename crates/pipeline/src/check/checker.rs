@@ -90,7 +90,7 @@ impl Checker {
             let findings = self.add(target, result, checked);
             let is_curable = |f: &Finding| f.severity != Severity::Note && f.code.is_fixed_by_bake();
             if findings.iter().any(is_curable) {
-                checked.curable.insert(target.key());
+                checked.curable.insert(target.path.with_extension(""));
             }
         }
         referred
@@ -114,7 +114,7 @@ impl Checker {
 
     /// Adds a finding for every expected output that does not exist.
     fn find_missing_outputs(&self, documents: &[CheckedFile], sources: &Sources, checked: &mut Checked) {
-        let present: BTreeSet<PathBuf> = documents.iter().map(CheckedFile::key).collect();
+        let present: BTreeSet<PathBuf> = documents.iter().map(|target| target.key(sources)).collect();
         for missing in sources.expected.iter().filter(|key| !present.contains(*key)) {
             let Some(asset) = sources.assets.get(missing) else { continue };
             let mut findings = Findings::new(asset.input.path.display().to_string());
@@ -166,8 +166,8 @@ impl Checker {
         let name = target.path.display().to_string();
         let folder = target.path.parent().unwrap_or(Path::new(""));
         let mut findings = Findings::new(&name);
-        // The output may have a shorter name than its source.
-        let known = sources.assets.get(&target.key());
+        // The output may have a shorter name than its source, or one that the user chose.
+        let known = sources.assets.get(&target.key(sources));
         let source_path = sources
             .folder
             .as_ref()
@@ -185,7 +185,9 @@ impl Checker {
         });
         // Without explicit settings, any settings are accepted.
         let asset = known.filter(|_| sources.is_configured || self.expects_defaults);
-        let scope = Scope { settings: asset.map(|asset| &asset.resolved.settings), ..self.scope(origin.as_ref()) };
+        let container = origin.as_ref().and_then(SourceDigests::container);
+        let settings = asset.zip(container).map(|(asset, source)| asset.resolved.settings.resolved_for(source));
+        let scope = Scope { settings: settings.as_ref(), ..self.scope(origin.as_ref()) };
         let checked = check_document(&name, &bytes, &Folder(folder.to_owned()), &scope);
         let mut findings = findings.into_list();
         findings.extend(checked.findings);

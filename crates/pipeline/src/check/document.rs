@@ -64,9 +64,9 @@ pub fn check_document(name: &str, bytes: &[u8], files: &dyn Files, scope: &Scope
     }
     if let Some(settings) = scope.settings.filter(|_| is_baked) {
         let is_glb = document.container() == Container::Glb;
-        if settings.glb != is_glb {
+        if let Some(expected) = settings.glb.filter(|expected| *expected != is_glb) {
             let message =
-                format!("expected glb = {}, found glb = {is_glb}; bake again, and delete this document", settings.glb);
+                format!("expected glb = {expected}, found glb = {is_glb}; bake again, and delete this document");
             findings.add(Code::OtherSettings, "", message);
         }
     }

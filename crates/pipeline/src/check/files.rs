@@ -96,7 +96,7 @@ impl<'a> ReferencedFiles<'a> {
     /// Decodes a data URI.
     fn data(&self, uri: &str) -> Result<Vec<u8>, SourceError> {
         let files = |_: &Path| Err(io::ErrorKind::NotFound.into());
-        Source { stem: "", document: self.document, files: &files }.uri(uri)
+        Source::new("", self.document, &files).uri(uri)
     }
 
     /// Reads the image in buffer view `index`.

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use crate::bake::Source;
 use crate::digest::{Digest, digest};
-use crate::gltf::document::Document;
+use crate::gltf::document::{Container, Document};
 use crate::gltf::texture::ImageLocation;
 
 /// The sources of one baked asset. Each digest is computed once.
@@ -35,6 +35,11 @@ impl<'a> SourceDigests<'a> {
         Some((document, digest(&document.to_bytes().ok()?)))
     }
 
+    /// Returns the container of the source document.
+    pub fn container(&self) -> Option<Container> {
+        self.document.as_ref().map(Document::container)
+    }
+
     fn hash(&self, uri: &str) -> Result<Vec<Digest>, String> {
         let locations = self.locations(uri);
         if locations.is_empty() {
@@ -46,9 +51,7 @@ impl<'a> SourceDigests<'a> {
 
     fn bytes(&self, location: &ImageLocation) -> Result<Vec<u8>, String> {
         match (&self.document, location) {
-            (Some(document), _) => {
-                Source { stem: "", document, files: &self.read }.image(location).map_err(|e| e.to_string())
-            }
+            (Some(document), _) => Source::new("", document, &self.read).image(location).map_err(|e| e.to_string()),
             // `map` records file names without folders, and no URIs. A folder in this name is not to be trusted.
             (None, ImageLocation::Uri(name)) => {
                 let name = Path::new(name).file_name().ok_or("a path without a file name")?;

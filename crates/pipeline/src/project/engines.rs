@@ -19,9 +19,11 @@ pub enum Engine {
     Playcanvas,
     /// Filament: its glTF loader has no anisotropy.
     Filament,
-    /// Bevy: refuses files that need KHR_texture_basisu, and its anisotropic lobes are too narrow.
+    /// Bevy: refuses files that need KHR_texture_basisu, so that a .gltf in the dual form is written; its anisotropic
+    /// lobes are too narrow.
     Bevy,
-    /// Godot: its glTF import has no anisotropy; turn its roughness limiter off.
+    /// Godot: drops the mips of images inside a .glb, so that a .gltf is written; its glTF import has no anisotropy; turn
+    /// its roughness limiter off.
     Godot,
 }
 
@@ -36,6 +38,8 @@ pub struct Preset {
     pub form: Form,
     /// Whether it multiplies slopes by `normalTexture.scale`, as glTF says.
     pub reads_normal_scale: bool,
+    /// Whether outputs are .glb files; `None` keeps the container of each source.
+    pub glb: Option<bool>,
     /// Its support of `KHR_materials_anisotropy`.
     anisotropy: Anisotropy,
     /// How its user turns off what widens baked lobes a second time; `None` if nothing does so by default.
@@ -78,8 +82,9 @@ impl Engine {
 
     /// Returns the preset of the engine.
     pub fn preset(self) -> Preset {
-        let (target, form, anisotropy, limiter) = (Target::Basis, Form::Fallback, Anisotropy::Wrong, None);
-        let defaults = |name| Preset { name, target, form, reads_normal_scale: true, anisotropy, limiter };
+        // Loaders that read KTX2 need no PNG copies.
+        let (target, form, anisotropy, limiter) = (Target::Basis, Form::Strict, Anisotropy::Wrong, None);
+        let defaults = |name| Preset { name, target, form, glb: None, reads_normal_scale: true, anisotropy, limiter };
         match self {
             // Its shader looks the environment up once, with the shorter axis of the lobe and a bent normal.
             Self::Three => defaults("three"),
@@ -90,10 +95,16 @@ impl Engine {
             Self::Playcanvas => Preset { reads_normal_scale: false, ..defaults("playcanvas") },
             Self::Filament => Preset { anisotropy: Anisotropy::Unread, ..defaults("filament") },
             // Its loader refuses files that need KHR_texture_basisu and ignores normalTexture.scale, and its shader
-            // squares the alphas of anisotropic lobes once more.
-            Self::Bevy => Preset { form: Form::Dual, reads_normal_scale: false, ..defaults("bevy") },
-            // For normalTexture.scale it mixes the normal with that of the surface.
+            // squares the alphas of anisotropic lobes once more. The dual form needs external files.
+            Self::Bevy => {
+                Preset { form: Form::Dual, glb: Some(false), reads_normal_scale: false, ..defaults("bevy") }
+            }
+            // Its editor saves images inside a .glb as PNG and makes mips of its own. No test of ours runs it, so that
+            // the form is the one that every importer of glTF reads. For normalTexture.scale it mixes the normal with
+            // that of the surface.
             Self::Godot => Preset {
+                form: Form::Auto,
+                glb: Some(false),
                 reads_normal_scale: false,
                 anisotropy: Anisotropy::Unread,
                 limiter: Some(GODOT_LIMITER),

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use walkdir::WalkDir;
 
+use super::destination::Destination;
 use crate::bake::output_stem;
 use crate::output::{case_folded, folder_of};
 
@@ -17,7 +18,8 @@ pub struct Input {
     pub path: PathBuf,
     /// The output folder.
     pub folder: PathBuf,
-    /// The name of the outputs without extension: that of the source, shortened if it is too long.
+    /// The name of the outputs without extension: that of the source, shortened if it is too long, or the name that the
+    /// user chose.
     pub stem: String,
 }
 
@@ -130,14 +132,14 @@ pub struct Found {
     pub baked: Vec<PathBuf>,
 }
 
-/// Finds the assets that `arguments` name. Outputs of files go to `output` itself; folders keep their structure below
-/// `output`. Documents in folders for which `is_baked` returns true are left out.
-pub fn find(arguments: &[PathBuf], output: &Path, is_baked: &mut dyn FnMut(&Path) -> bool) -> Found {
+/// Finds the assets that `arguments` name. Outputs of files go to the folder of `destination` itself, and folders keep
+/// their structure below it. Documents in folders for which `is_baked` returns true are left out.
+pub fn find(arguments: &[PathBuf], destination: &Destination, is_baked: &mut dyn FnMut(&Path) -> bool) -> Found {
     let mut all = Found::default();
     // The key is the name of the output on systems that ignore case; the value is the exact name and the input.
     let mut taken: BTreeMap<PathBuf, (PathBuf, PathBuf)> = BTreeMap::new();
     for argument in arguments {
-        let found = find_one(argument, output, is_baked)
+        let found = find_one(argument, destination, is_baked)
             .unwrap_or_else(|error| Found { errors: vec![error], ..Found::default() });
         all.errors.extend(found.errors);
         all.baked.extend(found.baked);
@@ -166,14 +168,20 @@ pub fn find(arguments: &[PathBuf], output: &Path, is_baked: &mut dyn FnMut(&Path
 const SCENES: [&str; 16] =
     ["3ds", "abc", "blend", "c4d", "dae", "fbx", "ma", "max", "mb", "obj", "ply", "stl", "usd", "usda", "usdc", "usdz"];
 
-fn find_one(argument: &Path, output: &Path, is_baked: &mut dyn FnMut(&Path) -> bool) -> Result<Found, InputError> {
-    let path = argument.to_owned();
+fn find_one(
+    argument: &Path,
+    destination: &Destination,
+    is_baked: &mut dyn FnMut(&Path) -> bool,
+) -> Result<Found, InputError> {
+    let (path, output) = (argument.to_owned(), destination.folder.as_path());
     let facts =
         fs::metadata(argument).map_err(|e| InputError::NotAnAsset { path: path.clone(), found: e.to_string() })?;
     let own_folder = if facts.is_dir() { argument } else { folder_of(argument) };
-    // An output below a folder of sources could overwrite a source.
+    // An output below a folder of sources could overwrite a source. A document that the user names is no accident.
     let real_output = real(output);
-    if real_output.as_ref().is_some_and(|output| real(own_folder).is_some_and(|own| own.starts_with(output))) {
+    if destination.document.is_none()
+        && real_output.as_ref().is_some_and(|output| real(own_folder).is_some_and(|own| own.starts_with(output)))
+    {
         return Err(InputError::OutputIsInput { path: output.to_owned() });
     }
     if facts.is_file() {
@@ -193,7 +201,10 @@ fn find_one(argument: &Path, output: &Path, is_baked: &mut dyn FnMut(&Path) -> b
             );
             return Err(InputError::NotAnAsset { path, found });
         }
-        return Ok(Found { inputs: vec![input(argument, output.to_owned())?], ..Found::default() });
+        let named = destination.document.as_ref().map(|document| document.stem.clone());
+        let found = input(argument, output.to_owned())?;
+        let found = Input { stem: named.unwrap_or(found.stem), ..found };
+        return Ok(Found { inputs: vec![found], ..Found::default() });
     }
     let Found { mut inputs, mut errors, mut baked } = Found::default();
     let walk = WalkDir::new(argument).follow_links(true).sort_by_file_name().into_iter();

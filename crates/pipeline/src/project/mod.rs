@@ -3,6 +3,7 @@
 //! Settings come from sources, of which a later one overrides the earlier ones: the defaults, the file, its overrides
 //! in order, the command line. The values of an engine's preset yield to other values of the source that sets `engine`.
 
+mod destination;
 mod engines;
 mod file;
 mod globs;
@@ -17,6 +18,7 @@ mod values;
 
 pub use inputs::{Input, InputError};
 
+pub use destination::named_container;
 pub use engines::Engine;
 pub use file::{Config, ConfigError, FILE_NAME, TEMPLATE};
 pub use globs::GlobError;

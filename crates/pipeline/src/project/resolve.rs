@@ -35,6 +35,8 @@ pub struct Resolved {
 /// [`SettingsError`] for values that are out of range or do not go together.
 pub fn resolve(sources: &[ConfigSource]) -> Result<Resolved, SettingsError> {
     let (mut values, mut origins) = (Values::defaults(), Origins::default());
+    // Whether a preset, and no explicit value, has set the container.
+    let mut has_container_of_preset = false;
     let profile = sources.iter().rev().find_map(|source| source.values.profile).unwrap_or_default();
     for ConfigSource { origin, values: explicit } in sources {
         if let Some(engine) = explicit.engine {
@@ -42,14 +44,19 @@ pub fn resolve(sources: &[ConfigSource]) -> Result<Resolved, SettingsError> {
             let needs = Values {
                 target: Some(preset.target),
                 gltf: Some(preset.form),
+                glb: preset.glb,
                 model: preset.model(profile),
                 max_model: preset.max_model(profile),
                 scale_normals: Some(preset.reads_normal_scale),
                 ..Values::default()
             };
+            // A preset without a container does not keep that of an earlier preset.
+            values.glb = values.glb.filter(|_| !has_container_of_preset);
+            has_container_of_preset |= needs.glb.is_some();
             origins.record(&needs, &format!("{origin}, engine = {}", preset.name));
             values = values.overridden_by(&needs);
         }
+        has_container_of_preset &= explicit.glb.is_none();
         origins.record(explicit, origin);
         values = values.overridden_by(explicit);
     }

@@ -9,12 +9,14 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use self::configs::{Configs, FoundConfig};
+use super::destination::Destination;
 use super::engines::Engine;
 use super::inputs::{self, Input, InputError};
 use super::record::is_baked;
 use super::resolve::{ConfigSource, Resolved, resolve};
 use super::trust::NamedServer;
 use super::values::Values;
+use crate::gltf::document::Container;
 use crate::note::Note;
 use crate::settings::Settings;
 
@@ -37,7 +39,8 @@ pub struct Selection {
     pub config: ConfigChoice,
     /// Explicit values, which win over those of configurations.
     pub values: Values,
-    /// The output folder; `None` takes the folder that the configuration of the first input names.
+    /// The output folder, or the document that the one input is baked to. `None` takes the folder that the configuration
+    /// of the first input names.
     pub output: Option<PathBuf>,
 }
 
@@ -101,16 +104,19 @@ impl Selection {
         is_baked: &mut dyn FnMut(&Path) -> bool,
     ) -> Result<Selected, SelectionError> {
         let mut configs = Configs::default();
+        let named = self.output.as_deref().map(|output| Destination::new(output, arguments)).transpose()?;
         let first = arguments.first().ok_or(SelectionError::NoOutput)?;
         let folder = if first.is_dir() { first.as_path() } else { first.parent().unwrap_or(Path::new("")) };
         let found = self.config(&mut configs, folder)?;
-        let output = match &self.output {
-            Some(output) => Some(output.clone()),
-            None => found.and_then(|found| found.output_folder().transpose()).transpose()?,
+        let destination = match named {
+            Some(named) => named,
+            None => {
+                let folder = found.map(FoundConfig::output_folder).transpose()?.flatten();
+                Destination::folder(&folder.ok_or(SelectionError::NoOutput)?)
+            }
         };
         let remote = found.and_then(FoundConfig::remote);
-        let output = output.ok_or(SelectionError::NoOutput)?;
-        let selected = Selected { remote, ..self.select(configs, arguments, &output, is_baked)? };
+        let selected = Selected { remote, ..self.select(configs, arguments, destination, is_baked)? };
         for (_, resolved) in &selected.assets {
             resolved.settings.target.check_available()?;
         }
@@ -122,7 +128,7 @@ impl Selection {
     /// # Errors
     /// [`SelectionError`] where no asset can be selected.
     pub fn find_into(&self, arguments: &[PathBuf], output: &Path) -> Result<Selected, SelectionError> {
-        self.select(Configs::default(), arguments, output, &mut is_baked)
+        self.select(Configs::default(), arguments, Destination::folder(output), &mut is_baked)
     }
 
     /// Returns whether a configuration or a value is explicit.
@@ -134,11 +140,11 @@ impl Selection {
         &self,
         mut configs: Configs,
         arguments: &[PathBuf],
-        output: &Path,
+        destination: Destination,
         is_baked: &mut dyn FnMut(&Path) -> bool,
     ) -> Result<Selected, SelectionError> {
-        let flags = ConfigSource { origin: "command line".to_owned(), values: self.values.clone() };
-        let inputs::Found { inputs, errors, baked } = inputs::find(arguments, output, is_baked);
+        let flags = ConfigSource { origin: "command line".to_owned(), values: self.values(&destination)? };
+        let inputs::Found { inputs, errors, baked } = inputs::find(arguments, &destination, is_baked);
         let mut assets = Vec::with_capacity(inputs.len());
         for input in inputs {
             let folder = input.path.parent().unwrap_or(Path::new(""));
@@ -152,7 +158,17 @@ impl Selection {
         }
         let settings = resolve(&[flags]).map_or_else(|_| Settings::default(), |resolved| resolved.settings);
         let configs = configs.into_paths();
-        Ok(Selected { assets, output: output.to_owned(), errors, baked, settings, configs, remote: None })
+        Ok(Selected { assets, output: destination.folder, errors, baked, settings, configs, remote: None })
+    }
+
+    /// Returns the explicit values. The extension of a named document decides on its container.
+    fn values(&self, destination: &Destination) -> Result<Values, SelectionError> {
+        let Some(document) = &destination.document else { return Ok(self.values.clone()) };
+        let is_glb = document.container == Container::Glb;
+        match self.values.glb.filter(|explicit| *explicit != is_glb) {
+            Some(is_glb) => Err(SelectionError::OtherContainer { path: document.path.clone(), is_glb }),
+            None => Ok(Values { glb: Some(is_glb), ..self.values.clone() }),
+        }
     }
 
     fn config<'c>(&self, configs: &'c mut Configs, folder: &Path) -> Result<Option<&'c FoundConfig>, SelectionError> {

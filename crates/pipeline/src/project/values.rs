@@ -147,7 +147,7 @@ impl Values {
             max_texels: Some(defaults.max_texels),
             provenance: Some(defaults.provenance),
             gltf: Some(defaults.gltf),
-            glb: Some(defaults.glb),
+            glb: defaults.glb,
             scale_normals: Some(defaults.scale_normals),
             frame: Some(defaults.frame.kind()),
             main_direction: Some([0.0, 1.0, 0.0]),
@@ -164,9 +164,8 @@ impl Values {
     /// [`SettingsError`] for values that are out of range or do not go together.
     pub fn settings(&self) -> Result<Settings, SettingsError> {
         let defaults = Settings::default();
-        let glb = self.glb.unwrap_or(defaults.glb);
         let form = self.gltf.unwrap_or(defaults.gltf);
-        if glb && form == Form::Dual {
+        if self.glb == Some(true) && form == Form::Dual {
             return Err(SettingsError::DualInGlb);
         }
         let max_error = self.max_error.map(|error| limit::MAX_ERROR.check(error)).transpose()?;
@@ -183,7 +182,7 @@ impl Values {
         settings.quality = self.quality.unwrap_or(settings.quality);
         settings.rdo = rdo;
         settings.gltf = form;
-        settings.glb = glb;
+        settings.glb = self.glb;
         settings.scale_normals = self.scale_normals.unwrap_or(defaults.scale_normals);
         settings.frame = self.frame()?;
         settings.height_scale = height_scale.map(|s| s as f32);

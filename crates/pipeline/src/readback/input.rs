@@ -109,7 +109,7 @@ impl Input {
         match self {
             Self::Asset { document, folder, stem } => {
                 let read = |path: &Path| read_file(&folder.join(path));
-                then(&Source { stem, document, files: &read })
+                then(&Source::new(stem, document, &read))
             }
             Self::Map { bytes, name, kind } => {
                 let stem = output_stem_of(Path::new(name));
@@ -140,7 +140,7 @@ impl Input {
                 let read = |path: &Path| {
                     if path == Path::new(name) { Ok(bytes.clone()) } else { Err(io::ErrorKind::NotFound.into()) }
                 };
-                then(&Source { stem: "", document: &document, files: &read })
+                then(&Source::new("", &document, &read))
             }
         }
     }

@@ -32,7 +32,7 @@ pub fn read_back(
         Some(file) => Ok(file.bytes.clone()),
         None => source.files.read(path),
     };
-    let source = Source { stem: source.stem, document: &document, files: &read };
+    let source = Source::new(source.stem, &document, &read);
     let root: Value = document.json().value("")?.unwrap_or_default();
     let mut found = Vec::new();
     for material in materials(&root) {

@@ -16,7 +16,6 @@ use crate::memory;
 use crate::output::Guard;
 use crate::project::Values;
 use crate::run::error::RunError;
-use crate::settings::Settings;
 
 /// The bake of one asset. Paths are relative to the working folder, if the command line's are.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -30,6 +29,9 @@ pub struct Job {
     /// Folder of the outputs. The id does not cover it; [`crate::run::confine`] checks that of a plan.
     #[serde(deserialize_with = "relative")]
     pub output: PathBuf,
+    /// The name of the output document without extension; absent if it is that of the source.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "file_name")]
+    pub name: Option<String>,
     /// Every setting that has a value.
     pub settings: Values,
     /// The files that the job reads, the source first.
@@ -85,15 +87,16 @@ pub(super) fn parsed(bytes: &[u8]) -> Result<Document, RunError> {
 
 impl Job {
     /// Plans the bake of `source` into the folder `output` with `settings`: reads and hashes its files, and decodes
-    /// none.
+    /// none. The output document is called `name`, or as the source.
     ///
     /// # Errors
     /// [`RunError`] where the document cannot be read or understood.
-    pub fn new(source: &Path, output: &Path, settings: &Values) -> Result<Self, RunError> {
+    pub fn new(source: &Path, output: &Path, name: Option<&str>, settings: &Values) -> Result<Self, RunError> {
         let bytes = read_file(source).map_err(RunError::Read)?;
         let document = parsed(&bytes)?;
         let facts = planned_files(&document)?;
         let stem = output_stem_of(source);
+        let name = name.filter(|name| *name != stem);
         // Removes parts without meaning, such as a slash at the end.
         let output: &Path = &output.components().collect::<PathBuf>();
         let mut inputs =
@@ -110,14 +113,21 @@ impl Job {
             .map(|name| name.into_owned())
             .zip(inputs.iter().map(|input| input.blake3))
             .collect();
-        let identity = json!({ "version": env!("CARGO_PKG_VERSION"), "settings": settings, "files": files });
+        let version = env!("CARGO_PKG_VERSION");
+        let mut identity = json!({ "version": version, "settings": settings, "files": files });
+        if let Some(name) = name {
+            identity["name"] = json!(name);
+        }
+        let container = settings.settings()?.container(facts.container);
+        let stem = name.unwrap_or(&stem);
         Ok(Self {
             id: digest(identity.to_string().as_bytes()),
-            outputs: outputs(&facts, &settings.settings()?, &stem, output),
+            outputs: outputs(&facts, container, stem, output),
             cost: if facts.has_bumps { inputs.iter().map(|input| input.bytes).sum() } else { 0 },
-            command: command(source, output, settings),
+            command: command(source, &named_output(output, name, container), settings),
             source: source.to_owned(),
             output: output.to_owned(),
+            name: name.map(str::to_owned),
             settings: settings.clone(),
             inputs,
         })
@@ -129,7 +139,7 @@ impl Job {
     /// [`RunError::NotAsPlanned`] if the files make another job now. [`RunError::Edited`] if the id is right and
     /// another member of the job is wrong.
     pub fn check(&self) -> Result<(), RunError> {
-        let now = Self::new(&self.source, &self.output, &self.settings)?;
+        let now = Self::new(&self.source, &self.output, self.name.as_deref(), &self.settings)?;
         if now.id != self.id {
             let changed = now.inputs.iter().find(|input| !self.inputs.contains(input));
             let reason = changed.map_or_else(
@@ -182,9 +192,20 @@ impl Job {
         self.inputs.iter().find(|input| input.path == path)
     }
 
-    /// Returns the name of the asset without its extension, from which the names of outputs are made.
-    pub fn stem(&self) -> String {
+    /// Returns whether the output at `path` is a buffer of the document. The document is declared first.
+    pub fn is_buffer(&self, path: &Path) -> bool {
+        let path = normal_path(path);
+        self.outputs.iter().skip(1).any(|output| output.kind == OutputKind::File && normal_path(&output.path) == path)
+    }
+
+    /// Returns the name of the source without its extension, which provenance records.
+    pub fn source_stem(&self) -> String {
         output_stem_of(&self.source)
+    }
+
+    /// Returns the name of the output document without its extension, from which the names of other outputs are made.
+    pub fn output_stem(&self) -> String {
+        self.name.clone().unwrap_or_else(|| self.source_stem())
     }
 }
 
@@ -198,18 +219,34 @@ fn relative<'de, D: Deserializer<'de>>(deserializer: D) -> Result<PathBuf, D::Er
     Ok(path)
 }
 
-fn outputs(facts: &PlannedFiles, settings: &Settings, stem: &str, folder: &Path) -> Vec<JobOutput> {
-    let file = |path: PathBuf| JobOutput { path, kind: OutputKind::File };
-    let is_glb = if facts.has_bumps { settings.glb } else { facts.container == Container::Glb };
-    let mut outputs = vec![file(folder.join(format!("{stem}.{}", if is_glb { "glb" } else { "gltf" })))];
-    if facts.has_bumps && !is_glb {
-        let name = format!("{}.roughcast", portable_stem(stem));
-        outputs.push(JobOutput { path: folder.join(name), kind: OutputKind::Folder });
+/// Reads the name of an output document, which may lead into no other folder.
+fn file_name<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<String>, D::Error> {
+    let name = String::deserialize(deserializer)?;
+    let mut parts = Path::new(&name).components();
+    let is_plain = matches!((parts.next(), parts.next()), (Some(Component::Normal(part)), None) if part == &*name);
+    // On Unix, `\` is a character like any other, and the plan may be run on Windows.
+    if is_plain && !name.contains(['\\', '\0']) {
+        return Ok(Some(name));
     }
-    if !is_glb {
+    Err(D::Error::custom(format!("expected the name of a file without folders, found {name:?}")))
+}
+
+fn outputs(facts: &PlannedFiles, container: Container, stem: &str, folder: &Path) -> Vec<JobOutput> {
+    let file = |path: PathBuf| JobOutput { path, kind: OutputKind::File };
+    let mut outputs = vec![file(folder.join(format!("{stem}.{}", container.extension())))];
+    if container == Container::Gltf {
+        if facts.has_bumps || facts.has_bin {
+            let name = format!("{}.roughcast", portable_stem(stem));
+            outputs.push(JobOutput { path: folder.join(name), kind: OutputKind::Folder });
+        }
         outputs.extend(facts.buffers.iter().map(|buffer| file(normal_path(&folder.join(buffer)))));
     }
     outputs
+}
+
+/// Returns what `-o` names: the folder of the outputs, or the document if it has a `name` of its own.
+fn named_output(folder: &Path, name: Option<&str>, container: Container) -> PathBuf {
+    name.map_or_else(|| folder.to_owned(), |name| folder.join(format!("{name}.{}", container.extension())))
 }
 
 /// Returns the command line of the job. Flags have the names of the settings, and settings without a value have no
@@ -220,7 +257,7 @@ fn command(source: &Path, output: &Path, settings: &Values) -> Vec<String> {
     words.push("--no-config".to_owned());
     for (name, text) in settings.texts() {
         match (name.as_str(), text.as_str()) {
-            ("provenance", "true") | ("glb" | "scale-normals" | "trim", "false") => {}
+            ("provenance", "true") | ("scale-normals" | "trim", "false") => {}
             ("provenance", _) => words.push("--no-provenance".to_owned()),
             ("fov" | "aspect", _) if settings.nearest.is_none() => {}
             // Flags take names and lists without the quotes and brackets of JSON.

@@ -31,7 +31,7 @@ pub struct UnknownJob {
 pub fn plan_assets(assets: &[(Input, Resolved)]) -> Vec<PlannedAsset> {
     let planned = assets.par_iter().map(|(input, resolved)| PlannedAsset {
         name: input.path.display().to_string(),
-        job: Job::new(&input.path, &input.folder, &resolved.values),
+        job: Job::new(&input.path, &input.folder, Some(&input.stem), &resolved.values),
     });
     planned.collect()
 }

@@ -31,14 +31,14 @@ impl Previous {
     ///
     /// # Errors
     /// [`RunError::OtherSource`] where the document was baked from another source. Without this check, bakes of the two
-    /// sources would overwrite each other in turn.
+    /// sources would overwrite each other in turn. A document that the user names may be replaced.
     pub fn check(&self, job: &Job) -> Result<(), RunError> {
-        let Some(found) = &self.provenance.source else { return Ok(()) };
+        let Some(found) = self.provenance.source.as_ref().filter(|_| job.name.is_none()) else { return Ok(()) };
         let mut magic = Vec::new();
         let opened = check_file(&job.source).and_then(|_| File::open(&job.source));
         opened.and_then(|file| file.take(4).read_to_end(&mut magic)).map_err(RunError::Read)?;
         let container = if magic == GLB_MAGIC { Container::Glb } else { Container::Gltf };
-        let source_name = DocumentProvenance::source_name(&job.stem(), container);
+        let source_name = DocumentProvenance::source_name(&job.source_stem(), container);
         if *found == source_name {
             return Ok(());
         }
@@ -48,7 +48,7 @@ impl Previous {
     /// Removes files of the earlier document whose digests are as the document recorded them. Outputs of this run,
     /// which `guard` knows, and inputs of `job` stay. Returns the removed files.
     pub fn remove_stale(&self, job: &Job, guard: &mut Guard) -> Vec<PathBuf> {
-        let folder = PathBuf::from(format!("{}.roughcast", job.stem()));
+        let folder = PathBuf::from(format!("{}.roughcast", job.output_stem()));
         let textures = job.output.join(&folder);
         // A link may lead to a folder of somebody else.
         if !fs::symlink_metadata(&textures).is_ok_and(|facts| facts.is_dir()) {

@@ -7,12 +7,11 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
 use crate::bake::{BakedAsset, Files, Source, bake_asset};
-use crate::cache::{CacheError, Entry, Warn};
+use crate::cache::{CacheError, Entry, RelativePath, Warn};
 use crate::digest::{Digest, digest};
-use crate::gltf::document::Container;
 use crate::input_file::read_file;
 use crate::output::Guard;
-use crate::report::AssetReport;
+use crate::report::{AssetReport, OutputSizes};
 use crate::run::budget::MemoryBudget;
 use crate::run::error::RunError;
 use crate::run::job::{Job, JobInput, beside, parsed};
@@ -26,6 +25,8 @@ use crate::settings::Settings;
 pub struct Done {
     /// The output document.
     pub output: PathBuf,
+    /// Bytes of all inputs.
+    pub inputs: u64,
     /// Bytes of all outputs.
     pub bytes: u64,
     /// All outputs, the document last.
@@ -52,19 +53,26 @@ pub struct Written {
 impl Done {
     /// Returns the result of a job whose outputs `entry` lists. Copies have the planned digests.
     fn new(job: &Job, entry: Entry, removed: Vec<PathBuf>, is_cached: bool) -> Self {
-        let copies = entry.copies.iter().filter_map(|copy| {
-            let copy = copy.as_path();
-            let input = job.input(copy)?;
+        let (mut written, mut bytes, mut report) = (Vec::new(), 0, entry.report.clone());
+        for copy in entry.copies.iter().map(RelativePath::as_path) {
+            let Some((input, blake3)) = job.input(copy).and_then(|input| Some((input, input.blake3?))) else {
+                continue;
+            };
             let (path, source) = (job.output.join(copy), beside(&job.source, copy));
-            Some((Written { path, source, blake3: input.blake3? }, input.bytes))
-        });
-        let files = entry.stored().map(|stored| {
+            let mut copied = OutputSizes::default();
+            *if job.is_buffer(&path) { &mut copied.geometry } else { &mut copied.images } = input.bytes;
+            report.sizes = report.sizes + copied;
+            bytes += input.bytes;
+            written.push(Written { path, source, blake3 });
+        }
+        for stored in entry.stored() {
             let path = job.output.join(stored.path.as_path());
-            (Written { source: path.clone(), path, blake3: stored.blake3 }, stored.bytes)
-        });
-        let (written, bytes): (Vec<Written>, Vec<u64>) = copies.chain(files).unzip();
+            bytes += stored.bytes;
+            written.push(Written { source: path.clone(), path, blake3: stored.blake3 });
+        }
         let output = job.output.join(entry.document.path.as_path());
-        Self { output, bytes: bytes.iter().sum(), written, removed, report: entry.report, is_cached }
+        let inputs = job.inputs.iter().map(|input| input.bytes).sum();
+        Self { output, inputs, bytes, written, removed, report, is_cached }
     }
 }
 
@@ -161,8 +169,9 @@ fn attempt(job: &Job, settings: &Settings, advance: &dyn Fn(f32)) -> Result<Bake
     let inputs = Inputs::new(job);
     let result: Result<_, RunError> = (|| {
         let document = parsed(&inputs.document().map_err(RunError::Read)?)?;
-        let stem = job.stem();
-        Ok(bake_asset(&Source { stem: &stem, document: &document, files: &inputs }, settings, advance)?)
+        let (stem, output_stem) = (job.source_stem(), job.output_stem());
+        let source = Source { stem: &stem, output_stem: &output_stem, document: &document, files: &inputs };
+        Ok(bake_asset(&source, settings, advance)?)
     })();
     // A file that was being written explains every other error.
     match inputs.changed() {
@@ -173,8 +182,7 @@ fn attempt(job: &Job, settings: &Settings, advance: &dyn Fn(f32)) -> Result<Bake
 
 /// Returns the file name of the document.
 fn name(job: &Job, baked: &BakedAsset) -> PathBuf {
-    let extension = if baked.container == Container::Glb { "glb" } else { "gltf" };
-    format!("{}.{extension}", job.stem()).into()
+    format!("{}.{}", job.output_stem(), baked.container.extension()).into()
 }
 
 /// The files of a job. The bytes that are read must have the planned digests.

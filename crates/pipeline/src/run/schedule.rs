@@ -157,6 +157,7 @@ impl Done {
             remote: origin,
             settings: None,
             seconds,
+            input_bytes: self.inputs,
             bytes: self.bytes,
             error: None,
             retry: false,

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use crate::output::{Guard, OutputPath, Outputs as Wanted, PublishError, Staged};
+use crate::output::{Guard, OutputPath, Outputs as Wanted, PublishError, Staged, folder_of, real};
 use crate::run::error::RunError;
 use crate::run::job::{Job, beside};
 use crate::run::previous::Previous;
@@ -37,6 +37,9 @@ pub struct New<'o> {
 /// copied.
 pub fn write(job: &Job, outputs: &Outputs<'_>, guard: &mut Guard) -> Result<Vec<PathBuf>, RunError> {
     let Outputs { copies, files, document } = outputs;
+    // An output that the user named may lie beside its source, and so do then the files that it would copy.
+    let is_elsewhere = real(&job.output).ok() != real(folder_of(&job.source)).ok();
+    let copies: Vec<&(&Path, bool)> = copies.iter().filter(|_| is_elsewhere).collect();
     let target = job.output.join(document.path);
     let names: Vec<&Path> = files.iter().map(|file| file.path).collect();
     let copied: Vec<PathBuf> = copies.iter().map(|(copy, _)| (*copy).to_owned()).collect();

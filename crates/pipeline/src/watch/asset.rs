@@ -92,7 +92,7 @@ impl Planned {
     /// Plans the asset: reads and hashes its files.
     pub fn new(input: &Input, resolved: &Resolved) -> Self {
         let since = SystemTime::now();
-        let job = Job::new(&input.path, &input.folder, &resolved.values);
+        let job = Job::new(&input.path, &input.folder, Some(&input.stem), &resolved.values);
         let seen = |path: &PathBuf, was_found| (path.clone(), Seen::new(Look::at(path), was_found, since));
         let seen = match &job {
             Ok(job) => job.inputs.iter().map(|input| seen(&input.path, input.blake3.is_some())).collect(),

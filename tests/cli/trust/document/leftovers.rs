@@ -25,10 +25,10 @@ fn a_glb_keeps_no_byte_of_replaced_images() {
     let (before, old) = glb(&lake);
     let normal = image(&before, &old, 0);
     let colour = image(&before, &old, 1);
-    for options in [&["--glb"][..], &["--glb", "--gltf", "strict", "--profile", "both"], &[]] {
+    for options in [&[][..], &["--gltf", "fallback", "--profile", "both"], &["--glb=false"]] {
         let folder = tempdir().expect("a folder");
         bake(&lake, folder.path(), options);
-        let (root, bin) = if options.is_empty() {
+        let (root, bin) = if options.contains(&"--glb=false") {
             let bin = fs::read(folder.path().join("waves.roughcast/waves.bin")).expect("a buffer");
             (document(&folder.path().join("waves.gltf")), bin)
         } else {
@@ -55,7 +55,7 @@ fn a_glb_keeps_no_byte_of_replaced_images() {
 #[test]
 fn baked_images_and_files_have_the_names_of_images() {
     let folder = tempdir().expect("a folder");
-    bake(&fixtures().join("waves/waves.glb"), folder.path(), &["--profile", "both"]);
+    bake(&fixtures().join("waves/waves.glb"), folder.path(), &["--profile", "both", "--glb=false"]);
     let names: Vec<String> = files(&folder.path().join("waves.roughcast")).into_iter().map(|(name, _)| name).collect();
     for name in
         ["waves_normal.normal.ktx2", "waves_normal.normal.png", "waves_normal.offset.ktx2", "Lake.roughness.ktx2"]
@@ -84,7 +84,7 @@ fn a_first_buffer_that_is_a_file_stays_a_file() {
     let path = sphere.file("brushed.glb");
     fs::remove_file(sphere.file("brushed.gltf")).expect("a file");
     fs::write(&path, to_glb(&root, &[7; 64])).expect("a file");
-    bake(&path, &sphere.output(), &[]);
+    bake(&path, &sphere.output(), &["--glb=false"]);
     let baked = document(&sphere.output().join("brushed.gltf"));
     assert_eq!(baked["buffers"], root["buffers"]);
     let read = |path: PathBuf| fs::read(path).expect("a buffer");
@@ -103,9 +103,9 @@ fn a_bin_chunk_without_a_buffer_adds_no_buffer() {
     let path = sphere.file("brushed.glb");
     fs::remove_file(sphere.file("brushed.gltf")).expect("a file");
     fs::write(&path, to_glb(&root, &[7; 64])).expect("a file");
-    bake(&path, &sphere.output(), &[]);
+    bake(&path, &sphere.output(), &["--glb=false"]);
     assert_eq!(document(&sphere.output().join("brushed.gltf")).get("buffers"), None);
-    bake(&path, &sphere.output(), &["--glb"]);
+    bake(&path, &sphere.output(), &[]);
     let (root, bin) = glb(&sphere.output().join("brushed.glb"));
     assert!(root["buffers"].is_array() && !bin.starts_with(&[7; 64]));
 }

@@ -92,10 +92,10 @@ fn an_asset_without_a_rule_fails_alone() {
     copy(&fixtures().join("waves"), &folder.join("A/b=d"));
     let run = run(folder, "bake A -o O -q --model none --depfile d --report r.json");
     let expected = "error: A/b=d/waves.glb: --depfile: expected a path that Make and Ninja can read, found '=' in \
-                    O/b=d/waves.gltf; rename the file or its folder, or leave --depfile out\n";
+                    O/b=d/waves.glb; rename the file or its folder, or leave --depfile out\n";
     assert_eq!((run.code, run.err.as_str()), (1, expected));
-    assert_eq!(fs::read_to_string(folder.join("d")).expect("a file"), "O/good/waves.gltf: \\\n  A/good/waves.glb\n");
-    assert!(folder.join("O/good/waves.gltf").is_file() && !folder.join("O/b=d").exists());
+    assert_eq!(fs::read_to_string(folder.join("d")).expect("a file"), "O/good/waves.glb: \\\n  A/good/waves.glb\n");
+    assert!(folder.join("O/good/waves.glb").is_file() && !folder.join("O/b=d").exists());
     let report: serde_json::Value =
         serde_json::from_slice(&fs::read(folder.join("r.json")).expect("a file")).expect("JSON");
     let failed = &report["assets"][0];

@@ -59,10 +59,10 @@ fn a_path_of_two_lines_is_left_out_with_a_warning() {
     let folder = scene(&["a\nb.glb", "c.glb"], "printf '%s\\n' \"$ROUGHCAST_OUTPUTS\" > list.new\nmv list.new list\n");
     let mut session = Session::start(folder.path(), "--model=none --on-change sh${IFS}hook.sh");
     session.until("idle");
-    assert_eq!(fs::read_to_string(folder.path().join("list")).expect("a file"), "out/c.gltf\n");
+    assert_eq!(fs::read_to_string(folder.path().join("list")).expect("a file"), "out/c.glb\n");
     let run = session.stop();
     assert_eq!(run.code, 0);
-    let expected = "warning: out/a\\u{a}b.gltf: expected a path of one line, found a line break in it; ROUGHCAST_OUTPUTS \
+    let expected = "warning: out/a\\u{a}b.glb: expected a path of one line, found a line break in it; ROUGHCAST_OUTPUTS \
                     leaves it out, --json lists it\n";
     assert_eq!(run.err, expected);
 }

@@ -41,7 +41,7 @@ fn names_from_files_are_printed_without_effect() {
     let scene = scene();
     let folder = scene.path();
     let inside = |name: &str| format!("A/{HOSTILE}/{name}");
-    let baked = run_and_check_text(folder, &["bake", "A", "-o", "O"], 1);
+    let baked = run_and_check_text(folder, &["bake", "A", "-o", "O", "-v"], 1);
     let shown = "\\u{1b}]0;x\\u{7}\\u{202e}\\u{9b}\\u{2028}\\u{a}::error::owned\\u{d}";
     assert!(baked.out.contains(&format!("baked A/{shown}/brushed.gltf: ")), "{}", baked.out);
     assert!(baked.out.contains(&format!("  Brushed steel{shown}: ")), "{}", baked.out);

@@ -29,7 +29,7 @@ fn template() -> TempDir {
     for name in ["1", "2", "3"] {
         copy(&fixtures().join("waves"), &folder.path().join("A").join(name));
     }
-    done(folder.path(), "bake A/2 -o B --model none -q");
+    done(folder.path(), "bake A/2 -o B --model none -q --glb=false");
     fs::write(folder.path().join("A/1/waves.glb"), "x").expect("a file");
     let left = fs::read_dir(folder.path().join("B/waves.roughcast")).expect("a folder");
     let texture =
@@ -110,10 +110,10 @@ fn watching_continues_without_a_reader() {
         let mut command = Command::new(env!("CARGO_BIN_EXE_roughcast"));
         command.current_dir(folder).args(["watch", "A", "-o", "O", "--model=none", json]).stdin(Stdio::null());
         let mut child = command.stdout(unread()).stderr(unread()).spawn().expect("the command starts");
-        there("O/waves.gltf");
+        there("O/waves.glb");
         fs::write(folder.join("A/broken.glb"), "x").expect("a file");
         fs::copy(folder.join("A/waves.glb"), folder.join("A/more.glb")).expect("a file");
-        there("O/more.gltf");
+        there("O/more.glb");
         let stopped = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("a signal");
         assert!(stopped.success());
         assert_eq!(child.wait().expect("an end").code(), Some(0));

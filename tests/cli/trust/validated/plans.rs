@@ -68,7 +68,7 @@ fn a_link_leads_out_of_the_working_folder_only_if_it_is_named() {
     assert!(ended.code == 2 && ended.err.contains("name the folder with -o"), "{}", ended.err);
     assert!(files(&scene.path().join("disk")).is_empty());
     done(&here, "bake --plan p.json -q -o out");
-    assert!(scene.path().join("disk/waves/waves.gltf").is_file());
+    assert!(scene.path().join("disk/waves/waves.glb").is_file());
     // A link to the sources does not circumvent the check.
     std::os::unix::fs::symlink("A", here.join("link")).expect("a link");
     edit(&here, &|job| job["output"] = json!("link"));
@@ -114,7 +114,7 @@ fn a_job_whose_plan_was_edited_fails_for_good_and_the_others_do_not() {
         let ended = run(&here, "bake --plan p.json -q");
         assert_eq!((ended.code, ended.err.lines().count()), (1, 1), "{part}: {}", ended.err);
         assert!(ended.err.starts_with("error: A/brushed/brushed.gltf: ") && ended.err.contains(part), "{}", ended.err);
-        assert!(here.join("out/waves/waves.gltf").is_file() && !here.join("out/brushed").exists());
+        assert!(here.join("out/waves/waves.glb").is_file() && !here.join("out/brushed").exists());
         assert_eq!(hashes(&here.join("A")), sources);
     }
 }

@@ -27,7 +27,7 @@ fn long_names_of_materials_are_shortened() {
         let scene = tempdir().expect("a folder");
         let folder = scene.path();
         fs::write(folder.join("w.glb"), glb(&name)).expect("a file");
-        done(folder, "bake w.glb -o O -q --model anisotropic");
+        done(folder, "bake w.glb -o O -q --model anisotropic --glb=false");
         assert_fit(&folder.join("O"));
     }
 }
@@ -42,14 +42,14 @@ fn long_names_of_assets_are_shortened() {
         copy(&fixtures().join("waves"), &folder.join("A"));
         fs::rename(folder.join("A/waves.glb"), folder.join(format!("A/{stem}{last}.glb"))).expect("a file");
     }
-    done(folder, "bake A -o O -q --cache cache");
+    done(folder, "bake A -o O -q --cache cache --glb=false");
     assert_fit(&folder.join("O"));
     let documents = hashes(&folder.join("O")).into_keys().filter(|name| name.ends_with(".gltf")).count();
     assert_eq!(documents, 2);
     done(folder, "check O --source A --deep");
     let first = hashes(&folder.join("O"));
     fs::remove_dir_all(folder.join("O")).expect("a folder");
-    done(folder, "bake A -o O -q --cache cache");
+    done(folder, "bake A -o O -q --cache cache --glb=false");
     assert_eq!(hashes(&folder.join("O")), first);
 }
 

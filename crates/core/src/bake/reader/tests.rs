@@ -11,7 +11,7 @@ fn with_reader(root: &Value, keeps_all: bool, then: impl FnOnce(Result<Reader<'_
         Ok(vec![7; 64])
     };
     let document = Document::parse(root.to_string().as_bytes()).unwrap();
-    then(Reader::new(&Source { stem: "a", document: &document, files: &files }, root, keeps_all));
+    then(Reader::new(&Source::new("a", &document, &files), root, keeps_all));
     reads.into_inner().unwrap()
 }
 

@@ -71,7 +71,7 @@ impl Asset {
             read.lock().unwrap().insert(name);
             Ok(bytes)
         };
-        let source = Source { stem: "a", document: &document, files: &files };
+        let source = Source::new("a", &document, &files);
         let settings = Settings { model: Model::Isotropic, provenance: false, ..Settings::default() };
         let baked = bake_asset(&source, &settings, &|_| ()).unwrap();
         (baked, read.into_inner().unwrap())
@@ -180,7 +180,7 @@ fn the_roughness_texture_records_the_base_colour() {
         })
     };
     let settings = Settings { model: Model::Isotropic, ..Settings::default() };
-    let baked = bake_asset(&Source { stem: "a", document: &document, files: &files }, &settings, &|_| ()).unwrap();
+    let baked = bake_asset(&Source::new("a", &document, &files), &settings, &|_| ()).unwrap();
     let provenance = provenance(&Ktx2::parse(roughness(&baked)).unwrap()).unwrap();
     let uris: Vec<&str> = provenance.sources.iter().map(|source| source.uri.as_str()).collect();
     assert_eq!(uris, ["normal.png", "orm.png", "colour.png"]);

@@ -27,22 +27,8 @@ pub(super) fn check_text(bytes: &[u8]) -> Result<(), DocumentError> {
 
 /// Returns the format of a file that users mistake for a glTF document.
 fn format(bytes: &[u8]) -> Option<&'static str> {
-    const SIGNATURES: [(&[u8], &str); 14] = [
-        (b"Kaydara FBX Binary", "an FBX file"),
-        (b"; FBX", "an FBX file"),
-        (b"PXR-USDC", "a USD file"),
-        (b"#usda", "a USD file"),
-        (b"PK\x03\x04", "a ZIP or USDZ archive"),
-        (b"BLENDER", "a Blender file"),
-        (b"ply\n", "a PLY file"),
-        (b"ply\r", "a PLY file"),
-        (b"solid ", "an STL file"),
-        (b"<?xml", "an XML file"),
-        (b"#", "a text such as an OBJ file"),
-        (b"mtllib ", "an OBJ file"),
-        (b"\x89PNG", "a PNG image"),
-        (b"\xff\xd8\xff", "a JPEG image"),
-    ];
+    const SIGNATURES: [(&[u8], &str); 3] =
+        [(b"<?xml", "an XML file"), (b"\x89PNG", "a PNG image"), (b"\xff\xd8\xff", "a JPEG image")];
     SIGNATURES.iter().find(|(signature, _)| bytes.starts_with(signature)).map(|(_, format)| *format)
 }
 

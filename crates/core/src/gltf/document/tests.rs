@@ -223,9 +223,7 @@ fn names_other_formats_and_what_to_do() {
     const EXPORT: &str = "; export the scene as glTF 2.0 (.glb or .gltf)";
     for (bytes, found) in [
         (&b"\x89PNG\r\n"[..], "a PNG image"),
-        (b"Kaydara FBX Binary  \0", "an FBX file"),
-        (b"# Blender 4.2\nv 0 0 0\n", "a text such as an OBJ file"),
-        (b"PXR-USDC\0", "a USD file"),
+        (b"#?RADIANCE\n", "a file that starts with \"#?RADIAN\""),
         (b"null", "a file that starts with \"null\""),
         (b"[]", "a file that starts with \"[]\""),
         (b"\"x\"", "a file that starts with \"\\\"x\\\"\""),
@@ -233,6 +231,13 @@ fn names_other_formats_and_what_to_do() {
         (b"\x01\x02", "a file that starts with \"\\x01\\x02\""),
     ] {
         assert_eq!(message(bytes), format!("expected a GLB or a JSON object, found {found}{EXPORT}"));
+    }
+    for (bytes, found) in [
+        (&b"Kaydara FBX Binary  \0"[..], "an FBX file"),
+        (b"# Blender 4.2\nv 0 0 0\n", "a text such as an OBJ file"),
+        (b"PXR-USDC\0", "a USD file"),
+    ] {
+        assert_eq!(message(bytes), format!("expected a glTF document, found {found}{EXPORT}"));
     }
     assert_eq!(message(b""), "expected a glTF document, found an empty file; copy or export it again");
     let pointer = b"version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n";

@@ -4,6 +4,7 @@ use std::io::Write;
 
 use ktx2::{ColorModel, Format, SupercompressionScheme, TransferFunction};
 
+use crate::foreign::Foreign;
 use crate::image::Samples;
 use crate::ktx2::error::ReadError;
 use crate::ktx2::read::Ktx2;
@@ -156,7 +157,9 @@ fn names_what_is_wrong_with_a_header() {
     let file = plain(Format::R8_UNORM, (4, 4), &[&[0; 16]]).encode();
     let parse = |file: &[u8]| Ktx2::parse(file).err();
     let malformed = |what| Some(ReadError::Malformed { what });
-    assert_eq!(parse(&[]), Some(ReadError::NotKtx2));
+    assert_eq!(parse(&[]), Some(ReadError::Foreign { found: Foreign::Empty }));
+    let pointer = b"version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n";
+    assert_eq!(parse(pointer), Some(ReadError::Foreign { found: Foreign::LfsPointer }));
     assert_eq!(parse(&file[1..]), Some(ReadError::NotKtx2));
     assert_eq!(parse(&with_word(&file, 20, 0)), malformed("a width of 0"));
     assert_eq!(parse(&with_word(&file, 36, 0)), malformed("0 faces"));

@@ -53,3 +53,30 @@ fn notes_name_the_switches_of_limiters_that_are_on_by_default() {
     assert!(note.asks_for_action);
     assert!(note.text.contains("screen_space_roughness_limiter/enabled"), "{note}");
 }
+
+#[test]
+fn presets_write_a_gltf_where_an_engine_cannot_use_what_is_inside_a_glb() {
+    for engine in Engine::value_variants() {
+        let preset = engine.preset();
+        let (glb, form) = match engine {
+            Engine::Bevy => (Some(false), Form::Dual),
+            Engine::Godot => (Some(false), Form::Auto),
+            // These load KTX2, and need no PNG copies.
+            _ => (None, Form::Strict),
+        };
+        assert_eq!((preset.glb, preset.form), (glb, form), "{engine:?}");
+    }
+}
+
+#[test]
+fn a_later_preset_leaves_the_container_of_an_earlier_one_behind() {
+    let source = |engine, glb| ConfigSource {
+        origin: "a source".to_owned(),
+        values: Values { engine: Some(engine), glb, ..Values::default() },
+    };
+    let glb = |sources: &[ConfigSource]| resolve(sources).expect("settings").settings.glb;
+    assert_eq!(glb(&[source(Engine::Godot, None)]), Some(false));
+    assert_eq!(glb(&[source(Engine::Godot, None), source(Engine::Three, None)]), None);
+    assert_eq!(glb(&[source(Engine::Godot, Some(true)), source(Engine::Three, None)]), Some(true));
+    assert_eq!(glb(&[source(Engine::Three, Some(false)), source(Engine::Filament, None)]), Some(false));
+}

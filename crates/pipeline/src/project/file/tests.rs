@@ -78,12 +78,12 @@ fn an_engine_sets_its_preset_beneath_other_values_of_its_source() {
                 [[override]]\nfiles = 'e_far.gltf'\nprofile = 'pyramid'\n";
     let needs = |asset| ["target", "gltf", "model"].map(|name| value(text, asset, name));
     assert_eq!(needs("a.gltf"), ["basis", "dual", "isotropic"]);
-    assert_eq!(needs("b.gltf"), ["basis", "fallback", "anisotropic"]);
-    assert_eq!(needs("c.gltf"), ["float", "fallback", "none"]);
-    assert_eq!(needs("d.gltf"), ["basis", "fallback", "isotropic"]);
-    assert_eq!(needs("e.gltf"), ["basis", "fallback", "isotropic"]);
+    assert_eq!(needs("b.gltf"), ["basis", "auto", "anisotropic"]);
+    assert_eq!(needs("c.gltf"), ["float", "auto", "none"]);
+    assert_eq!(needs("d.gltf"), ["basis", "strict", "isotropic"]);
+    assert_eq!(needs("e.gltf"), ["basis", "strict", "isotropic"]);
     // A plugin shades this asset, not the shader of the engine.
-    assert_eq!(needs("e_far.gltf"), ["basis", "fallback", "none"]);
+    assert_eq!(needs("e_far.gltf"), ["basis", "strict", "none"]);
     assert_eq!(value(text, "a.gltf", "engine"), serde_json::Value::Null);
 }
 
@@ -166,5 +166,6 @@ fn a_table_of_settings_shows_the_origin_of_each() {
         line.split_once("# ").expect("an origin").1.to_owned()
     };
     assert_eq!(origin("gltf"), "roughcast.toml, engine = bevy");
-    assert_eq!((origin("rdo").as_str(), origin("glb").as_str()), ("roughcast.toml", "default"));
+    assert_eq!(origin("glb"), "roughcast.toml, engine = bevy");
+    assert_eq!((origin("rdo").as_str(), origin("frame").as_str()), ("roughcast.toml", "default"));
 }

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use super::error::SelectionError;
 use crate::input_file::read_file;
 use crate::output;
+use crate::project::destination::named_container;
 use crate::project::file::{Config, FILE_NAME};
 use crate::project::trust::{NamedServer, is_harmless, is_working_folder};
 
@@ -31,10 +32,14 @@ impl FoundConfig {
     /// Returns the output folder that the configuration names.
     ///
     /// # Errors
-    /// [`SelectionError::OutputElsewhere`] where an untrusted configuration may not name the folder.
+    /// [`SelectionError::OutputElsewhere`] where an untrusted configuration may not name the folder, and
+    /// [`SelectionError::NamedInConfig`] where the name is that of a document.
     pub fn output_folder(&self) -> Result<Option<PathBuf>, SelectionError> {
         let Some(output) = &self.config.output else { return Ok(None) };
         let path = self.folder().join(output);
+        if named_container(output).is_some() {
+            return Err(SelectionError::NamedInConfig { config: self.config.path.clone(), path });
+        }
         if self.is_trusted || is_harmless(&path) {
             return Ok(Some(path));
         }

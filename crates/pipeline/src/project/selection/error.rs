@@ -4,6 +4,7 @@ use std::io;
 use std::path::PathBuf;
 
 use crate::codec::EncodeError;
+use crate::project::destination::DestinationError;
 use crate::project::file::{ConfigError, FILE_NAME};
 use crate::settings::SettingsError;
 
@@ -42,6 +43,31 @@ pub enum SelectionError {
         /// The configuration.
         config: PathBuf,
         /// The folder.
+        path: PathBuf,
+    },
+    /// A document that `-o` names and that no single input can be baked to.
+    #[error(transparent)]
+    Destination(#[from] DestinationError),
+    /// A document whose extension names another container than `--glb`.
+    #[error(
+        "-o {}: expected a name that suits --glb={is_glb}, found another extension; leave --glb out, or change the name",
+        path.display()
+    )]
+    OtherContainer {
+        /// The document.
+        path: PathBuf,
+        /// The value of `--glb`.
+        is_glb: bool,
+    },
+    /// A configuration that names a document as the output.
+    #[error(
+        "{}: expected a folder as `output`, found the document {}; name a folder, or the document with -o",
+        config.display(), path.display()
+    )]
+    NamedInConfig {
+        /// The configuration.
+        config: PathBuf,
+        /// The document.
         path: PathBuf,
     },
     /// No output folder.

@@ -18,7 +18,7 @@ use crate::settings::{Form, Model, Profile};
 const SOURCE: &str = "../../fixtures/tiny/tiny.gltf";
 
 fn job(settings: &Values) -> Job {
-    Job::new(Path::new(SOURCE), Path::new("out"), settings).expect("a job")
+    Job::new(Path::new(SOURCE), Path::new("out"), None, settings).expect("a job")
 }
 
 fn variants<T: ValueEnum + Debug + 'static>() -> impl Strategy<Value = Option<T>> {
@@ -92,7 +92,7 @@ fn the_id_covers_version_settings_and_files_as_json_in_a_fixed_order() {
     let job = job(&settings_of_every_kind());
     let settings = concat!(
         r#"{"profile":"portable","model":"auto","max-model":"anisotropic","max-error":0.1,"quality":"fast","#,
-        r#""distribution":"auto","lobe":"ggx","target":"basis","max-texels":268435456,"provenance":false,"gltf":"fallback","glb":false,"scale-normals":false,"frame":"unit","#,
+        r#""distribution":"auto","lobe":"ggx","target":"basis","max-texels":268435456,"provenance":false,"gltf":"auto","scale-normals":false,"frame":"unit","#,
         r#""main-direction":[0.0,1.0,0.0],"fov":45.0,"aspect":1.778,"trim":false,"#,
         r#""rdo":1.0,"height-scale":-0.5,"nearest":30.0,"screen-height":720}"#,
     );
@@ -126,7 +126,7 @@ fn the_command_line_has_the_settings_as_flags() {
         "--target=basis",
         "--max-texels=268435456",
         "--no-provenance",
-        "--gltf=fallback",
+        "--gltf=auto",
         "--frame=unit",
         "--main-direction=0.0,1.0,0.0",
         "--fov=45.0",
@@ -142,4 +142,34 @@ fn the_command_line_has_the_settings_as_flags() {
     let command =
         job(&Values { fov: Some(30.0), aspect: Some(1.0), provenance: Some(true), ..Values::default() }).command;
     assert_eq!(command[5..], ["--no-config"]);
+}
+
+#[test]
+fn a_named_output_is_part_of_the_id_and_of_the_command_line() {
+    let settings = Values { glb: Some(true), ..Values::default() };
+    let of_name = |name| Job::new(Path::new(SOURCE), Path::new("out"), name, &settings).expect("a job");
+    let (plain, named) = (of_name(None), of_name(Some("packed")));
+    assert_ne!(plain.id, named.id);
+    assert_eq!(named.command[3..5], ["-o", "out/packed.glb"]);
+    assert_eq!(
+        named.outputs.iter().map(|output| output.path.as_path()).collect::<Vec<_>>(),
+        [Path::new("out/packed.glb")]
+    );
+    assert_eq!(named.output_stem(), "packed");
+    assert_eq!(named.source_stem(), "tiny");
+    // The name of the source needs no name of its own.
+    assert_eq!(of_name(Some("tiny")), plain);
+}
+
+#[test]
+fn a_plan_names_no_output_in_another_folder() {
+    let job = job(&Values::default());
+    for name in ["../x", "a/b", "/x", "..", ".", "", "a\\b", "a\0"] {
+        let mut json = serde_json::to_value(&job).expect("JSON");
+        json["name"] = json!(name);
+        assert!(serde_json::from_value::<Job>(json).is_err(), "{name:?}");
+    }
+    let mut json = serde_json::to_value(&job).expect("JSON");
+    json["name"] = json!("a b.c");
+    assert_eq!(serde_json::from_value::<Job>(json).expect("a job").name.as_deref(), Some("a b.c"));
 }

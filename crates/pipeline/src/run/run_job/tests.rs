@@ -38,7 +38,7 @@ fn reports_files_that_change_after_planning() {
         std::fs::copy(file.path(), folder.path().join(file.file_name())).unwrap();
     }
     let source = folder.path().join("brushed.gltf");
-    let job = Job::new(&source, &folder.path().join("baked"), &crate::project::Values::default()).unwrap();
+    let job = Job::new(&source, &folder.path().join("baked"), None, &crate::project::Values::default()).unwrap();
     let bake = || {
         let prepared = prepare(&job, None, &MemoryBudget::new(1), &|_| ());
         finish(&job, prepared, &mut Guard::default(), &mut |_| ())
