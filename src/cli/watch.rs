@@ -56,7 +56,10 @@ pub struct Args {
 enum WatchCommandError {
     #[error("{}: expected a folder, found a file; bake it with `roughcast bake`", path.display())]
     File { path: PathBuf },
-    #[error("-o {}: expected a folder, found the name of a document, of which a folder has many; name a folder", path.display())]
+    #[error(
+        "-o {}: expected a folder, found the name of a document, of which a folder has many; name a folder",
+        path.display()
+    )]
     Named { path: PathBuf },
     #[error(transparent)]
     Selection(#[from] SelectionError),

@@ -54,6 +54,14 @@ fn fallback_is_valid() {
 }
 
 #[test]
+fn defaults_and_presets_are_valid() {
+    assert_valid(&[]);
+    for engine in ["three", "bevy", "godot"] {
+        assert_valid(&["--engine", engine]);
+    }
+}
+
+#[test]
 fn trimmed_textures_are_valid() {
     let view = ["--nearest", "400", "--screen-height", "1080", "--trim", "--profile", "both"];
     assert_valid(&view);

@@ -46,8 +46,8 @@ pub enum Error {
 /// `document` holds the bytes of a .gltf or .glb file, and `stem` is its file name without the extension: the outputs
 /// are named after it. `files` reads the files that the document names; a closure from a relative path to bytes is
 /// enough. The result holds the new document and new files, whose paths are relative to it. A .glb stays a .glb with
-/// everything inside, unless [`Settings::glb`] or [`Settings::gltf`] asks for a .gltf. A document without bumps that keeps
-/// its container comes back byte for byte.
+/// everything inside, unless [`Settings::glb`] or [`Settings::gltf`] asks for a .gltf. A document without bumps that
+/// keeps its container comes back byte for byte.
 ///
 /// # Errors
 /// [`Error`] for the first thing that is wrong with the settings, the document or a file.

@@ -62,8 +62,8 @@ pub struct DocumentOptions {
     /// The model with the most parameters that --model auto may choose. [default: anisotropic]
     #[arg(long, value_enum)]
     max_model: Option<MaxModel>,
-    /// Write .glb files with everything inside, or with --glb=false .gltf files with external textures. [default: as each
-    /// input, except .gltf for --engine bevy and godot and for --gltf dual]
+    /// Write .glb files with everything inside, or with --glb=false .gltf files with external textures. [default: as
+    /// each input, except .gltf for --engine bevy and godot and for --gltf dual]
     #[arg(long, num_args = 0..=1, require_equals = true, default_missing_value = "true", value_name = "BOOL")]
     glb: Option<bool>,
     /// Divide the slopes of low bumps in their texture and multiply normalTexture.scale, so that they lose less to the

@@ -10,8 +10,8 @@ use crate::text::printable;
 /// Materials that a note names. Further materials are counted.
 const MAX_NAMED: usize = 3;
 
-/// Returns one line for the asset, and one line for each note that asks for something. If `is_verbose`, returns one line
-/// for each layer instead, with all of its notes.
+/// Returns one line for the asset, and one line for each note that asks for something. If `is_verbose`, returns one
+/// line for each layer instead, with all of its notes.
 pub fn summary(asset: &AssetOutcome, is_verbose: bool) -> String {
     let verb = match asset.status {
         Status::Failed => return String::new(),

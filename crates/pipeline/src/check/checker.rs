@@ -185,9 +185,7 @@ impl Checker {
         });
         // Without explicit settings, any settings are accepted.
         let asset = known.filter(|_| sources.is_configured || self.expects_defaults);
-        let container = origin.as_ref().and_then(SourceDigests::container);
-        let settings = asset.zip(container).map(|(asset, source)| asset.resolved.settings.resolved_for(source));
-        let scope = Scope { settings: settings.as_ref(), ..self.scope(origin.as_ref()) };
+        let scope = Scope { settings: asset.map(|asset| &asset.resolved.settings), ..self.scope(origin.as_ref()) };
         let checked = check_document(&name, &bytes, &Folder(folder.to_owned()), &scope);
         let mut findings = findings.into_list();
         findings.extend(checked.findings);

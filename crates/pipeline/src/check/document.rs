@@ -21,6 +21,7 @@ use crate::gltf::roughness_pyramid::RoughnessPyramid;
 use crate::gltf::texture::ImageLocation;
 use crate::gltf::uri::{Uri, relative_path};
 use crate::ktx2::Ktx2;
+use crate::settings::Settings;
 
 const KTX2_MIME: &str = "image/ktx2";
 
@@ -46,6 +47,8 @@ pub fn check_document(name: &str, bytes: &[u8], files: &dyn Files, scope: &Scope
             return CheckedDocument { findings: findings.into_list(), files: Vec::new() };
         }
     };
+    let settings = scope.settings.map(|settings| expected_settings(settings, document.container()));
+    let scope = &Scope { settings: settings.as_ref(), ..*scope };
     let textures = Textures::read(&root, &mut findings);
     let uses = check_materials(&root, &value, &textures, &mut findings);
     textures.check_declarations(&root, &value, &mut findings);
@@ -73,6 +76,13 @@ pub fn check_document(name: &str, bytes: &[u8], files: &dyn Files, scope: &Scope
     let mut list = findings.into_list();
     list.append(&mut images.findings.into_list());
     CheckedDocument { findings: list, files: named_files(&root) }
+}
+
+/// Returns the explicit settings that a bake to a document in `container` would have had. If the container itself is
+/// wrong, that is a finding of its own, and the form is still that of the container.
+fn expected_settings(settings: &Settings, container: Container) -> Settings {
+    let form = settings.with_glb(container == Container::Glb).resolved_for(container).gltf;
+    settings.resolved_for(container).with_gltf(form)
 }
 
 /// Parses the document with our reader, and with the typed reader of crate `gltf`: engines refuse what that reader

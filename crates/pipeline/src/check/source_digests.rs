@@ -7,7 +7,7 @@ use std::path::Path;
 
 use crate::bake::Source;
 use crate::digest::{Digest, digest};
-use crate::gltf::document::{Container, Document};
+use crate::gltf::document::Document;
 use crate::gltf::texture::ImageLocation;
 
 /// The sources of one baked asset. Each digest is computed once.
@@ -33,11 +33,6 @@ impl<'a> SourceDigests<'a> {
     pub fn document(&self) -> Option<(&Document, Digest)> {
         let document = self.document.as_ref()?;
         Some((document, digest(&document.to_bytes().ok()?)))
-    }
-
-    /// Returns the container of the source document.
-    pub fn container(&self) -> Option<Container> {
-        self.document.as_ref().map(Document::container)
     }
 
     fn hash(&self, uri: &str) -> Result<Vec<Digest>, String> {

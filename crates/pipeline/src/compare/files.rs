@@ -134,6 +134,7 @@ fn compare_material(
 ) -> Result<Option<Comparison>, CompareError> {
     let settings = Settings::default()
         .with_gltf(Form::Strict)
+        .with_glb(false)
         .with_target(Target::Basis)
         .with_max_error(options.max_error)?
         .with_max_texels(options.max_texels)

@@ -22,8 +22,8 @@ pub enum Engine {
     /// Bevy: refuses files that need KHR_texture_basisu, so that a .gltf in the dual form is written; its anisotropic
     /// lobes are too narrow.
     Bevy,
-    /// Godot: drops the mips of images inside a .glb, so that a .gltf is written; its glTF import has no anisotropy; turn
-    /// its roughness limiter off.
+    /// Godot: drops the mips of images inside a .glb, so that a .gltf is written; its glTF import has no anisotropy;
+    /// turn its roughness limiter off.
     Godot,
 }
 

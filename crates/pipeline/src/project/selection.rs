@@ -39,8 +39,8 @@ pub struct Selection {
     pub config: ConfigChoice,
     /// Explicit values, which win over those of configurations.
     pub values: Values,
-    /// The output folder, or the document that the one input is baked to. `None` takes the folder that the configuration
-    /// of the first input names.
+    /// The output folder, or the document that the one input is baked to. `None` takes the folder that the
+    /// configuration of the first input names.
     pub output: Option<PathBuf>,
 }
 
