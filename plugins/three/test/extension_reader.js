@@ -1,0 +1,73 @@
+// Shading by ROUGHCAST_materials_roughness_pyramid as docs/extension/README.md describes it, written from that page
+// alone. It shares no code with the plugin, so that a test can hold the page against what the tool writes.
+
+const dot = (a, b) => a.reduce((sum, value, i) => sum + value * b[i], 0);
+const scaled = (a, factor) => a.map((value) => value * factor);
+const normalised = (a) => scaled(a, 1 / Math.hypot(...a));
+const cross = ([a, b, c], [x, y, z]) => [b * z - c * y, c * x - a * z, a * y - b * x];
+const clamp = (value, low, high) => Math.min(Math.max(value, low), high);
+
+/** Returns the slopes of a filtered texel of the offset texture ("From texel to slopes"). */
+export function slopes({ offsetChannels, offsetScale }, texel) {
+  const [x, y, stored] = texel.map((value) => 2 * value - 1);
+  const z = offsetChannels === 2 ? Math.sqrt(Math.max(1 - x * x - y * y, 0)) : stored;
+  return [x, y].map((value, i) => (offsetScale[i] * -value) / Math.max(z, 1 / 32));
+}
+
+/** Returns K as [uu, uv, vv] of a filtered texel of the roughness texture ("From texel to K"). */
+export function covariance({ roughnessModel, roughnessMin: min, roughnessMax: max }, texel) {
+  if (roughnessModel === undefined) return [0, 0, 0];
+  const [d1, d2, d3] = min.map((low, i) => low + texel[i] * (max[i] - low));
+  if (roughnessModel === 'standardDeviation') return [d1 * d1, 0, d1 * d1];
+  return [d1 * d1 + d2 * d2, d2 * d3, d3 * d3];
+}
+
+/**
+ * Returns the axes and the scale of slopes and K ("Frames") on a surface with unit normal n, tangent space T and B, and
+ * derivatives of the position by the texture coordinates of lengths |p_u| and |p_v|.
+ */
+export function frame({ frame: name, mainDirection }, { n, t, b, lengths }) {
+  const across = name === 'mainDirection' ? cross(mainDirection, n) : [0, 0, 0];
+  if (Math.hypot(...across) > 1e-4) {
+    const e1 = normalised(across);
+    return { e1, e2: cross(n, e1), n, scale: [1, 1] };
+  }
+  const scale = name === 'natural' ? lengths.map((length) => 1 / length) : [1, 1];
+  return { e1: normalised(t), e2: normalised(b), n, scale };
+}
+
+/** Returns n' ("The normal") of slopes in a frame. */
+export function normal({ e1, e2, n, scale }, [f_u, f_v]) {
+  return normalised(n.map((value, i) => value - scale[0] * f_u * e1[i] - scale[1] * f_v * e2[i]));
+}
+
+/** Returns K along the axes of a frame: K multiplied by the scale from both sides. */
+export const scaledCovariance = ({ scale: [s1, s2] }, [uu, uv, vv]) => [s1 * s1 * uu, s1 * s2 * uv, s2 * s2 * vv];
+
+/** Returns A as [uu, uv, vv] of the base lobe ("The lobe"): roughness, strength and direction in (e1, e2). */
+export function baseLobe(roughness, strength = 0, direction = [1, 0]) {
+  const across = roughness ** 2;
+  const along = across + (1 - across) * strength ** 2;
+  const [a1, a2] = normalised(direction);
+  const more = along ** 2 - across ** 2;
+  return [across ** 2 + more * a1 * a1, more * a1 * a2, across ** 2 + more * a2 * a2];
+}
+
+/** Returns A' ("The lobe"). */
+export const roughened = ({ correctionFactor }, base, k) => base.map((value, i) => value + 2 * correctionFactor * k[i]);
+
+/** Returns the parameters with which KHR_materials_anisotropy shades A'. `least` is the square of alpha_b of A. */
+export function parameters([uu, uv, vv], least) {
+  const [m, d] = [(uu + vv) / 2, (uu - vv) / 2];
+  const q = Math.hypot(d, uv);
+  const eigenvalues = [Math.min(m + q, 1), clamp(m - q, least, 1)];
+  const axis = d > 0 ? [q + d, uv] : [uv, q - d];
+  const [alphaT, alphaB] = eigenvalues.map(Math.sqrt);
+  return {
+    eigenvalues,
+    axis: dot(axis, axis) > 0 ? normalised(axis) : [1, 0],
+    alphas: [alphaT, alphaB],
+    roughness: Math.sqrt(alphaB),
+    strength: alphaB < 1 ? Math.sqrt((alphaT - alphaB) / (1 - alphaB)) : 0,
+  };
+}
