@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::Path;
 
-use serde_json::Value;
+use serde_json::{Value, json};
 use tempfile::tempdir;
 
 use super::process::{bake, copy, fixtures, roughcast};
@@ -51,6 +51,33 @@ fn a_damaged_base_colour_is_reported_and_the_asset_is_baked() {
     fs::write(&colour, &bytes[..bytes.len() / 2]).expect("a file");
     let run = bake(&document, baked.path(), &[]);
     assert!(run.code == 0 && run.out.contains(note), "{} {}", run.out, run.err);
+}
+
+/// The document says that Draco compresses the mesh, so that its accessors have no data.
+#[test]
+fn compressed_meshes_are_reported_if_the_bake_needs_them() {
+    for (fixture, unit) in [("brushed", "offsets are in the unit frame"), ("heights", "in widths of a repeat")] {
+        let (source, baked) = (tempdir().expect("a folder"), tempdir().expect("a folder"));
+        copy(&fixtures().join(fixture), source.path());
+        let document = source.path().join(format!("{fixture}.gltf"));
+        let text = fs::read_to_string(&document).expect("a document");
+        let mut root: Value = serde_json::from_str(&text).expect("JSON");
+        for accessor in root["accessors"].as_array_mut().expect("accessors") {
+            accessor.as_object_mut().expect("an accessor").remove("bufferView");
+        }
+        for mesh in root["meshes"].as_array_mut().expect("meshes") {
+            mesh["primitives"][0]["extensions"]["KHR_draco_mesh_compression"] = json!({ "bufferView": 0 });
+        }
+        fs::write(&document, root.to_string()).expect("a file");
+
+        let cause = "compressed by KHR_draco_mesh_compression, which the bake does not read";
+        let run = bake(&document, baked.path(), &["--profile", "pyramid", "-v"]);
+        assert!(run.code == 0 && !run.out.contains(cause), "{} {}", run.out, run.err);
+        let run = bake(&document, baked.path(), &["--profile", "pyramid", "--frame", "natural"]);
+        assert!(run.out.contains(cause) && run.out.contains(unit), "{} {}", run.out, run.err);
+        let run = bake(&document, baked.path(), &["--nearest", "1", "--screen-height", "1080"]);
+        assert!(run.out.contains(cause) && run.out.contains("every level counts as seen"), "{} {}", run.out, run.err);
+    }
 }
 
 #[test]

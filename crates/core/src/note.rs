@@ -54,6 +54,8 @@ pub enum NoteKind {
     UnknownRepeatSize,
     /// How the bump map lies on the mesh is not known.
     UnknownLayout,
+    /// The meshes of the material are compressed, and the settings need their triangles.
+    CompressedMesh,
     /// Parts of the bump map are used in several directions.
     ConflictingRotations,
     /// A texture of the base lobe has other texture coordinates than the bump map.
@@ -79,7 +81,10 @@ impl NoteKind {
             // Another source file is better.
             Self::JpegSource | Self::SmallDepth | Self::NormalsBelowSurface | Self::UnknownReflectance => true,
             // The document or the command line does not fit the purpose.
-            Self::SamplerWithoutMips | Self::UnknownTexelSize | Self::OtherTextureCoordinates => true,
+            Self::SamplerWithoutMips
+            | Self::UnknownTexelSize
+            | Self::OtherTextureCoordinates
+            | Self::CompressedMesh => true,
             // A setting of the engine is better.
             Self::EngineLimiter => true,
             Self::NoBumpMap
@@ -217,6 +222,35 @@ pub fn unknown_layout() -> Note {
     note(NoteKind::UnknownLayout, text)
 }
 
+/// What a bake does not know of a material whose meshes are compressed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unread {
+    /// The size of texels, by which a view finds the levels that it can sample.
+    TexelSize,
+    /// The size of a repeat of a height map.
+    RepeatSize,
+    /// How the bump map lies on the meshes, on which frames other than the unit frame depend.
+    Layout,
+}
+
+/// Returns the note on a material whose meshes `extension` compresses.
+pub fn compressed_mesh(extension: &str, unread: Unread) -> Note {
+    let cost = match unread {
+        Unread::TexelSize => {
+            "the levels which the view can sample are not known: every level counts as seen, and none is left out"
+        }
+        Unread::RepeatSize => {
+            "the size of a repeat of the height map is not known: heights are taken in widths of a repeat"
+        }
+        Unread::Layout => "how the texture lies on them is not known: offsets are in the unit frame",
+    };
+    let text = format!(
+        "meshes that show the material are compressed by {extension}, which the bake does not read, so that {cost}; \
+         bake the asset before its meshes are compressed"
+    );
+    note(NoteKind::CompressedMesh, text)
+}
+
 /// Returns the note on offsets that are in the unit frame because the tangent rotation is not unique. `over_mesh` and
 /// `over_map` are its deviations over the mesh and over texels that several triangles use.
 pub fn conflicting_rotations(over_mesh: f32, over_map: f32) -> Note {
@@ -301,6 +335,7 @@ mod tests {
             unknown_texel_size(&"the material is in no scene"),
             other_texture_coordinates("roughness"),
             engine_limiter("Godot", "turn its limiter off"),
+            compressed_mesh("KHR_draco_mesh_compression", Unread::Layout),
             unknown_reflectance(&"the image is damaged"),
             missed_bound("level 2 misses --max-error 0.1".to_owned(), true),
         ];

@@ -17,7 +17,7 @@ use super::reader::Reader;
 use super::reflectance::ReflectanceInput;
 use crate::gltf::texel_size::NoDensity;
 use crate::material::notes;
-use crate::note::{self, Note};
+use crate::note::{self, Note, Unread};
 use crate::settings::{Finest, Settings};
 
 /// Bakes `group`.
@@ -150,6 +150,10 @@ impl GroupBake<'_> {
         match self.finest(layer, size) {
             None => (None, notes),
             Some(Ok(finest)) => (Some(finest), notes),
+            Some(Err(NoDensity::Compressed(extension))) => {
+                notes.push(note::compressed_mesh(extension, Unread::TexelSize));
+                (None, notes)
+            }
             Some(Err(reason)) => {
                 notes.push(note::unknown_texel_size(&reason));
                 (None, notes)

@@ -5,7 +5,7 @@ use super::group::GroupLayer;
 use super::offsets::size_of;
 use crate::bump::{Frame, FrameTransform};
 use crate::material::{BumpMap, FrameTransforms};
-use crate::note::{self, Note};
+use crate::note::{self, Note, Unread};
 
 /// Largest deviation of the tangent rotations of triangles that count as equal, root mean square, in radians: 6
 /// degrees.
@@ -46,7 +46,10 @@ fn requested_frame(
 ) -> Result<OffsetFrame, Note> {
     let transforms = match (requested, layer.layout.as_ref()) {
         (Frame::Unit, _) => FrameTransforms::IDENTITY,
-        (_, None) => return Err(note::unknown_layout()),
+        (_, None) => {
+            let compressed = |extension| note::compressed_mesh(extension, Unread::Layout);
+            return Err(geometry.compression(layer.material).map_or_else(note::unknown_layout, compressed));
+        }
         (Frame::Natural, Some(layout)) => {
             let frame = OffsetFrame::new(requested, FrameTransforms::IDENTITY);
             return Ok(OffsetFrame { scale: layout.units_per_repeat, ..frame });

@@ -46,6 +46,11 @@ impl<'a> Geometry<'a> {
         layout(meshes, material, mapping, self.main_direction, &|i| self.reader.buffer(i).ok())
     }
 
+    /// Returns the extension that compresses the meshes of a material, if the settings need meshes.
+    pub fn compression(&self, material: usize) -> Option<&'static str> {
+        self.meshes.as_ref()?.compression(material)
+    }
+
     /// Returns the [`rotation_map`] of a texture on its meshes; `None` under the unit frame.
     pub fn rotation_map(&self, material: usize, mapping: &Mapping, size: [u32; 2]) -> Option<RotationMap> {
         let meshes = self.meshes.as_ref().filter(|_| self.has_frame)?;

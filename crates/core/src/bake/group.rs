@@ -14,7 +14,7 @@ use crate::gltf::rewrite::Slot;
 use crate::gltf::scene::animated_bumps;
 use crate::gltf::texture::{ImageLocation, TextureError, TextureSource, Textures};
 use crate::mip::Wrap;
-use crate::note::{self, Note};
+use crate::note::{self, Note, Unread};
 use crate::settings::{Model, Settings};
 
 /// A bump map and all layers that use it.
@@ -153,7 +153,10 @@ fn group_layer(
     let source = textures.get(bumps.texture).map_err(failed("normal or height texture"))?;
     let layout = geometry.layout(material, &bumps.mapping);
     let mut notes = Vec::new();
-    let (kind, slope_scale) = kind_of(&layer.bumps, &source, settings, layout.as_ref(), &mut notes);
+    let (kind, slope_scale) = kind_of(&layer.bumps, &source, settings, layout.as_ref(), || {
+        let compressed = |extension| note::compressed_mesh(extension, Unread::RepeatSize);
+        notes.push(geometry.compression(material).map_or_else(note::unknown_repeat_size, compressed));
+    });
     let mut base = base_textures(textures, &layer, &source).map_err(failed("roughness or anisotropy texture"))?;
     if let (Ok(base), Some(reflectance)) = (&mut base, &layer.reflectance) {
         match reflectance {
@@ -191,13 +194,14 @@ impl BumpMapKind {
     }
 }
 
-/// Returns how a bump map is read, and the factor of its offsets.
+/// Returns how a bump map is read, and the factor of its offsets. Calls `note_unknown_repeat` if the size of a repeat of
+/// a height map is needed and not known.
 fn kind_of(
     bumps: &BumpSource,
     source: &TextureSource,
     settings: &Settings,
     layout: Option<&Layout>,
-    notes: &mut Vec<Note>,
+    note_unknown_repeat: impl FnOnce(),
 ) -> (BumpMapKind, f32) {
     let scale = match bumps {
         BumpSource::Normals(_, scale) => return (BumpMapKind::Normals, *scale),
@@ -207,7 +211,7 @@ fn kind_of(
         // Heights are in mesh units, and the mesh has the size of a repeat.
         (Frame::Natural, Some(layout)) => (layout.units_per_repeat.map(|units| scale / units), false),
         (Frame::Natural, None) => {
-            notes.push(note::unknown_repeat_size());
+            note_unknown_repeat();
             ([scale; 2], true)
         }
         _ => ([scale; 2], true),

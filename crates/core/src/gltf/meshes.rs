@@ -12,6 +12,11 @@ use super::scene::moving_coordinates;
 /// a small file can name very many triangles.
 const MAX_TRIANGLES: usize = 1 << 29;
 
+/// Extensions that compress the triangles of a primitive or the data of a buffer view. The bake has no decoder for
+/// them: the well-kept ones are in C++, those in Rust are first versions (`meshopt-rs` 0.1, `draco-oxide` alpha), and few
+/// settings need triangles.
+const COMPRESSIONS: [&str; 3] = ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression"];
+
 /// A primitive that shows a material.
 #[derive(Debug)]
 pub struct Primitive<'r> {
@@ -70,6 +75,11 @@ impl<'r> Meshes<'r> {
         self.users.get(&material).map_or(&[], Vec::as_slice)
     }
 
+    /// Returns the first extension that compresses a primitive which shows material `material`.
+    pub fn compression(&self, material: usize) -> Option<&'static str> {
+        self.primitives(material).iter().find_map(|primitive| compression(self.root, primitive.value))
+    }
+
     /// Returns whether an animation changes the scale or the rotation of a texture transform of material `material`.
     pub fn has_moving_coordinates(&self, material: usize) -> bool {
         self.moving.contains(&material)
@@ -81,6 +91,18 @@ fn materials(primitive: &Value) -> BTreeSet<usize> {
     let mappings = primitive.pointer("/extensions/KHR_materials_variants/mappings").and_then(Value::as_array);
     let drawn = mappings.into_iter().flatten().chain([primitive]);
     drawn.filter_map(|value| usize::try_from(value.get("material")?.as_u64()?).ok()).collect()
+}
+
+/// Returns the extension that compresses `primitive` itself or a buffer view that its accessors read.
+fn compression(root: &Value, primitive: &Value) -> Option<&'static str> {
+    let element = |array: &str, index: &Value| root.get(array)?.get(usize::try_from(index.as_u64()?).ok()?);
+    let attributes = primitive.get("attributes").and_then(Value::as_object);
+    let accessors = attributes.into_iter().flat_map(|attributes| attributes.values()).chain(primitive.get("indices"));
+    let mut views =
+        accessors.filter_map(|accessor| element("bufferViews", element("accessors", accessor)?.get("bufferView")?));
+    let has = |value: &Value, name: &str| value.get("extensions").is_some_and(|e| e.get(name).is_some());
+    let compresses = |value: &Value| COMPRESSIONS.into_iter().find(|name| has(value, name));
+    compresses(primitive).or_else(|| views.find_map(compresses))
 }
 
 #[cfg(test)]

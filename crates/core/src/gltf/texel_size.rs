@@ -33,7 +33,10 @@ pub enum NoDensity {
     /// An animation changes the texture coordinates.
     #[error("an animation changes the material's texture coordinates")]
     MovingCoordinates,
-    /// Triangles that are compressed, sparse or damaged, or too many.
+    /// Triangles that are compressed.
+    #[error("meshes that show the material are compressed by {0}, which the bake does not read")]
+    Compressed(&'static str),
+    /// Triangles that are sparse or damaged, or too many.
     #[error("some triangles that show the material cannot be read")]
     Unreadable,
 }
@@ -80,7 +83,7 @@ pub fn density<'a>(
     });
     match failure {
         Some(failure) => Err(failure),
-        None if !is_complete => Err(NoDensity::Unreadable),
+        None if !is_complete => Err(meshes.compression(material).map_or(NoDensity::Unreadable, NoDensity::Compressed)),
         None => sums.density(),
     }
 }

@@ -14,6 +14,24 @@ fn primitives_are_found_by_material_and_by_variant() {
 }
 
 #[test]
+fn compression_is_found_on_primitives_and_on_the_buffer_views_that_they_read() {
+    let meshopt = json!({ "extensions": { "EXT_meshopt_compression": { "buffer": 0 } } });
+    let root = json!({
+        "meshes": [{ "primitives": [
+            { "attributes": { "POSITION": 0 }, "material": 0 },
+            { "attributes": { "POSITION": 0 }, "indices": 1, "material": 1 },
+            { "attributes": { "POSITION": 2 }, "material": 2, "extensions": { "KHR_draco_mesh_compression": {} } },
+            { "attributes": { "POSITION": 7 }, "material": 3 },
+        ] }],
+        "accessors": [{ "bufferView": 0 }, { "bufferView": 1 }, {}],
+        "bufferViews": [{}, meshopt],
+    });
+    let meshes = Meshes::of(&root);
+    let found = [0, 1, 2, 3, 4].map(|material| meshes.compression(material));
+    assert_eq!(found, [None, Some("EXT_meshopt_compression"), Some("KHR_draco_mesh_compression"), None, None]);
+}
+
+#[test]
 fn primitives_with_equal_triangles_are_one() {
     let primitive = |indices: u64| json!({ "attributes": { "POSITION": 0 }, "indices": indices, "material": 0 });
     let primitives = json!([primitive(1), primitive(2), primitive(1)]);
