@@ -1,4 +1,4 @@
-// usage: npm run view -- [<baked.gltf> [--original <asset.gltf>] [--events]]
+// usage: npm run view -- [<asset.glb>] [<baked.glb>...] [--original <asset.glb>] [--events]
 // Serves the page with an asset on this machine until Ctrl-C. Without an asset it bakes and shows a fixture.
 // With --events the page reloads when `roughcast watch --json`, on standard input, reports new outputs.
 import { mkdirSync, mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
@@ -9,23 +9,16 @@ import { createInterface } from 'node:readline';
 import { fileURLToPath } from 'node:url';
 import { parseArgs } from 'node:util';
 import { serve } from './server.js';
+import { readDocument, variantOf } from './page/variants.js';
 import { missing, repository, roughcast } from './test/roughcast.js';
 
-const EXTENSION = 'ROUGHCAST_materials_roughness_pyramid';
 const here = path.dirname(fileURLToPath(import.meta.url));
 const folder = mkdtempSync(path.join(os.tmpdir(), 'roughcast-view-'));
 process.on('exit', () => rmSync(folder, { recursive: true, force: true }));
 for (const signal of ['SIGINT', 'SIGTERM']) process.on(signal, () => process.exit(0));
 
-/** Reads the JSON of a .gltf or .glb file. */
-function document(file) {
-  const bytes = readFileSync(file);
-  const isBinary = bytes.toString('latin1', 0, 4) === 'glTF';
-  return JSON.parse(isBinary ? bytes.toString('utf8', 20, 20 + bytes.readUInt32LE(12)) : bytes.toString('utf8'));
-}
-
-/** Returns which variant a baked file is. */
-const profile = (file) => (document(file).extensionsUsed?.includes(EXTENSION) ? 'pyramid' : 'portable');
+/** Returns which variant a file is. */
+const variant = (file) => variantOf(readDocument(readFileSync(file)));
 
 function fixture() {
   if (missing) throw new Error(missing);
@@ -42,7 +35,7 @@ const resolve = (file) => path.resolve(process.env.INIT_CWD ?? '.', file);
 /** Returns the files of the variants that were named. */
 function variants({ positionals, values }) {
   if (positionals.length === 0) return fixture();
-  const all = Object.fromEntries(positionals.map((file) => [profile(resolve(file)), resolve(file)]));
+  const all = Object.fromEntries(positionals.map((file) => [variant(resolve(file)), resolve(file)]));
   return values.original ? { original: resolve(values.original), ...all } : all;
 }
 

@@ -1,44 +1,32 @@
-// The form, the keyboard and the pointer, which change what is shown.
+// The form and the keyboard, which change what is shown.
 
-/** Maps 0 to 100 of the slider to units; the farthest distance is 60 times the nearest. */
-const distanceOf = (value) => 2.2 * 60 ** (value / 100);
+/** The farthest distance is so many times the nearest. */
+const RANGE = 60;
+/** Maps 0 to 100 of the slider to units. */
+const distanceOf = (value) => 2.2 * RANGE ** (value / 100);
 
 const SHOWN = {
   distance: (v) => distanceOf(v).toFixed(1),
   environmentIntensity: (v) => `${v} %`,
+  exposure: (v) => `${v > 0 ? '+' : ''}${(v / 10).toFixed(1)} EV`,
   intensity: (v) => (v / 100).toFixed(1),
   level: (v) => (v < 0 ? 'auto' : String(v)),
 };
-const degrees = (v) => `${v}°`;
+const degrees = (v) => `${Math.round(v)}°`;
 
 export class Controls {
-  /** Calls `changed` with the name of the control that changed. */
-  constructor({ form, canvas, split, changed }) {
-    Object.assign(this, { form, canvas, split, changed });
-    form.addEventListener('input', ({ target }) => this.#notify(target.name));
+  /** Calls `changed` with the name of the control that changed. `keys` adds actions to keys on the picture. */
+  constructor({ form, canvas, keys, changed }) {
+    Object.assign(this, { form, keys, changed });
+    form.addEventListener('input', ({ target }) => target.name && this.#notify(target.name));
     form.addEventListener('submit', (event) => event.preventDefault());
-    split.addEventListener('input', () => this.#notify('split'));
     canvas.addEventListener('keydown', (event) => this.#key(event));
-    canvas.addEventListener(
-      'wheel',
-      (event) => {
-        event.preventDefault();
-        this.step('distance', 0.02 * event.deltaY);
-      },
-      { passive: false },
-    );
-    canvas.addEventListener('pointerdown', (event) => canvas.setPointerCapture(event.pointerId));
-    canvas.addEventListener('pointermove', (event) => {
-      if (!canvas.hasPointerCapture(event.pointerId)) return;
-      this.step('azimuth', -0.4 * event.movementX);
-      this.step('elevation', 0.4 * event.movementY);
-    });
     for (const element of form.elements) if (element.name) this.#label(element.name);
   }
 
   /** Returns a value, as a number where it is one. */
   value(name) {
-    const element = name === 'split' ? this.split : this.form.elements[name];
+    const element = this.form.elements[name];
     return element.type === 'range' ? Number(element.value) : element.value;
   }
 
@@ -46,13 +34,19 @@ export class Controls {
     return distanceOf(this.value('distance'));
   }
 
-  /** Fills a list, and selects the wanted entry if the list has it. */
-  options(name, values, wish) {
-    this.form.elements[name].replaceChildren(...values.map((value) => new Option(value, value, false, value === wish)));
+  /** Multiplies the distance. */
+  zoom(ratio) {
+    this.step('distance', (100 * Math.log(ratio)) / Math.log(RANGE));
+  }
+
+  /** Fills a list of [value, title], and selects the wanted value if the list has it. */
+  options(name, entries, wish) {
+    const options = entries.map(([value, title]) => new Option(title, value, false, value === wish));
+    this.form.elements[name].replaceChildren(...options);
   }
 
   step(name, by) {
-    const element = name === 'split' ? this.split : this.form.elements[name];
+    const element = this.form.elements[name];
     const around = name === 'azimuth' && Math.abs(Number(element.value) + by) > 180 ? -360 * Math.sign(by) : 0;
     element.value = Number(element.value) + by + around;
     this.#notify(name);
@@ -84,12 +78,12 @@ export class Controls {
       '+': () => this.step('distance', -4),
       '=': () => this.step('distance', -4),
       '-': () => this.step('distance', 4),
-      '[': () => this.step('split', -50),
-      ']': () => this.step('split', 50),
       v: () => this.#next('view'),
       l: () => this.#next('layout'),
+      ...this.keys,
     };
-    const action = actions[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+    const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
+    const action = actions[event.shiftKey && key.startsWith('Arrow') ? `Shift+${key}` : key];
     if (!action) return;
     event.preventDefault();
     action();

@@ -1,153 +1,246 @@
-// The page: draws again when a control changes.
+// The page: draws again when a control, the camera or the turntable has changed something.
 import * as THREE from 'three';
-import { Composer } from './compose.js';
 import { Controls } from './controls.js';
 import { VIEWS, switches } from './debug.js';
+import { Divider } from './divider.js';
+import { documents, listen as listenToDrops } from './drop.js';
+import { Figures } from './figures.js';
+import { Magnifier } from './magnifier.js';
+import { Pictures } from './pictures.js';
+import { listen as listenToPointers } from './pointer.js';
+import { Screen } from './screen.js';
 import { Stage } from './stage.js';
+import { Turntable } from './turntable.js';
+import { TITLES, VARIANTS } from './variants.js';
 
-/** Samples per pixel of the truth, and samples per batch. */
-const [ENOUGH, AT_ONCE] = [256, 4];
-/** Milliseconds without a change before the truth is sampled. */
+/** Samples per pixel of the truth. */
+const ENOUGH = 256;
+/** Samples per pixel at which errors are measured: early for slow machines, and again when there are enough. */
+const MEASURED_AT = [16, 64, ENOUGH];
+/** Milliseconds without a change before the picture rests. */
 const PAUSE = 150;
-const DIFFERENCE = 4;
+/** Largest anisotropy of the texture filter. */
+const ANISOTROPY = 16;
+/** Degrees of the camera per pixel of a drag, and pixels of the magnifier per key. */
+const [PER_PIXEL, PER_KEY] = [0.4, 8];
 
 const element = (id) => document.getElementById(id);
-const [canvas, labels, split, status] = ['canvas', 'labels', 'split', 'status'].map(element);
+const [canvas, frame, status, play, loupe] = ['canvas', 'frame', 'status', 'play', 'loupe'].map(element);
 
-const renderer = new THREE.WebGLRenderer({ canvas, antialias: false });
-renderer.autoClear = true;
-const stage = new Stage(renderer, new THREE.Color(0.02, 0.02, 0.022));
-const composer = new Composer(renderer);
-const pictures = new Map();
-let [isStale, changedAt, layout] = [true, 0, null];
+const renderer = new THREE.WebGLRenderer({ canvas, antialias: false, alpha: false });
+const stage = new Stage(renderer, { anisotropy: ANISOTROPY });
+const pictures = new Pictures(renderer, stage);
+const turntable = new Turntable();
+const magnifier = new Magnifier({ tiles: element('tiles'), mark: element('mark') });
+const divider = new Divider(element('divider'), () => request());
+const screen = new Screen({
+  renderer,
+  frame,
+  labels: element('labels'),
+  background: new THREE.Color(0.02, 0.02, 0.022),
+  divider,
+  magnifier,
+});
+const figures = new Figures({ body: element('figures'), note: element('note') });
+/** What is shown: bytes of each variant, by name. */
+const assets = new Map();
+let [isStale, changedAt, shape, measuredAt, mayStart, isRequested] = [true, 0, '', 0, false, false];
 
+/** Notes that the pictures do not show the scene any more. */
+function expire() {
+  [isStale, changedAt] = [true, performance.now()];
+  request();
+}
+
+/** What needs no new pictures. */
+const ONLY_SHOWN = ['left', 'right', 'exposure'];
 const controls = new Controls({
   form: element('controls'),
   canvas,
-  split,
+  keys: {
+    '[': () => divider.step(-0.05),
+    ']': () => divider.step(0.05),
+    ' ': () => turn(!turntable.isTurning),
+    m: () => magnify(!magnifier.isOn),
+    'Shift+ArrowLeft': () => look(-PER_KEY, 0),
+    'Shift+ArrowRight': () => look(PER_KEY, 0),
+    'Shift+ArrowUp': () => look(0, -PER_KEY),
+    'Shift+ArrowDown': () => look(0, PER_KEY),
+  },
   changed: (name) => {
     if (name === 'subject') stage.show(controls.value('subject'));
-    // A divider that moves needs no new pictures.
-    if (!['split', 'left', 'right'].includes(name)) [isStale, changedAt] = [true, performance.now()];
-    request();
+    if (ONLY_SHOWN.includes(name)) request();
+    else expire();
   },
 });
 
-/** Returns boxes of the screen in CSS pixels from the lower left, and the windows that clip them. */
-function places(width, height) {
-  const names = stage.variants;
-  if (controls.value('layout') === 'slider') {
-    const x = Math.round((width * controls.value('split')) / 1000);
-    const box = [0, 0, width, height];
-    return [
-      { name: controls.value('left'), box, window: [0, 0, x, height], label: x / 2 },
-      { name: controls.value('right'), box, window: [x, 0, width - x, height], label: (x + width) / 2 },
-    ];
-  }
-  const [columns, rows] =
-    width > 1.2 * height ? [names.length, 1] : [Math.min(2, names.length), Math.ceil(names.length / 2)];
-  const [w, h] = [Math.floor(width / columns), Math.floor(height / rows)];
-  return names.map((name, i) => {
-    const [column, row] = [i % columns, Math.floor(i / columns)];
-    const box = [column * w, (rows - 1 - row) * h, w, h];
-    return { name, box, window: box, label: column * w + w / 2, top: row * h };
-  });
+function turn(isTurning) {
+  turntable.isTurning = isTurning;
+  mayStart = false;
+  play.setAttribute('aria-pressed', isTurning);
+  play.textContent = isTurning ? '❚❚ Pause' : '▶ Turn';
+  expire();
 }
 
-function frame() {
-  const { clientWidth, clientHeight } = canvas.parentElement;
-  const ratio = Math.min(devicePixelRatio, 2);
-  const all = places(clientWidth, clientHeight);
-  const [, , width, height] = all[0].box;
-  const shape = [clientWidth, clientHeight, width, height, ratio].join();
-  if (shape !== layout) {
-    layout = shape;
-    renderer.setPixelRatio(ratio);
-    renderer.setSize(clientWidth, clientHeight, false);
+function magnify(isOn) {
+  magnifier.isOn = isOn;
+  loupe.setAttribute('aria-pressed', isOn);
+  request();
+}
+
+/** Moves the magnifier. */
+function look(dx, dy) {
+  magnifier.move(dx, dy, screen.fit());
+  request();
+}
+
+listenToPointers(canvas, {
+  dragged: (dx, dy, kind) => {
+    if (magnifier.isOn && kind === 'touch') return look(dx, dy);
+    controls.step('azimuth', -PER_PIXEL * dx);
+    controls.step('elevation', PER_PIXEL * dy);
+  },
+  hovered: (x, y) => {
+    magnifier.at = { x, y };
+    if (magnifier.isOn) request();
+  },
+  zoomed: (ratio) => controls.zoom(ratio),
+});
+play.addEventListener('click', () => turn(!turntable.isTurning));
+loupe.addEventListener('click', () => magnify(!magnifier.isOn));
+
+function draw(now) {
+  turntable.advance(now);
+  const size = screen.fit();
+  const what = { ...values('layout', 'left', 'right', 'view'), names: stage.variants };
+  const places = screen.places(what);
+  const [, , width, height] = places[0].box;
+  const wanted = [width, height, size.ratio].join();
+  if (wanted !== shape) {
+    shape = wanted;
     stage.resize(width, height);
+    pictures.resize(Math.round(width * size.ratio), Math.round(height * size.ratio));
     isStale = true;
   }
-  const view = controls.value('view');
-  switches.view.value = Math.max(VIEWS.indexOf(view), 0);
-  if (isStale) draw(Math.round(width * ratio), Math.round(height * ratio));
-  const needsTruth = view === 'difference' || all.some(({ name }) => name === 'supersampled');
-  const isRunning = needsTruth && stage.variants.includes('supersampled') && stage.accumulator.count < ENOUGH;
-  const isMoving = performance.now() - changedAt < PAUSE;
-  if (isRunning) stage.accumulate(isMoving ? 1 : AT_ONCE);
-  show(all, view);
-  status.textContent = needsTruth ? `${stage.accumulator.count} samples per pixel` : '';
-  if (isRunning) request();
+  if (isStale || turntable.isTurning) place();
+  divider.element.hidden = what.layout !== 'slider';
+  for (const pair of document.querySelectorAll('.pair')) pair.hidden = divider.element.hidden;
+
+  const isMoving = turntable.isTurning || performance.now() - changedAt < PAUSE;
+  pictures.draw(magnifier.isOn ? what.names : places.map(({ name }) => name));
+  const hasTruth = what.names.includes('supersampled');
+  const showsTruth = what.view === 'difference' || magnifier.isOn || places.some(({ name }) => name === 'supersampled');
+  const isSampling = hasTruth && pictures.samples < ENOUGH && (!isMoving || showsTruth);
+  if (isSampling) pictures.sample(Math.min(turntable.samples, ENOUGH - pictures.samples));
+  if (!isMoving && hasTruth) measure(what);
+  screen.show({
+    pictures,
+    places,
+    names: what.names,
+    view: what.view,
+    exposure: 2 ** (controls.value('exposure') / 10),
+    errorOf: (name) => figures.errorOf(name),
+  });
+  status.textContent = hasTruth && (showsTruth || !isMoving) ? state(isMoving) : '';
+  if (isSampling || isMoving || turntable.isTurning) request();
+  else turntable.rest();
 }
 
-/** Draws every variant again. */
-function draw(width, height) {
+const values = (...names) => Object.fromEntries(names.map((name) => [name, controls.value(name)]));
+
+const state = (isMoving) =>
+  isMoving ? `${pictures.samples} samples each frame` : `${pictures.samples} of ${ENOUGH} samples`;
+
+/** Sets the scene up, and drops the pictures. */
+function place() {
   isStale = false;
-  stage.look({
-    distance: controls.distance,
-    azimuth: controls.value('azimuth'),
-    elevation: controls.value('elevation'),
-  });
-  stage.environment(controls.value('environment'), controls.value('environmentIntensity') / 100);
-  const [azimuth, elevation, intensity] = ['lightAzimuth', 'lightElevation', 'intensity'].map((name) =>
-    controls.value(name),
+  measuredAt = 0;
+  stage.look({ distance: controls.distance, ...values('azimuth', 'elevation') });
+  stage.turn(turntable.angle);
+  const { environment, environmentIntensity, lightAzimuth, lightElevation, intensity, view, level } = values(
+    'environment',
+    'environmentIntensity',
+    'lightAzimuth',
+    'lightElevation',
+    'intensity',
+    'view',
+    'level',
   );
-  stage.light({ azimuth, elevation, intensity: intensity / 100 });
-  switches.level.value = controls.value('level');
-  for (const name of stage.variants.filter((variant) => variant !== 'supersampled')) {
-    if (!pictures.has(name)) pictures.set(name, new THREE.WebGLRenderTarget(1, 1, { type: THREE.HalfFloatType }));
-    pictures.get(name).setSize(width, height);
-    stage.draw(name, pictures.get(name));
-  }
-  stage.accumulator.reset(width, height);
+  stage.environment(environment, environmentIntensity / 100);
+  stage.light({ azimuth: lightAzimuth, elevation: lightElevation, intensity: intensity / 100 });
+  switches.view.value = Math.max(VIEWS.indexOf(view), 0);
+  switches.level.value = level;
+  pictures.expire();
+  figures.expire();
 }
 
-function show(all, view) {
-  const truth = { texture: stage.accumulator.texture, samples: stage.accumulator.count };
-  const index = view === 'difference' ? DIFFERENCE : switches.view.value;
-  for (const { name, box, window } of all) {
-    const picture = name === 'supersampled' ? truth : { texture: pictures.get(name).texture, samples: 1 };
-    if (window[2] > 0) composer.draw(picture, truth, index, box, window);
-  }
-  split.hidden = controls.value('layout') !== 'slider';
-  for (const pair of document.querySelectorAll('.pair')) pair.hidden = split.hidden;
-  labels.replaceChildren(
-    ...all.map(({ name, label, top }) => {
-      const span = document.createElement('span');
-      span.textContent = name;
-      span.style.left = `${label}px`;
-      if (top) span.style.top = `calc(${top}px + 0.6rem)`;
-      return span;
-    }),
-  );
+/** Measures errors whenever the truth is good enough to be worth it. The other views are no radiance. */
+function measure({ names, view }) {
+  const due = MEASURED_AT.findLast((samples) => pictures.samples >= samples) ?? 0;
+  if (due === measuredAt || !['shaded', 'difference'].includes(view)) return;
+  measuredAt = due;
+  if (due > 0) figures.measured(pictures.errors(names), pictures.samples);
+  if (due === ENOUGH && mayStart) turn(true);
 }
 
-let isRequested = false;
 function request() {
-  if (isRequested) return;
+  if (isRequested || assets.size === 0) return;
   isRequested = true;
-  requestAnimationFrame(() => {
+  requestAnimationFrame((now) => {
     isRequested = false;
-    frame();
+    draw(now);
   });
 }
 
-try {
-  const { variants } = await (await fetch('/view/variants.json')).json();
-  await stage.load(variants);
-  stage.show(controls.value('subject'));
-  const [first] = stage.variants;
-  controls.options('left', stage.variants, first);
-  controls.options(
-    'right',
-    stage.variants,
-    ['pyramid', 'portable', 'supersampled'].find((name) => stage.variants.includes(name)),
+/** Shows sources by the name of the variant. An original replaces all that was shown before. */
+async function open(sources) {
+  const loaded = await Promise.all(
+    Object.entries(sources).map(async ([name, source]) => [name, await stage.loader.load(source)]),
   );
-  new ResizeObserver(request).observe(canvas.parentElement);
-  frame();
-  document.documentElement.dataset.ready = 'true';
-  // Browsers keep the values of controls when a page reloads.
-  new EventSource('/events').onmessage = () => location.reload();
-} catch (error) {
-  status.textContent = `Cannot be shown: ${error.message}`;
-  throw error;
+  if ('original' in sources) for (const name of [...assets.keys()]) stage.remove(name) ?? assets.delete(name);
+  for (const [name, { scene, ...bytes }] of loaded) {
+    stage.add(name, scene);
+    assets.set(name, bytes);
+  }
+  stage.show(controls.value('subject'));
+  const { variants } = stage;
+  const entries = variants.map((name) => [name, TITLES[name]]);
+  controls.options('left', entries, variants[0]);
+  controls.options('right', entries, ['portable', 'pyramid', 'supersampled'].find((name) => variants.includes(name)));
+  figures.show(new Map(VARIANTS.filter((name) => assets.has(name)).map((name) => [name, assets.get(name)])));
+  element('empty').hidden = true;
+  expire();
 }
+
+/** Runs a step that may fail, and says what failed. */
+async function attempt(step) {
+  status.textContent = 'Loading…';
+  try {
+    await step();
+    element('problem').textContent = '';
+  } catch (error) {
+    status.textContent = '';
+    element('problem').textContent = `Cannot be shown: ${error.message}`;
+    request();
+  }
+}
+
+listenToDrops(document.documentElement, element('files'), (files) =>
+  attempt(async () => {
+    const found = await documents(files);
+    await open(Object.fromEntries([...found].map(([name, file]) => [name, { file, files }])));
+  }),
+);
+
+await attempt(async () => {
+  const { variants } = await (await fetch('/view/variants.json')).json();
+  // The first thing that moves is the subject, unless a person asked for less motion or has moved something.
+  mayStart = !matchMedia('(prefers-reduced-motion: reduce)').matches;
+  for (const event of ['pointerdown', 'keydown']) addEventListener(event, () => (mayStart = false), { once: true });
+  if (Object.keys(variants).length === 0) status.textContent = '';
+  else await open(Object.fromEntries(Object.entries(variants).map(([name, url]) => [name, { url }])));
+});
+new ResizeObserver(request).observe(frame);
+document.documentElement.dataset.ready = 'true';
+// Browsers keep the values of controls when a page reloads.
+new EventSource('/events').onmessage = () => location.reload();

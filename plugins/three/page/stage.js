@@ -1,44 +1,55 @@
 // One scene, drawn from one camera with each variant of the asset.
 import * as THREE from 'three';
-import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
-import { KTX2Loader } from 'three/addons/loaders/KTX2Loader.js';
-import { RoughcastPlugin } from 'three-roughcast';
+import { texturesOf } from './bytes.js';
 import { debuggable } from './debug.js';
+import { Loader } from './loader.js';
 import { surroundings } from './surroundings.js';
 import { subject } from './subject.js';
 import { Accumulator, unfiltered } from './supersample.js';
-
-/** Variants, in the order in which they are shown. */
-export const VARIANTS = ['original', 'portable', 'pyramid', 'supersampled'];
+import { VARIANTS } from './variants.js';
 
 export class Stage {
   #assets = new Map();
   #subjects = new Map();
   #scene = new THREE.Scene();
   #light = new THREE.DirectionalLight(0xffffff, 3);
+  /** Carries the subjects. */
+  #table = new THREE.Group();
 
-  /** Without a `background`, pixels that nothing covers are black. */
-  constructor(renderer, background = null) {
+  /** `anisotropy` is that of the filter of all variants' textures. Pixels that nothing covers are transparent. */
+  constructor(renderer, { anisotropy = 1 } = {}) {
     this.renderer = renderer;
+    this.renderer.setClearAlpha(0);
     this.camera = new THREE.PerspectiveCamera(30, 1, 0.01, 1000);
     this.accumulator = new Accumulator(renderer);
-    this.#scene.add(this.#light, this.#light.target);
-    this.#scene.background = background;
+    this.loader = new Loader(renderer, anisotropy);
+    this.#scene.add(this.#light, this.#light.target, this.#table);
     this.environment('room');
   }
 
   /**
-   * Loads the variants that have a URL. `reflected` is an anisotropic portable bake, shaded with the plugin's
-   * reflections.
+   * Loads variants from URLs by name. `reflected` is an anisotropic portable bake, shaded with the plugin's reflections.
    */
   async load(urls) {
-    const ktx2 = new KTX2Loader().setTranscoderPath('/three/examples/jsm/libs/basis/').detectSupport(this.renderer);
     const load = async ([name, url]) => {
-      const plugin = (parser) => new RoughcastPlugin(parser, { reflections: name === 'reflected' });
-      return [name, (await new GLTFLoader().setKTX2Loader(ktx2).register(plugin).loadAsync(url)).scene];
+      this.add(name, (await this.loader.load({ url }, { reflections: name === 'reflected' })).scene);
     };
-    this.#assets = new Map(await Promise.all(Object.entries(urls).map(load)));
-    ktx2.dispose();
+    await Promise.all(Object.entries(urls).map(load));
+  }
+
+  /** Adds what a loader returned as a variant, in place of the one that had the name. */
+  add(name, scene) {
+    this.remove(name);
+    this.#assets.set(name, scene);
+  }
+
+  /** Removes a variant, and frees its memory on the GPU. */
+  remove(name) {
+    const scene = this.#assets.get(name);
+    if (!scene) return;
+    for (const texture of texturesOf(scene)) texture.dispose();
+    scene.traverse((object) => object.geometry?.dispose());
+    this.#assets.delete(name);
   }
 
   /** Returns the names of what can be drawn. The truth needs the original. */
@@ -55,7 +66,7 @@ export class Stage {
     for (const object of this.#subjects.values()) {
       object.traverse((mesh) => mesh.isMesh && debuggable(mesh.material));
       object.visible = false;
-      this.#scene.add(object);
+      this.#table.add(object);
     }
   }
 
@@ -63,6 +74,11 @@ export class Stage {
   look({ distance, azimuth, elevation }) {
     this.camera.position.copy(direction(azimuth, elevation)).multiplyScalar(distance);
     this.camera.lookAt(0, 0, 0);
+  }
+
+  /** Turns the subject under the lights by an angle in degrees. */
+  turn(angle) {
+    this.#table.rotation.y = THREE.MathUtils.degToRad(angle);
   }
 
   light({ azimuth, elevation, intensity }) {

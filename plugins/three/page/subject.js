@@ -16,9 +16,15 @@ function withTangents(geometry, repeats) {
 }
 
 const GEOMETRIES = {
-  plane: () => withTangents(new THREE.PlaneGeometry(4, 4, 8, 8).rotateX(-Math.PI / 2), REPEATS.plane),
-  sphere: () => withTangents(new THREE.SphereGeometry(1, 96, 48), REPEATS.sphere),
+  plane: () => new THREE.PlaneGeometry(4, 4, 8, 8).rotateX(-Math.PI / 2),
+  sphere: () => new THREE.SphereGeometry(1, 96, 48),
 };
+
+/** Makes a plane or a sphere with a material. Maps that do not repeat are shown once. */
+function sample(kind, material) {
+  const isClamped = material.normalMap?.wrapS === THREE.ClampToEdgeWrapping;
+  return new THREE.Mesh(withTangents(GEOMETRIES[kind](), isClamped ? 1 : REPEATS[kind]), tangential(material));
+}
 
 /** Returns the first material with bumps, else the first material. */
 function bumpy(scene) {
@@ -33,7 +39,7 @@ function bumpy(scene) {
  * @returns {THREE.Object3D} centred, about 2 units large
  */
 export function subject(scene, kind) {
-  const object = kind === 'asset' ? scene.clone() : new THREE.Mesh(GEOMETRIES[kind](), tangential(bumpy(scene)));
+  const object = kind === 'asset' ? scene.clone() : sample(kind, bumpy(scene));
   const box = new THREE.Box3().setFromObject(object);
   const size = box.getSize(new THREE.Vector3()).length() || 1;
   const group = new THREE.Group().add(object);

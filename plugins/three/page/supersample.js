@@ -15,18 +15,23 @@ const SLOTS = [
   'alphaMap',
 ];
 
+/** Copies of textures that have level 0 only. */
+const made = new WeakMap();
+
+function finest(texture) {
+  if (!made.has(texture)) {
+    const copy = texture.clone();
+    Object.assign(copy, { minFilter: THREE.LinearFilter, generateMipmaps: false, anisotropy: 1 });
+    copy.needsUpdate = true;
+    texture.addEventListener('dispose', () => copy.dispose());
+    made.set(texture, copy);
+  }
+  return made.get(texture);
+}
+
 /** Returns `object` with materials that sample level 0 only. */
 export function unfiltered(object) {
-  const [copies, textures] = [new Map(), new Map()];
-  const finest = (texture) => {
-    if (!textures.has(texture)) {
-      const copy = texture.clone();
-      Object.assign(copy, { minFilter: THREE.LinearFilter, generateMipmaps: false, anisotropy: 1 });
-      copy.needsUpdate = true;
-      textures.set(texture, copy);
-    }
-    return textures.get(texture);
-  };
+  const copies = new Map();
   const copy = object.clone();
   copy.traverse((mesh) => {
     if (!mesh.isMesh) return;
@@ -68,7 +73,6 @@ export class Accumulator {
     this.#quad.frustumCulled = false;
   }
 
-  /** Adds `count` pictures, in linear radiance. */
   get texture() {
     return this.#sum.texture;
   }
@@ -83,6 +87,7 @@ export class Accumulator {
     for (const t of [this.#sample, this.#sum]) t.setSize(width, height);
   }
 
+  /** Adds `samples` pictures, in linear radiance. */
   add(scene, camera, samples) {
     const { renderer } = this;
     const { width, height } = this.#sum;

@@ -1,49 +1,14 @@
 // The page as a person would use it. Screenshots are left in target/three.
 import assert from 'node:assert/strict';
-import { spawn } from 'node:child_process';
 import { mkdirSync } from 'node:fs';
 import path from 'node:path';
-import process from 'node:process';
 import test from 'node:test';
-import { launch, missing as browserMissing, open } from '../browser.js';
-import { example, missing, repository, roughcast, temporary } from './roughcast.js';
+import { launch } from '../browser.js';
+import { repository, roughcast, temporary } from './roughcast.js';
+import { SHOTS, brightness, control, options, ready, view } from './viewer.js';
 
-const SHOTS = path.join(repository, 'target/three');
-const options = { skip: missing || browserMissing };
-
-/** Runs `npm run view` with arguments. Returns its URL and standard input, or its error. */
-function view(t, ...args) {
-  const child = spawn(process.execPath, [path.join(example, 'view.js'), ...args]);
-  t.after(() => child.kill());
-  return new Promise((resolve) => {
-    let complaint = '';
-    child.stderr.on('data', (text) => (complaint += text));
-    child.stdout.once('data', (text) => resolve({ url: String(text).trim(), input: child.stdin }));
-    child.once('exit', (code) => resolve({ code, complaint }));
-  });
-}
-
-async function ready(browser, url, settings) {
-  const page = await open(browser, url, settings);
-  await page.waitForFunction(
-    () => document.documentElement.dataset.ready || /Cannot/.test(document.getElementById('status').textContent),
-  );
-  return page;
-}
-
-const control = (page, name) => page.locator(`#controls [name=${name}]`);
-
-/** Returns the brightness of the picture, from its pixels. */
-const brightness = async (page) => {
-  const png = await page.locator('#canvas').screenshot();
-  return page.evaluate(async (data) => {
-    const bitmap = await createImageBitmap(await (await fetch(`data:image/png;base64,${data}`)).blob());
-    const context = Object.assign(new OffscreenCanvas(bitmap.width, bitmap.height)).getContext('2d');
-    context.drawImage(bitmap, 0, 0);
-    const { data: pixels } = context.getImageData(0, 0, bitmap.width, bitmap.height);
-    return pixels.reduce((sum, value, i) => sum + (i % 4 < 3 ? value : 0), 0) / pixels.length;
-  }, png.toString('base64'));
-};
+/** Returns the place of the divider, in percent. */
+const place = async (page) => Number(await page.locator('#divider').getAttribute('aria-valuenow'));
 
 test('shows and compares pictures and follows the keyboard', options, async (t) => {
   mkdirSync(SHOTS, { recursive: true });
@@ -53,17 +18,18 @@ test('shows and compares pictures and follows the keyboard', options, async (t) 
   t.after(() => browser.close());
   const page = await ready(browser, url, { viewport: { width: 760, height: 420 } });
   const names = await control(page, 'left').locator('option').allTextContents();
-  assert.deepEqual(names, ['original', 'portable', 'pyramid', 'supersampled']);
+  assert.deepEqual(names, ['Plain mips', 'Portable bake', 'Pyramid bake', 'Supersampled']);
   assert.ok((await brightness(page)) > 20, 'something is seen');
 
   await page.locator('#canvas').focus();
-  const [turn, distance, split] = [control(page, 'azimuth'), control(page, 'distance'), page.locator('#split')];
-  const before = [await turn.inputValue(), await distance.inputValue(), await split.inputValue()].map(Number);
+  const [turn, distance] = [control(page, 'azimuth'), control(page, 'distance')];
+  const state = async () => [Number(await turn.inputValue()), Number(await distance.inputValue()), await place(page)];
+  const before = await state();
   for (const key of ['ArrowRight', '-', ']']) await page.keyboard.press(key);
-  const after = [await turn.inputValue(), await distance.inputValue(), await split.inputValue()].map(Number);
+  const after = await state();
   assert.deepEqual(
     after.map((value, i) => value - before[i]),
-    [5, 4, 50],
+    [5, 4, 5],
   );
 
   await page.keyboard.press('l');
@@ -83,6 +49,31 @@ test('shows and compares pictures and follows the keyboard', options, async (t) 
   await page.waitForTimeout(500);
   assert.notEqual(await brightness(page), auto, 'a level of its own');
   for (const environment of ['sky', 'none']) await control(page, 'environment').selectOption(environment);
+  assert.deepEqual(page.problems, []);
+});
+
+test('drags the divider on the picture', options, async (t) => {
+  const { url } = await view(t);
+  const browser = await launch();
+  t.after(() => browser.close());
+  const page = await ready(browser, url, { viewport: { width: 760, height: 420 } });
+  const { x, y, width, height } = await page.locator('#frame').boundingBox();
+  const at = (share) => [x + share * width, y + 0.3 * height];
+  const turn = await control(page, 'azimuth').inputValue();
+  await page.mouse.move(...at(0.5));
+  await page.mouse.down();
+  await page.mouse.move(...at(0.25));
+  await page.mouse.up();
+  assert.equal(await place(page), 25);
+  assert.equal(await control(page, 'azimuth').inputValue(), turn, 'the camera stays');
+  for (const [key, wanted] of Object.entries({ ArrowRight: 26, PageUp: 36, End: 100, Home: 0 })) {
+    await page.keyboard.press(key);
+    assert.equal(await place(page), wanted, key);
+  }
+  await page.mouse.move(...at(0.5));
+  await page.mouse.down();
+  await page.mouse.move(...at(0.6));
+  assert.notEqual(await control(page, 'azimuth').inputValue(), turn, 'beside the divider, the camera turns');
   assert.deepEqual(page.problems, []);
 });
 
@@ -116,7 +107,8 @@ test('shows an asset of the user', options, async (t) => {
   const browser = await launch();
   t.after(() => browser.close());
   const page = await ready(browser, url, { viewport: { width: 500, height: 300 } });
-  assert.deepEqual(await control(page, 'left').locator('option').allTextContents(), ['pyramid']);
+  assert.deepEqual(await control(page, 'left').locator('option').allTextContents(), ['Pyramid bake']);
+  assert.match(await page.locator('#note').textContent(), /need the original/);
   assert.deepEqual(page.problems, []);
 });
 

@@ -1,0 +1,71 @@
+// The table of errors and bytes.
+import { readable } from './bytes.js';
+import { TITLES } from './variants.js';
+
+/** Writes an error for people. */
+export const percent = (error) => `${(100 * error).toFixed(error < 0.1 ? 1 : 0)} %`;
+
+const cell = (tag, text, settings = {}) => Object.assign(document.createElement(tag), { textContent: text, ...settings });
+
+export class Figures {
+  #errors = new Map();
+  #isStale = true;
+
+  /** `body` takes the rows, and `note` says how the errors were measured. */
+  constructor({ body, note }) {
+    Object.assign(this, { body, note });
+  }
+
+  /** Shows the assets by name: `files` and `textures` are bytes. */
+  show(assets) {
+    this.assets = assets;
+    this.#errors = new Map();
+    this.#render();
+  }
+
+  /** Returns the error of a variant as text, or nothing. */
+  errorOf(name) {
+    const error = this.#isStale ? null : this.#errors.get(name);
+    return error == null ? '' : percent(error);
+  }
+
+  /** Shows errors that were measured against `samples` samples per pixel. */
+  measured(errors, samples) {
+    [this.#errors, this.#isStale, this.samples] = [errors, false, samples];
+    this.#render();
+  }
+
+  /** Marks the errors as those of an earlier picture. */
+  expire() {
+    if (this.#isStale) return;
+    this.#isStale = true;
+    this.#render();
+  }
+
+  #render() {
+    const best = Math.min(...[...this.#errors.values()].filter((error) => error !== null));
+    this.body.replaceChildren(
+      ...[...this.assets].map(([name, { files, textures }]) => {
+        const row = document.createElement('tr');
+        const error = this.#errors.get(name);
+        row.append(
+          cell('th', TITLES[name], { scope: 'row' }),
+          cell('td', error == null ? '–' : percent(error), { className: error === best ? 'error best' : 'error' }),
+          cell('td', readable(files)),
+          cell('td', readable(textures)),
+        );
+        return row;
+      }),
+    );
+    this.body.classList.toggle('stale', this.#isStale);
+    this.note.textContent = this.#explain();
+  }
+
+  #explain() {
+    if (!this.assets.has('original')) return 'Errors need the original asset: the supersampled picture is made of it.';
+    if (this.#errors.size === 0) return 'Errors are measured when the picture rests.';
+    return this.#isStale
+      ? 'Errors of the last picture at rest. They are measured again when the picture rests.'
+      : `Errors of this picture against ${this.samples} samples per pixel.`;
+  }
+}

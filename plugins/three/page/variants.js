@@ -1,0 +1,32 @@
+// The variants of an asset: their names, and which of them a document is.
+
+/** The vendor extension of the pyramid profile. */
+const EXTENSION = 'ROUGHCAST_materials_roughness_pyramid';
+
+/** Variants and their titles, in the order in which they are shown. */
+export const TITLES = {
+  original: 'Plain mips',
+  portable: 'Portable bake',
+  pyramid: 'Pyramid bake',
+  supersampled: 'Supersampled',
+};
+export const VARIANTS = Object.keys(TITLES);
+
+/**
+ * Reads the JSON of a .gltf or .glb file.
+ *
+ * @param {Uint8Array} bytes
+ * @throws SyntaxError where the bytes hold no JSON.
+ */
+export function readDocument(bytes) {
+  const text = (from, to) => new TextDecoder().decode(bytes.subarray(from, to));
+  if (bytes.length < 20 || text(0, 4) !== 'glTF') return JSON.parse(text(0));
+  const length = new DataView(bytes.buffer, bytes.byteOffset).getUint32(12, true);
+  return JSON.parse(text(20, 20 + length));
+}
+
+/** Returns which variant a document is. Bakes carry their provenance in `asset.extras.roughcast`. */
+export function variantOf(document) {
+  if (document.extensionsUsed?.includes(EXTENSION)) return 'pyramid';
+  return document.asset?.extras?.roughcast ? 'portable' : 'original';
+}
