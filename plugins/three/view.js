@@ -54,6 +54,8 @@ try {
     options: { original: { type: 'string' }, events: { type: 'boolean' } },
   });
   const files = variants(given);
+  // The maps of the fixture repeat more often on the sphere of the page, so that bumps are lost at its first distance.
+  const subject = given.positionals.length === 0 ? 'sphere' : 'asset';
   // Each asset has a folder of its own, since two assets may have files of one name.
   const folders = Object.fromEntries(
     Object.entries(files).map(([name, file]) => [`asset-${name}`, path.dirname(file)]),
@@ -64,7 +66,8 @@ try {
   ]);
   for (const file of Object.values(files)) statSync(file);
   mkdirSync(path.join(folder, 'view'));
-  writeFileSync(path.join(folder, 'view', 'variants.json'), JSON.stringify({ variants: Object.fromEntries(urls) }));
+  const shown = JSON.stringify({ variants: Object.fromEntries(urls), subject });
+  writeFileSync(path.join(folder, 'view', 'variants.json'), shown);
   const server = await serve({
     ...folders,
     view: path.join(folder, 'view'),

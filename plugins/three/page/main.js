@@ -233,7 +233,8 @@ listenToDrops(document.documentElement, element('files'), (files) =>
 );
 
 await attempt(async () => {
-  const { variants } = await (await fetch('/view/variants.json')).json();
+  const { variants, subject } = await (await fetch('/view/variants.json')).json();
+  element('controls').elements.subject.value = subject;
   // The first thing that moves is the subject, unless a person asked for less motion or has moved something.
   mayStart = !matchMedia('(prefers-reduced-motion: reduce)').matches;
   for (const event of ['pointerdown', 'keydown']) addEventListener(event, () => (mayStart = false), { once: true });

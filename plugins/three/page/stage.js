@@ -28,7 +28,8 @@ export class Stage {
   }
 
   /**
-   * Loads variants from URLs by name. `reflected` is an anisotropic portable bake, shaded with the plugin's reflections.
+   * Loads variants from URLs by name. `reflected` is an anisotropic portable bake, shaded with the plugin's
+   * reflections.
    */
   async load(urls) {
     const load = async ([name, url]) => {

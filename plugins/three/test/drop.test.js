@@ -18,8 +18,9 @@ const drop = (page, contents) =>
   page.evaluate((given) => {
     const dataTransfer = new DataTransfer();
     for (const [name, bytes] of given) dataTransfer.items.add(new File([Uint8Array.from(bytes)], name));
+    const event = { dataTransfer, bubbles: true, cancelable: true };
     for (const type of ['dragenter', 'dragover', 'drop'])
-      document.getElementById('frame').dispatchEvent(new DragEvent(type, { dataTransfer, bubbles: true, cancelable: true }));
+      document.getElementById('frame').dispatchEvent(new DragEvent(type, event));
   }, contents);
 
 test('shows files that are dropped or chosen', options, async (t) => {
@@ -94,7 +95,8 @@ test('decodes geometry of Draco and meshoptimizer', options, async (t) => {
   const browser = await launch();
   t.after(() => browser.close());
   const shown = [];
-  for (const file of [path.join(FIXTURE, 'brushed.gltf'), ...['draco.gltf', 'meshopt.gltf'].map((f) => path.join(folder, f))]) {
+  const compressed = ['draco.gltf', 'meshopt.gltf'].map((name) => path.join(folder, name));
+  for (const file of [path.join(FIXTURE, 'brushed.gltf'), ...compressed]) {
     const { url } = await view(t, file);
     const page = await ready(browser, url, { viewport: VIEWPORT });
     assert.deepEqual(await titles(page), ['Plain mips', 'Supersampled'], file);

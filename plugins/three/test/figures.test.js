@@ -55,7 +55,8 @@ test('sums errors on the GPU', options, async (t) => {
   // No multiple of the blocks that are summed. Edges of the subject do not count.
   const [width, height, samples] = [37, 21, 3];
   const noise = (seed, i) => ((i * 7919 + seed) % 101) / 10;
-  const truth = Array.from({ length: 4 * width * height }, (_, i) => (i % 4 < 3 ? noise(5, i) : i % 20 === 3 ? 0.5 : 1));
+  const coverage = (i) => (i % 20 === 3 ? 0.5 : 1);
+  const truth = Array.from({ length: 4 * width * height }, (_, i) => (i % 4 < 3 ? noise(5, i) : coverage(i)));
   const picture = truth.map((value, i) => (i % 4 < 3 ? value + noise(17, i) - 4 : 1));
   const found = await page.evaluate(
     async (given) => {
