@@ -5,6 +5,7 @@ mod action;
 mod archive;
 mod packages;
 mod pre_commit;
+mod release;
 mod shell;
 #[path = "../common/skip.rs"]
 mod skip;

@@ -1,5 +1,5 @@
-// A plugin for Vite: `import url from './helmet.glb?roughcast'` is the address of the baked asset, a .glb that holds all
-// of its textures. `vite` bakes when the page asks for the asset, and again when one of its files is saved.
+// A plugin for Vite: `import url from './helmet.glb?roughcast'` is the address of the baked asset, a .glb that holds
+// all of its textures. `vite` bakes when the page asks for the asset, and again when one of its files is saved.
 import { createHash } from 'node:crypto';
 import { mkdir, readFile, writeFile } from 'node:fs/promises';
 import path from 'node:path';
