@@ -6,7 +6,7 @@ use std::process::Command;
 
 use serde_json::Value;
 
-use super::shell::{in_repository, run};
+use super::shell::in_repository;
 
 /// Returns the packages of the workspace that are published, by name, as `cargo metadata` describes them.
 fn published() -> BTreeMap<String, Value> {
