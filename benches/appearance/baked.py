@@ -10,6 +10,7 @@ from encoding import in_8_bits, srgb_in_8_bits, to_linear
 from filtering import Texture, chain
 from gltf import Document, pixels
 from source import colour_factor, orm_factors
+from truth import mi
 from variants import Lobes, Variant, channels, ellipse
 
 PYRAMID = "ROUGHCAST_materials_roughness_pyramid"
@@ -24,9 +25,9 @@ BAKES = {
 }
 
 
-def bake(roughcast, gltf, folder, name):
-    """Bakes a material with the arguments of a variant, and returns the variant."""
-    command = [str(roughcast), "bake", str(gltf), "-o", str(folder), *BAKES[name]]
+def bake(roughcast, gltf, folder, name, arguments=None):
+    """Bakes a material with the arguments of a variant, or with others, and returns the variant."""
+    command = [str(roughcast), "bake", str(gltf), "-o", str(folder), *(arguments or BAKES[name])]
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode:
         raise RuntimeError(f"{' '.join(command)} failed: {done.stderr.strip()}")
@@ -133,4 +134,11 @@ def load(roughcast, path, after, linear):
     command = [str(roughcast), "inspect", str(path), "--extract", str(folder)]
     subprocess.run(command, check=True, capture_output=True)
     number = lambda file: int(re.search(r"\.level(\d+)\.", file.name)[1])
-    return Texture([linear(pixels(file)) for file in sorted(folder.iterdir(), key=number)])
+    return Texture([linear(extracted(file)) for file in sorted(folder.iterdir(), key=number)])
+
+
+def extracted(path):
+    """Returns a level that `roughcast inspect` wrote: a PNG, or an OpenEXR file of half floats."""
+    if path.suffix == ".exr":
+        return np.array(mi.Bitmap(str(path)), np.float32)[..., :3]
+    return pixels(path)

@@ -19,14 +19,7 @@ class Texture:
     def sample(self, uv, across, down, anisotropic):
         """Returns an array (pixels, channels): the texture at `uv` (repeats) with the derivatives `across`, `down`."""
         rows, columns = self.levels[0].shape[:2]
-        x = np.hypot(across[0] * columns, across[1] * rows)
-        y = np.hypot(down[0] * columns, down[1] * rows)
-        longer, shorter = np.maximum(x, y), np.maximum(np.minimum(x, y), 1e-6)
-        count = np.ones_like(x)
-        if anisotropic:
-            count = np.clip(np.ceil(longer / shorter), 1, MAX_ANISOTROPY)
-        lod = np.clip(np.log2(np.maximum(longer / count, 1e-6)), 0.0, len(self.levels) - 1)
-        along = tuple(np.where(x >= y, a, d) for a, d in zip(across, down))
+        count, lod, along = samples_of(across, down, (columns, rows), len(self.levels), anisotropic)
         result = np.zeros((len(lod), self.levels[0].shape[2]), np.float32)
         for taps in np.unique(count).astype(int):
             chosen = np.flatnonzero(count == taps)
@@ -46,6 +39,23 @@ class Texture:
                 part = bilinear(self.levels[level], tuple(c[chosen] for c in uv))
                 result[chosen] += part * weight[chosen, None].astype(np.float32)
         return result
+
+
+def samples_of(across, down, size, levels, anisotropic):
+    """Returns (count, level, step) of the trilinear samples that a filter takes of a texture.
+
+    `across` and `down` are derivatives in repeats, `size` is (columns, rows), and `step` is the derivative along which
+    the samples are spread evenly.
+    """
+    columns, rows = size
+    x = np.hypot(across[0] * columns, across[1] * rows)
+    y = np.hypot(down[0] * columns, down[1] * rows)
+    longer, shorter = np.maximum(x, y), np.maximum(np.minimum(x, y), 1e-6)
+    count = np.ones_like(x)
+    if anisotropic:
+        count = np.clip(np.ceil(longer / shorter), 1, MAX_ANISOTROPY)
+    lod = np.clip(np.log2(np.maximum(longer / count, 1e-6)), 0.0, levels - 1)
+    return count, lod, tuple(np.where(x >= y, a, d) for a, d in zip(across, down))
 
 
 def bilinear(level, uv):

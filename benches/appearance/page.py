@@ -21,6 +21,9 @@ python3 -m venv venv && venv/bin/pip install -r benches/appearance/requirements.
 cargo build --release && venv/bin/python benches/appearance/run.py
 ```
 
+[docs/limits.md](limits.md) shows which part of these pictures limits whole materials: lobes, filters, mean colours or
+diffuse light.
+
 `run.py FOLDER` adds materials of your own: glTF files with images beside them, or else bare normal maps. `--quick` is
 a small run for CI. A second run measures only what has changed, since results and truths are kept in
 `target/appearance`.

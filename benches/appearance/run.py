@@ -35,6 +35,8 @@ QUICK_MATERIALS = ("mirror_tiles", "brushed", "painted_rust")
 TRUTH_FILES = ("formula.py", "lights.py", "shading.py", "source.py", "truth.py", "views.py")
 # Changes of these files change the page, but no result.
 PAGE_FILES = ("charts.py", "intervals.py", "page.py", "run.py", "summary.py")
+# Programs of the study of limits, which `run.py` does not use.
+LIMITS_FILES = ("footprints.py", "limits.py", "limits_page.py", "parts.py")
 # The view of the pictures on the page.
 SHOWN = ("plane 20", 2.5)
 
@@ -97,8 +99,8 @@ def scored(material, settings, options):
     folder.mkdir(parents=True, exist_ok=True)
     stored = folder / f"{material.name}.json"
     level_0 = source.read(material.path)
-    truth_key = digest(repr(settings), *(HERE / name for name in TRUTH_FILES), *vars(level_0).values())
-    programs = sorted(file for file in HERE.glob("*.py") if file.name not in PAGE_FILES)
+    truth_key = key_of_truth(level_0, settings)
+    programs = sorted(file for file in HERE.glob("*.py") if file.name not in PAGE_FILES + LIMITS_FILES)
     key, peers_key = digest(truth_key, options.roughcast, *programs), digest(truth_key, *programs)
     old = json.loads(stored.read_text()) if stored.exists() else {}
     if old.get("key") == key:
@@ -124,6 +126,11 @@ def scored(material, settings, options):
         gltf.save(pictures / f"{variant.name}.png", score.picture(variant, level_0.size, shown, reference))
     stored.write_text(json.dumps(result, indent=1))
     return result
+
+
+def key_of_truth(level_0, settings):
+    """Returns the digest of all that a truth is made from."""
+    return digest(repr(settings), *(HERE / name for name in TRUTH_FILES), *vars(level_0).values())
 
 
 def truths(material, level_0, key, settings, options):
