@@ -96,9 +96,7 @@ impl Engine {
             Self::Filament => Preset { anisotropy: Anisotropy::Unread, ..defaults("filament") },
             // Its loader refuses files that need KHR_texture_basisu and ignores normalTexture.scale, and its shader
             // squares the alphas of anisotropic lobes once more. The dual form needs external files.
-            Self::Bevy => {
-                Preset { form: Form::Dual, glb: Some(false), reads_normal_scale: false, ..defaults("bevy") }
-            }
+            Self::Bevy => Preset { form: Form::Dual, glb: Some(false), reads_normal_scale: false, ..defaults("bevy") },
             // Its editor saves images inside a .glb as PNG and makes mips of its own. No test of ours runs it, so that
             // the form is the one that every importer of glTF reads. For normalTexture.scale it mixes the normal with
             // that of the surface.

@@ -39,6 +39,7 @@ fn the_largest_image_decides_on_the_memory_of_a_job() {
         id: crate::digest::digest(b""),
         source: path("a.gltf"),
         output: PathBuf::new(),
+        name: None,
         settings: crate::project::Values::default(),
         inputs,
         outputs: Vec::new(),

@@ -7,6 +7,7 @@ fn job(name: usize, cost: u64) -> Job {
         id: crate::digest::digest(&name.to_le_bytes()),
         source: PathBuf::from(format!("{name}.gltf")),
         output: PathBuf::new(),
+        name: None,
         settings: crate::project::Values::default(),
         inputs: Vec::new(),
         outputs: Vec::new(),

@@ -11,6 +11,7 @@ fn job(number: u64, cost: u64) -> Job {
         id: digest(&number.to_le_bytes()),
         source: PathBuf::new(),
         output: PathBuf::new(),
+        name: None,
         settings: crate::project::Values::default(),
         inputs: Vec::new(),
         outputs: Vec::new(),
