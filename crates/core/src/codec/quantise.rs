@@ -8,6 +8,9 @@ use crate::codec::error::EncodeError;
 use crate::codec::uastc::Lobe;
 use crate::simd::dispatch;
 
+/// Writes the lobes about the normals of row y of a level: `(y, out)`.
+pub type RowOfLobes<'a> = dyn Fn(u32, &mut [Lobe]) + Sync + 'a;
+
 /// The texels of one level, produced row by row.
 pub struct Texels<'a> {
     /// Columns.
@@ -18,7 +21,7 @@ pub struct Texels<'a> {
     pub row: &'a (dyn Fn(u32, &mut [[f32; 4]]) + Sync),
     /// Writes the lobes about the normals of row `y` to a slice of `width` lobes; `None` if the texels are no normals,
     /// or if their lobes are not known. The encoder of UASTC chooses blocks of normals by what they do to these lobes.
-    pub lobes: Option<&'a (dyn Fn(u32, &mut [Lobe]) + Sync)>,
+    pub lobes: Option<&'a RowOfLobes<'a>>,
 }
 
 impl Texels<'_> {

@@ -57,7 +57,7 @@ impl Asset {
             "materials": [self.material],
         });
         let document = Document::parse(root.to_string().as_bytes()).unwrap();
-        let is_metal = |x: u32, y: u32| (x / 2 + y / 2) % 2 == 0;
+        let is_metal = |x: u32, y: u32| (x / 2 + y / 2).is_multiple_of(2);
         let metalness = self.metalness;
         let read = Mutex::new(BTreeSet::new());
         let files = |path: &Path| -> io::Result<Vec<u8>> {

@@ -16,7 +16,7 @@ fn image(texel: impl Fn(u32, u32) -> [u8; 3]) -> Image {
 
 /// Returns whether a texel is mirror steel. All others are rust.
 fn is_steel(x: u32, y: u32) -> bool {
-    (x / 8 + y / 8) % 2 == 0
+    (x / 8 + y / 8).is_multiple_of(2)
 }
 
 /// Rust with bumps beside mirror steel, which lies flat, in squares of eight texels.

@@ -6,7 +6,7 @@ use crate::material::bump_map::BumpMap;
 /// Returns the scale of a map of 16 x 600 texels, in whose rows the slopes are `slope` and -`slope` by turns.
 fn scale_of(slope: f32) -> f32 {
     let texel = |i: u32| {
-        let u = if i % 2 == 0 { slope } else { -slope };
+        let u = if i.is_multiple_of(2) { slope } else { -slope };
         let length = (1.0 + u * u).sqrt();
         [0.5 + 0.5 * u / length, 0.5, 0.5 + 0.5 / length]
     };
