@@ -1,6 +1,10 @@
 //! The functions that the crate root exports: checked settings in, bytes out, one error type.
 //! `roughcast map` shares the functions that read and bake standalone maps.
 
+mod map_provenance;
+
+pub use map_provenance::MapProvenance;
+
 use crate::bake::{self, BakeError, BakedAsset, BaseRoughness, EncodedMap, EncodedTexture, Files, Source};
 use crate::bump::{HeightMap, NormalLayout, NormalMap};
 use crate::codec::EncodeError;

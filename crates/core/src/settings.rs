@@ -1,9 +1,11 @@
 //! What a bake can be asked for. [`RecordedSettings`] lists the settings that change the bytes of a texture.
 
 mod container;
+pub mod engines;
 mod error;
 pub mod limit;
 mod recorded;
+pub mod values;
 mod view;
 
 pub use error::SettingsError;

@@ -3,21 +3,17 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use serde::Serialize;
-
-use crate::api::{self, BumpTexels, encode_map, read_base_roughness, read_bump_map};
-use crate::bake::{BaseRoughness, EncodedTexture, output_stem_of};
-use crate::bump::NormalLayout;
+use crate::api::{self, BumpTexels, MapProvenance, encode_map, read_base_roughness, read_bump_map};
+use crate::bake::{BaseRoughness, output_stem_of};
 use crate::digest::digest;
 use crate::image::DecodeOptions;
 use crate::input_file::read_file;
-use crate::ktx2::{Key, Provenance, SourceDigest};
-use crate::material::{Range, notes};
-use crate::mip::Wrap;
+use crate::ktx2::SourceDigest;
+use crate::material::notes;
 use crate::note;
 use crate::output::{Guard, PublishError};
 use crate::report::{Content, MapReport};
-use crate::settings::{Model, RecordedSettings, Settings};
+use crate::settings::Settings;
 
 /// A standalone map, and where it is written.
 #[derive(Clone, Debug)]
@@ -114,13 +110,19 @@ pub fn bake_map_file(options: &MapOptions) -> Result<WrittenMap, MapFileError> {
     if is_jpeg {
         baked.notes.push(note::jpeg_source());
     }
+    let provenance = MapProvenance {
+        texels: options.texels,
+        layer: options.layer.as_deref(),
+        roughness_factor: options.roughness_factor,
+        sources,
+    };
     let mut outputs = vec![first];
     for texture in baked.textures.iter().skip(1) {
         outputs.push(guard.reserve_file(&beside(output, texture.content))?);
     }
     let (mut files, mut textures) = (Vec::new(), Vec::new());
     for (mut texture, output) in baked.textures.into_iter().zip(outputs) {
-        let keys = options.keys(&texture, baked.model, &sources);
+        let keys = provenance.keys(&texture, baked.model, settings);
         let bytes = texture.mip_chain.take_ktx2(&keys).map_err(api::Error::from)?;
         output.write(&bytes)?;
         textures.push(texture.report(output.path().display().to_string(), bytes.len()));
@@ -146,83 +148,6 @@ impl MapOptions {
         let base = read_base_roughness(&bytes, factor, &self.decode_options(path, None));
         base.map(Some).map_err(|error| MapFileError::Image { path: path.clone(), error: error.into() })
     }
-
-    /// Returns the keys of the KTX2 file of `texture`: its provenance, unless the settings leave it out.
-    fn keys(&self, texture: &EncodedTexture, model: Model, sources: &[SourceDigest]) -> Vec<Key> {
-        if !self.settings.provenance {
-            return Vec::new();
-        }
-        let settings = MapSettings {
-            bake: RecordedSettings::new(&self.settings, model),
-            range: texture.range.as_ref().map(RecordedRange::new),
-            scale: texture.scale.map(f64::from),
-            map: self.recorded(),
-        };
-        Provenance {
-            version: env!("CARGO_PKG_VERSION").to_owned(),
-            content: texture.content.name().to_owned(),
-            settings,
-            lobe_errors: texture.lobe_errors.clone(),
-            sources: sources.to_vec(),
-        }
-        .keys()
-    }
-
-    /// Returns how the images are read, for the provenance.
-    fn recorded(&self) -> RecordedMap<'_> {
-        let texels = match self.texels {
-            BumpTexels::Heights { scale, wrap } => {
-                RecordedTexels::Heights { height: true, height_scale: f64::from(scale), wrap }
-            }
-            BumpTexels::Normals { layout, is_green_down } => {
-                RecordedTexels::Normals { channels: layout, green_down: is_green_down }
-            }
-        };
-        RecordedMap { texels, layer: self.layer.as_deref(), roughness_factor: self.roughness_factor.map(f64::from) }
-    }
-}
-
-/// What the provenance of a standalone map's textures records as settings.
-#[derive(Serialize)]
-struct MapSettings<'a> {
-    #[serde(flatten)]
-    bake: RecordedSettings,
-    range: Option<RecordedRange>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    scale: Option<f64>,
-    map: RecordedMap<'a>,
-}
-
-/// A [`Range`] with the digits of double precision, as all numbers of recorded settings are written.
-#[derive(Serialize)]
-struct RecordedRange {
-    min: Vec<f64>,
-    max: Vec<f64>,
-}
-
-impl RecordedRange {
-    fn new(range: &Range) -> Self {
-        let widened = |values: &[f32]| values.iter().copied().map(f64::from).collect();
-        Self { min: widened(&range.min), max: widened(&range.max) }
-    }
-}
-
-/// How the images of a standalone map are read.
-#[derive(Serialize)]
-#[serde(rename_all = "camelCase")]
-struct RecordedMap<'a> {
-    #[serde(flatten)]
-    texels: RecordedTexels,
-    layer: Option<&'a str>,
-    roughness_factor: Option<f64>,
-}
-
-/// What the texels of the image are: [`BumpTexels`] under the names of the flags.
-#[derive(Serialize)]
-#[serde(untagged, rename_all_fields = "camelCase")]
-enum RecordedTexels {
-    Heights { height: bool, height_scale: f64, wrap: [Wrap; 2] },
-    Normals { channels: NormalLayout, green_down: bool },
 }
 
 /// Reads a file and adds its digest to `sources`.
@@ -238,6 +163,3 @@ fn beside(output: &Path, content: Content) -> PathBuf {
     let stem = output_stem_of(output);
     output.with_file_name(format!("{stem}.{}.ktx2", content.name()))
 }
-
-#[cfg(test)]
-mod tests;

@@ -10,8 +10,8 @@ use toml::de::{DeString, DeTable, DeValue};
 use crate::project::globs::{GlobError, globs};
 use crate::project::remote::RemoteValues;
 use crate::project::resolve::ConfigSource;
-use crate::project::values::Values;
 use crate::settings::SettingsError;
+use crate::settings::values::Values;
 
 /// The name of the file.
 pub const FILE_NAME: &str = "roughcast.toml";

@@ -4,7 +4,6 @@
 //! in order, the command line. The values of an engine's preset yield to other values of the source that sets `engine`.
 
 mod destination;
-mod engines;
 mod file;
 mod globs;
 pub(crate) mod inputs;
@@ -14,12 +13,12 @@ mod remote;
 mod resolve;
 mod selection;
 mod trust;
-mod values;
 
 pub use inputs::{Input, InputError};
 
+pub use crate::settings::engines::Engine;
+pub use crate::settings::values::Values;
 pub use destination::named_container;
-pub use engines::Engine;
 pub use file::{Config, ConfigError, FILE_NAME, TEMPLATE};
 pub use globs::GlobError;
 pub use protect::protect;
@@ -28,4 +27,3 @@ pub use remote::RemoteValues;
 pub use resolve::{ConfigSource, Resolved, resolve};
 pub use selection::{ConfigChoice, Selected, Selection, SelectionError};
 pub use trust::{NamedServer, is_harmless};
-pub use values::Values;

@@ -3,8 +3,8 @@
 
 use std::fmt::{self, Display};
 
-use crate::project::engines::Engine;
-use crate::project::values::{Origins, Values};
+use crate::settings::engines::Engine;
+use crate::settings::values::{Origins, Values};
 use crate::settings::{Settings, SettingsError};
 use crate::text::printable;
 
@@ -40,20 +40,11 @@ pub fn resolve(sources: &[ConfigSource]) -> Result<Resolved, SettingsError> {
     let profile = sources.iter().rev().find_map(|source| source.values.profile).unwrap_or_default();
     for ConfigSource { origin, values: explicit } in sources {
         if let Some(engine) = explicit.engine {
-            let preset = engine.preset();
-            let needs = Values {
-                target: Some(preset.target),
-                gltf: Some(preset.form),
-                glb: preset.glb,
-                model: preset.model(profile),
-                max_model: preset.max_model(profile),
-                scale_normals: Some(preset.reads_normal_scale),
-                ..Values::default()
-            };
+            let needs = Values::of_engine(engine, profile);
             // A preset without a container does not keep that of an earlier preset.
             values.glb = values.glb.filter(|_| !has_container_of_preset);
             has_container_of_preset |= needs.glb.is_some();
-            origins.record(&needs, &format!("{origin}, engine = {}", preset.name));
+            origins.record(&needs, &format!("{origin}, engine = {}", engine.preset().name));
             values = values.overridden_by(&needs);
         }
         has_container_of_preset &= explicit.glb.is_none();
@@ -77,3 +68,6 @@ impl Display for Resolved {
         lines.iter().try_for_each(|(line, origin)| writeln!(f, "{line:width$}  # {}", printable(origin)))
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -10,15 +10,15 @@ use std::path::{Path, PathBuf};
 
 use self::configs::{Configs, FoundConfig};
 use super::destination::Destination;
-use super::engines::Engine;
 use super::inputs::{self, Input, InputError};
 use super::record::is_baked;
 use super::resolve::{ConfigSource, Resolved, resolve};
 use super::trust::NamedServer;
-use super::values::Values;
 use crate::gltf::document::Container;
 use crate::note::Note;
 use crate::settings::Settings;
+use crate::settings::engines::Engine;
+use crate::settings::values::Values;
 
 /// Which `roughcast.toml` holds for an asset.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -1,6 +1,5 @@
 //! Presets for engines: one table.
 
-use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 
 use crate::codec::Target;
@@ -8,7 +7,8 @@ use crate::note::{self, Note};
 use crate::settings::{Form, MaxModel, Model, Profile};
 
 /// An engine.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Engine {
     /// three.js: its anisotropic lobes reflect the surroundings wrongly.
@@ -75,9 +75,12 @@ const GODOT_LIMITER: Limiter = Limiter {
 };
 
 impl Engine {
+    /// Every engine.
+    pub const ALL: [Self; 6] = [Self::Three, Self::Babylon, Self::Playcanvas, Self::Filament, Self::Bevy, Self::Godot];
+
     /// Returns the names of all engines.
     pub fn names() -> impl Iterator<Item = &'static str> {
-        Self::value_variants().iter().map(|engine| engine.preset().name)
+        Self::ALL.iter().map(|engine| engine.preset().name)
     }
 
     /// Returns the preset of the engine.

@@ -7,7 +7,7 @@ use crate::bump::{Frame, FrameKind};
 use crate::codec::Target;
 use crate::codec::uastc::Effort;
 use crate::lobe::{Distribution, Family};
-use crate::project::engines::Engine;
+use crate::settings::engines::Engine;
 use crate::settings::{Form, MaxModel, Model, Profile, Settings, SettingsError, View, limit};
 
 /// Declares the settings, each once: the struct that holds them, and what is done with every one of them.
@@ -23,7 +23,7 @@ macro_rules! values {
 
         /// Where each value came from, for a person; `None` for defaults.
         #[derive(Clone, Debug, Default, PartialEq)]
-        pub(super) struct Origins {
+        pub struct Origins {
             $($field: Option<String>,)*
         }
 
@@ -68,12 +68,12 @@ macro_rules! values {
 
             /// Returns the values of `later`, and those of `self` that `later` does not set.
             #[must_use]
-            pub(super) fn overridden_by(self, later: &Self) -> Self {
+            pub fn overridden_by(self, later: &Self) -> Self {
                 Self { $($field: later.$field.or(self.$field)),* }
             }
 
             /// Returns the name of each value that is set, its text as JSON, which is TOML too, and its origin.
-            pub(super) fn lines<'o>(&self, origins: &'o Origins) -> Vec<(String, String, Option<&'o str>)> {
+            pub fn lines<'o>(&self, origins: &'o Origins) -> Vec<(String, String, Option<&'o str>)> {
                 let lines = [$(
                     self.$field.map(|value| (name(stringify!($field)), text(&value), origins.$field.as_deref())),
                 )*];
@@ -83,7 +83,7 @@ macro_rules! values {
 
         impl Origins {
             /// Records `origin` for every value that `values` sets.
-            pub(super) fn record(&mut self, values: &Values, origin: &str) {
+            pub fn record(&mut self, values: &Values, origin: &str) {
                 $(
                     if values.$field.is_some() {
                         self.$field = Some(origin.to_owned());
@@ -154,6 +154,20 @@ impl Values {
             fov: Some(View::DEFAULT_FOV),
             aspect: Some(View::DEFAULT_ASPECT),
             trim: Some(false),
+            ..Self::default()
+        }
+    }
+
+    /// Returns the values that the preset of `engine` sets in a bake of `profile`.
+    pub fn of_engine(engine: Engine, profile: Profile) -> Self {
+        let preset = engine.preset();
+        Self {
+            target: Some(preset.target),
+            gltf: Some(preset.form),
+            glb: preset.glb,
+            model: preset.model(profile),
+            max_model: preset.max_model(profile),
+            scale_normals: Some(preset.reads_normal_scale),
             ..Self::default()
         }
     }

@@ -3,18 +3,10 @@ use serde_json::{Value, json};
 use super::*;
 
 fn recorded(texels: BumpTexels) -> Value {
-    let options = MapOptions {
-        image: PathBuf::from("bumps.png"),
-        texels,
-        layer: None,
-        roughness: None,
-        roughness_factor: Some(0.1),
-        output: PathBuf::from("bumps.ktx2"),
-        settings: Settings::default(),
-    };
+    let map = MapProvenance { texels, layer: None, roughness_factor: Some(0.1), sources: Vec::new() };
     let range = RecordedRange::new(&Range { min: vec![-0.1], max: vec![0.1] });
-    let bake = RecordedSettings::new(&options.settings, Model::None);
-    json!(MapSettings { bake, range: Some(range), scale: Some(0.5), map: options.recorded() })
+    let bake = RecordedSettings::new(&Settings::default(), Model::None);
+    json!(MapSettings { bake, range: Some(range), scale: Some(0.5), map: map.recorded() })
 }
 
 #[test]

@@ -1,0 +1,44 @@
+use super::*;
+
+#[test]
+fn every_engine_has_a_preset_of_its_own_name() {
+    for engine in Engine::ALL {
+        let preset = engine.preset();
+        assert_eq!(serde_json::to_value(engine).unwrap(), preset.name);
+        #[cfg(feature = "cli")]
+        assert_eq!(clap::ValueEnum::to_possible_value(&engine).unwrap().get_name(), preset.name);
+    }
+}
+
+#[test]
+fn presets_bake_isotropic_lobes_into_core_materials() {
+    for engine in Engine::ALL {
+        let preset = engine.preset();
+        assert_eq!(preset.model(Profile::Both), Some(Model::Isotropic), "{engine:?}");
+        assert_eq!((preset.model(Profile::Pyramid), preset.max_model(Profile::Pyramid)), (None, None), "{engine:?}");
+    }
+}
+
+#[test]
+fn notes_name_the_switches_of_limiters_that_are_on_by_default() {
+    let with_notes: Vec<&str> =
+        Engine::ALL.iter().filter(|e| e.limiter_note().is_some()).map(|e| e.preset().name).collect();
+    assert_eq!(with_notes, ["babylon", "godot"]);
+    let note = Engine::Godot.limiter_note().expect("a note");
+    assert!(note.asks_for_action);
+    assert!(note.text.contains("screen_space_roughness_limiter/enabled"), "{note}");
+}
+
+#[test]
+fn presets_write_a_gltf_where_an_engine_cannot_use_what_is_inside_a_glb() {
+    for engine in Engine::ALL {
+        let preset = engine.preset();
+        let (glb, form) = match engine {
+            Engine::Bevy => (Some(false), Form::Dual),
+            Engine::Godot => (Some(false), Form::Auto),
+            // These load KTX2, and need no PNG copies.
+            _ => (None, Form::Strict),
+        };
+        assert_eq!((preset.glb, preset.form), (glb, form), "{engine:?}");
+    }
+}

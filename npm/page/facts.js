@@ -1,0 +1,36 @@
+// What a bake did, as text.
+
+/** Returns a size for a person. */
+export function size(bytes) {
+  return bytes < 1e6 ? `${(bytes / 1e3).toFixed(1)} kB` : `${(bytes / 1e6).toFixed(2)} MB`;
+}
+
+const largest = (errors) => Math.max(...errors);
+const percent = (error) => `${(100 * error).toFixed(0)} %`;
+
+/** Returns the sentence on sizes and time. */
+export function headline(before, { bytes, report, seconds }) {
+  const ktx2 = report.textures.reduce((sum, texture) => sum + texture.bytes, 0);
+  const textures = `${report.textures.length} KTX2 textures of ${size(ktx2)}`;
+  if (report.textures.length === 0) return `No material has a normal or height map: the file stays as it is.`;
+  return `${size(before)} before, ${size(bytes.byteLength)} baked, with ${textures}, in ${seconds.toFixed(1)} s.`;
+}
+
+/** Returns a row for each baked layer: material, model, and the largest lobe errors of plain mips and of the bake. */
+export function rows({ layers }) {
+  return layers
+    .filter((layer) => layer.model)
+    .map(({ material, layer, model, choice }) => {
+      const name = layer === 'base' ? material : `${material}, ${layer}`;
+      const plain = choice?.candidates.find((candidate) => candidate.model === 'none');
+      const taken = choice?.candidates[choice.chosen];
+      return [name, model, ...[plain, taken].map((one) => (one ? percent(largest(one.errors)) : '–'))];
+    });
+}
+
+/** Returns the notes that ask for something. */
+export function notes({ layers }) {
+  return layers.flatMap(({ material, notes }) =>
+    notes.filter((note) => note.asksForAction).map((note) => `${material}: ${note.text}`),
+  );
+}

@@ -1,0 +1,84 @@
+// Options of the command line.
+import { parseArgs } from 'node:util';
+
+/** Arguments that cannot be used. */
+export class UsageError extends Error {}
+
+const text = { type: 'string' };
+const flag = { type: 'boolean' };
+
+/** Settings that `bake` and `map` share. */
+const TEXTURE = {
+  profile: text,
+  model: text,
+  'max-error': text,
+  quality: text,
+  rdo: text,
+  distribution: text,
+  lobe: text,
+  target: text,
+  'max-texels': text,
+  'no-provenance': flag,
+};
+
+/** Settings of `bake` only. */
+export const DOCUMENT = {
+  engine: text,
+  'max-model': text,
+  gltf: text,
+  glb: flag,
+  frame: text,
+  'main-direction': text,
+  'height-scale': text,
+  nearest: text,
+  'screen-height': text,
+  fov: text,
+  aspect: text,
+  trim: flag,
+};
+
+/** Where outputs go, and what is printed. */
+export const OUTPUT = {
+  output: { type: 'string', short: 'o' },
+  json: flag,
+  quiet: { type: 'boolean', short: 'q' },
+  verbose: { type: 'boolean', short: 'v' },
+};
+
+const NUMBERS = ['max-error', 'rdo', 'max-texels', 'height-scale', 'nearest', 'screen-height', 'fov', 'aspect'];
+
+/**
+ * Reads arguments.
+ *
+ * @param {string[]} args
+ * @param {object} own options of the command, besides those that `bake` and `map` share
+ * @returns {{inputs: string[], settings: object, values: object}} settings under the names of roughcast.toml; `values`
+ * are the options that `own` and `OUTPUT` declare
+ */
+export function parse(args, own) {
+  let parsed;
+  try {
+    parsed = parseArgs({ args, options: { ...TEXTURE, ...OUTPUT, ...own }, allowPositionals: true });
+  } catch (error) {
+    throw new UsageError(`${error.message} If the native tool has this option, install its package.`);
+  }
+  const { positionals, values } = parsed;
+  if (positionals.length === 0) throw new UsageError('expected an input, found none; name one');
+  if (values.output === undefined) throw new UsageError('expected an output, found none; name one with -o');
+  const { 'no-provenance': withoutProvenance, ...settings } = pick(values, { ...TEXTURE, ...DOCUMENT });
+  if (withoutProvenance) settings.provenance = false;
+  if (settings['main-direction']) settings['main-direction'] = settings['main-direction'].split(',').map(Number);
+  for (const name of NUMBERS.filter((name) => name in settings)) settings[name] = number(name, settings[name]);
+  return { inputs: positionals, settings, values };
+}
+
+/** Returns the value of an option as a number. */
+export function number(name, value) {
+  const parsed = Number(value);
+  if (value.trim() !== '' && Number.isFinite(parsed)) return parsed;
+  throw new UsageError(`--${name}: expected a number, found ${value}`);
+}
+
+function pick(values, names) {
+  return Object.fromEntries(Object.entries(values).filter(([name]) => name in names));
+}

@@ -1,0 +1,154 @@
+// The packed packages, installed in an empty folder, as a newcomer has them.
+import assert from 'node:assert/strict';
+import { cpSync, existsSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
+import os from 'node:os';
+import path from 'node:path';
+import process from 'node:process';
+import test, { after, before } from 'node:test';
+import { binary, fixtures, noBinary, noModule, npm, run, temporary } from './common.js';
+
+const options = { skip: noBinary || noModule };
+let platform;
+let main;
+let packed;
+
+before(() => {
+  if (options.skip) return;
+  packed = mkdtempSync(path.join(os.tmpdir(), 'roughcast-packed-'));
+  const made = run(process.execPath, [path.join(npm, 'make-packages.js'), '--binary', binary, '--out', packed]);
+  [platform, main] = made.trim().split('\n');
+});
+after(() => packed && rmSync(packed, { recursive: true, force: true }));
+
+/** Makes a folder with a GLB and installs packages in it, without a network. */
+function project(t, packages) {
+  const folder = temporary(t);
+  cpSync(path.join(fixtures, 'waves/waves.glb'), path.join(folder, 'model.glb'));
+  writeFileSync(path.join(folder, 'package.json'), '{ "private": true, "type": "module" }');
+  run('npm', ['install', '--offline', '--omit=optional', '--no-audit', '--no-fund', ...packages], { cwd: folder });
+  return folder;
+}
+
+/** The environment of a user: nothing that names the repository's tool. */
+const { ROUGHCAST, ROUGHCAST_BINARY, ROUGHCAST_BACKEND, ...environment } = process.env;
+const npx = (folder, ...args) => run('npx', ['--offline', 'roughcast', ...args], { cwd: folder, env: environment });
+
+/** Returns the JSON of a .glb. */
+function jsonOf(file) {
+  const bytes = readFileSync(file);
+  assert.equal(bytes.toString('latin1', 0, 4), 'glTF');
+  return JSON.parse(bytes.toString('utf8', 20, 20 + bytes.readUInt32LE(12)));
+}
+
+test('the packages hold what they need and nothing else', options, () => {
+  const list = (file) =>
+    run('tar', ['-tzf', file])
+      .trim()
+      .split('\n')
+      .map((name) => name.replace('package/', ''));
+  const licences = ['LICENSE-APACHE', 'LICENSE-MIT', 'README.md', 'package.json'];
+  assert.deepEqual(list(platform).sort(), [...licences, 'bin/roughcast'].sort());
+  const names = list(main);
+  for (const name of [...licences, 'bin/roughcast.js', 'index.d.ts', 'lib/index.js', 'roughcast.wasm']) {
+    assert.ok(names.includes(name), name);
+  }
+  assert.deepEqual(
+    names.filter((name) => /test|node_modules|\.rs$/.test(name)),
+    [],
+  );
+});
+
+test('the command line bakes natively and by WebAssembly, to the same bytes', options, (t) => {
+  const native = project(t, [platform, main]);
+  const wasm = project(t, [main]);
+  assert.ok(existsSync(path.join(native, 'node_modules/@roughcast')));
+  assert.ok(!existsSync(path.join(wasm, 'node_modules/@roughcast')));
+  assert.doesNotMatch(npx(native, '--version'), /WebAssembly/);
+  assert.match(npx(wasm, '--version'), /WebAssembly/);
+  // Explicit forms: the defaults of the two must not be what is compared here.
+  for (const folder of [native, wasm]) npx(folder, 'bake', 'model.glb', '-o', 'out', '--glb', '--gltf', 'strict');
+  const [one, two] = [native, wasm].map((folder) => readFileSync(path.join(folder, 'out/model.glb')));
+  assert.ok(one.equals(two));
+  assert.ok(jsonOf(path.join(wasm, 'out/model.glb')).extensionsRequired.includes('KHR_texture_basisu'));
+});
+
+test('one command bakes in an empty folder, within a minute', options, (t) => {
+  for (const packages of [[main, platform], [main]]) {
+    const folder = temporary(t);
+    cpSync(path.join(fixtures, 'waves/waves.glb'), path.join(folder, 'model.glb'));
+    const named = packages.flatMap((name) => ['--package', name]);
+    const command = ['--yes', '--offline', ...named, 'roughcast', 'bake', 'model.glb', '-o', 'baked.glb', '--glb'];
+    const started = performance.now();
+    run('npx', command, { cwd: folder, env: environment });
+    const seconds = (performance.now() - started) / 1e3;
+    t.diagnostic(`${packages.length === 2 ? 'native' : 'WebAssembly'}: ${seconds.toFixed(1)} s`);
+    assert.ok(seconds < 60, `${seconds} s`);
+    assert.ok(existsSync(path.join(folder, 'baked.glb')));
+  }
+});
+
+test('WebAssembly bakes folders, names files, and refuses what it cannot do', options, (t) => {
+  const folder = project(t, [main]);
+  mkdirSync(path.join(folder, 'assets/deep'), { recursive: true });
+  cpSync(path.join(fixtures, 'heights'), path.join(folder, 'assets'), { recursive: true });
+  cpSync(path.join(folder, 'model.glb'), path.join(folder, 'assets/deep/model.glb'));
+  npx(folder, 'bake', 'assets', '-o', 'out', '--report', 'report.json');
+  assert.ok(existsSync(path.join(folder, 'out/heights.gltf')));
+  assert.ok(existsSync(path.join(folder, 'out/heights.bin')), 'unchanged files are copied');
+  assert.ok(jsonOf(path.join(folder, 'out/deep/model.glb')));
+  const report = JSON.parse(readFileSync(path.join(folder, 'report.json')));
+  assert.deepEqual(
+    report.assets.map((asset) => asset.status),
+    ['baked', 'baked'],
+  );
+
+  npx(folder, 'bake', 'model.glb', '-o', 'named.glb');
+  assert.ok(jsonOf(path.join(folder, 'named.glb')).images.some((image) => image.mimeType === 'image/ktx2'));
+  npx(folder, 'map', 'assets/heights.png', '--height', '-o', 'map/heights.ktx2');
+  assert.deepEqual(readdirSync(path.join(folder, 'map')), ['heights.ktx2']);
+
+  const before = readFileSync(path.join(folder, 'model.glb'));
+  const fails = (pattern, status, ...args) =>
+    assert.throws(
+      () => npx(folder, ...args),
+      (error) => pattern.test(error.stderr) && error.status === status,
+    );
+  fails(/no source/, 1, 'bake', 'model.glb', '-o', '.');
+  fails(/native tool/, 2, 'check', 'out');
+  fails(/-o/, 2, 'bake', 'model.glb');
+  fails(/nosuch/, 1, 'bake', 'nosuch.glb', '-o', 'out');
+  fails(/max-error/, 1, 'bake', 'model.glb', '-o', 'out', '--max-error', '2');
+  fails(/expected a number/, 2, 'bake', 'model.glb', '-o', 'out', '--max-error', 'x');
+  fails(/\.ktx2/, 2, 'map', 'assets/heights.png', '-o', 'heights.png');
+  assert.ok(readFileSync(path.join(folder, 'model.glb')).equals(before));
+});
+
+test('the library transforms a GLB with both backends', options, (t) => {
+  // Stands in for the registry: the copies that the tests of this repository have.
+  const modules = (folder) => {
+    const scope = path.join(folder, 'node_modules');
+    for (const name of ['@gltf-transform', 'property-graph', 'ktx-parse']) {
+      cpSync(path.join(npm, 'node_modules', name), path.join(scope, name), { recursive: true });
+    }
+  };
+  const script = `
+    import { NodeIO } from '@gltf-transform/core';
+    import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
+    import { RoughnessPyramid, roughcast } from 'roughcast';
+    const io = new NodeIO().registerExtensions([...ALL_EXTENSIONS, RoughnessPyramid]);
+    const document = await io.read('model.glb');
+    await document.transform(roughcast({ profile: 'both' }));
+    await io.write('out.glb', document);
+  `;
+  const [one, two] = [[platform, main], [main]].map((packages) => {
+    const folder = project(t, packages);
+    modules(folder);
+    writeFileSync(path.join(folder, 'script.js'), script);
+    run(process.execPath, ['script.js'], { cwd: folder, env: environment });
+    const { extensionsUsed, images } = jsonOf(path.join(folder, 'out.glb'));
+    assert.ok(extensionsUsed.includes('ROUGHCAST_materials_roughness_pyramid'));
+    assert.ok(images.some((image) => image.mimeType === 'image/ktx2'));
+    return readFileSync(path.join(folder, 'out.glb'));
+  });
+  assert.ok(one.equals(two));
+});
