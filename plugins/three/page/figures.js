@@ -5,7 +5,8 @@ import { TITLES } from './variants.js';
 /** Writes an error for people. */
 export const percent = (error) => `${(100 * error).toFixed(error < 0.1 ? 1 : 0)} %`;
 
-const cell = (tag, text, settings = {}) => Object.assign(document.createElement(tag), { textContent: text, ...settings });
+const cell = (tag, text, settings = {}) =>
+  Object.assign(document.createElement(tag), { textContent: text, ...settings });
 
 export class Figures {
   #errors = new Map();

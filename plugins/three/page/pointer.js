@@ -1,8 +1,8 @@
 // Pointers on the picture: one drags, two pinch, the wheel zooms, and a mouse hovers.
 
 /**
- * Listens to the pointers on `element`. `dragged` gets a movement in CSS pixels and the kind of the pointer, `hovered` a
- * place, and `zoomed` a ratio of distances.
+ * Listens to the pointers on `element`. `dragged` gets a movement in CSS pixels and the kind of the pointer, `hovered`
+ * a place, and `zoomed` a ratio of distances.
  */
 export function listen(element, { dragged, hovered, zoomed }) {
   const pointers = new Map();

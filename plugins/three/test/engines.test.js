@@ -1,4 +1,4 @@
-// Engines use the levels that were baked, and README.md says which do. MATRIX=overwrite writes the table anew.
+// Engines use the levels that were baked, and docs/engines.md says which do. MATRIX=overwrite writes the table anew.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
@@ -8,19 +8,19 @@ import { run, table } from '../engines/matrix.js';
 import { match, regenerated } from './levels.js';
 import { missing, repository, temporary } from './roughcast.js';
 
-const README = path.join(repository, 'README.md');
+const PAGE = path.join(repository, 'docs/engines.md');
 const PLACE = /(<!-- engines: [^\n]* -->\n)[^]*?(\n<!-- engines end -->)/;
 
-test('the matrix in README.md is what the engines do', { skip: missing || browserMissing }, async (t) => {
+test('the matrix in docs/engines.md is what the engines do', { skip: missing || browserMissing }, async (t) => {
   const found = table(await run(temporary(t)));
-  const readme = readFileSync(README, 'utf8');
-  assert.match(readme, PLACE);
+  const page = readFileSync(PAGE, 'utf8');
+  assert.match(page, PLACE);
   if (process.env.MATRIX === 'overwrite')
     writeFileSync(
-      README,
-      readme.replace(PLACE, (_, start, end) => start + found + end),
+      PAGE,
+      page.replace(PLACE, (_, start, end) => start + found + end),
     );
-  else assert.equal(readme.match(PLACE)[0].split('\n').slice(1, -1).join('\n'), found);
+  else assert.equal(page.match(PLACE)[0].split('\n').slice(1, -1).join('\n'), found);
 });
 
 /** Makes a level of one channel. */

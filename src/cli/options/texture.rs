@@ -55,8 +55,8 @@ pub struct DocumentOptions {
     /// two, but a .glb would make every engine load both. [default: auto, or what --engine needs]
     #[arg(long, value_enum)]
     gltf: Option<Form>,
-    /// Preset of --target, --gltf, --glb, --model, --max-model and --scale-normals for an engine; the options themselves
-    /// win over it. A note names the engine's own limiter of roughness if that should be turned off.
+    /// Preset of --target, --gltf, --glb, --model, --max-model and --scale-normals for an engine; the options
+    /// themselves win over it. A note names the engine's own limiter of roughness if that should be turned off.
     #[arg(long, value_enum)]
     engine: Option<Engine>,
     /// The model with the most parameters that --model auto may choose. [default: anisotropic]

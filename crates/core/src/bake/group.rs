@@ -194,8 +194,8 @@ impl BumpMapKind {
     }
 }
 
-/// Returns how a bump map is read, and the factor of its offsets. Calls `note_unknown_repeat` if the size of a repeat of
-/// a height map is needed and not known.
+/// Returns how a bump map is read, and the factor of its offsets. Calls `note_unknown_repeat` if the size of a repeat
+/// of a height map is needed and not known.
 fn kind_of(
     bumps: &BumpSource,
     source: &TextureSource,

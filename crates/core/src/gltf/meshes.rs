@@ -13,8 +13,8 @@ use super::scene::moving_coordinates;
 const MAX_TRIANGLES: usize = 1 << 29;
 
 /// Extensions that compress the triangles of a primitive or the data of a buffer view. The bake has no decoder for
-/// them: the well-kept ones are in C++, those in Rust are first versions (`meshopt-rs` 0.1, `draco-oxide` alpha), and few
-/// settings need triangles.
+/// them: the well-kept ones are in C++, those in Rust are first versions (`meshopt-rs` 0.1, `draco-oxide` alpha), and
+/// few settings need triangles.
 const COMPRESSIONS: [&str; 3] = ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression"];
 
 /// A primitive that shows a material.
