@@ -197,7 +197,10 @@ async function open(sources) {
   const loaded = await Promise.all(
     Object.entries(sources).map(async ([name, source]) => [name, await stage.loader.load(source)]),
   );
-  if ('original' in sources) for (const name of [...assets.keys()]) stage.remove(name) ?? assets.delete(name);
+  if ('original' in sources) {
+    for (const name of assets.keys()) stage.remove(name);
+    assets.clear();
+  }
   for (const [name, { scene, ...bytes }] of loaded) {
     stage.add(name, scene);
     assets.set(name, bytes);
@@ -228,6 +231,7 @@ async function attempt(step) {
 listenToDrops(document.documentElement, element('files'), (files) =>
   attempt(async () => {
     const found = await documents(files);
+    if (found.has('original')) element('controls').elements.subject.value = 'asset';
     await open(Object.fromEntries([...found].map(([name, file]) => [name, { file, files }])));
   }),
 );
