@@ -182,7 +182,9 @@ impl<'a> Assembly<'a> {
     }
 
     fn write_provenance(&mut self) -> Result<(), BakeError> {
-        if self.settings.provenance && !self.textures.is_empty() {
+        // A document that only changed its container shows by its record what it was made of.
+        let is_converted = self.document.container() != self.reader.source.document.container();
+        if self.settings.provenance && (is_converted || !self.textures.is_empty()) {
             let recorded: BTreeSet<PathBuf> = self.recorded.iter().filter_map(|location| file_of(location)).collect();
             let provenance = DocumentProvenance::new(self.reader, &self.files, |path| recorded.contains(path))?;
             provenance.write(self.document.json_mut())?;
