@@ -14,6 +14,8 @@ from truth import mi
 from variants import Lobes, Variant, channels, ellipse
 
 PYRAMID = "ROUGHCAST_materials_roughness_pyramid"
+# The least z of stored offsets that the plugins assume.
+LEAST_Z = 1.0 / 32.0
 # Name of each variant, and the arguments of its bake.
 BAKES = {
     "plain mips, UASTC": ["--model", "none"],
@@ -103,22 +105,29 @@ def pyramid(document, texture, textures, scales):
     textures["offset"] = texture(extension["offsetTexture"])
     if model:
         textures["spread"] = texture(extension["roughnessTexture"])
-    range_of = lambda what: [np.array(extension[f"{what}{end}"], np.float32) for end in ("Min", "Max")]
+    scale = extension["offsetScale"]
 
-    def value(texels, what):
-        low, high = range_of(what)
+    def offsets(texels):
+        x, y, z = channels(texels * 2.0 - 1.0)
+        if extension["offsetChannels"] == 2:
+            z = np.sqrt(np.maximum(1.0 - x * x - y * y, 0.0))
+        z = np.maximum(z, LEAST_Z)
+        return -scale[0] * x / z, -scale[1] * y / z
+
+    def spread(texels):
+        low, high = (np.array(extension[f"roughness{end}"], np.float32) for end in ("Min", "Max"))
         return channels(low + texels[:, : len(low)] * (high - low), len(low))
 
     def decode(s):
-        f_u, f_v = value(s["offset"], "offset")
+        f_u, f_v = offsets(s["offset"])
         roughness, colour, metalness = factors(s, scales, len(f_u))
         base, double = np.clip(roughness, 0.0, 1.0) ** 4, 2.0 * extension["correctionFactor"]
         k = (np.zeros_like(base),) * 3
         if model == "covarianceFactor":
-            d1, d2, d3 = value(s["spread"], "roughness")
+            d1, d2, d3 = spread(s["spread"])
             k = (d1 * d1 + d2 * d2, d2 * d3, d3 * d3)
         elif model:
-            (deviation,) = value(s["spread"], "roughness")
+            (deviation,) = spread(s["spread"])
             k = (deviation**2, np.zeros_like(base), deviation**2)
         alphas, axis = ellipse(base + double * k[0], double * k[1], base + double * k[2])
         return Lobes((-f_u, -f_v, np.ones_like(f_u)), alphas, colour, metalness, axis)
