@@ -16,7 +16,9 @@ export async function bake(document, { name = 'model', files = {}, settings = {}
   const input = { path: `${name}.${isGlb(document) ? 'glb' : 'gltf'}`, bytes: asBytes(document, name) };
   const baked = await bakeDocument({ name, input, beside, settings: tomlSettings(settings), onProgress });
   baked.files.sort((a, b) => (a.path < b.path ? -1 : 1));
-  return { ...baked, copies: baked.copies.sort() };
+  // The command line counts copied files in its other members, and this function does not copy files.
+  const { layers, textures } = baked.report;
+  return { ...baked, copies: baked.copies.sort(), report: { layers, textures } };
 }
 
 /** Bakes a standalone normal or height map; bake.d.ts describes the arguments and the result. */
