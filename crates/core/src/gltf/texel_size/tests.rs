@@ -202,3 +202,13 @@ fn hostile_accessors_leave_the_density_unknown() {
         assert!(found.is_err() || found.unwrap() > 1e30, "{value}");
     }
 }
+
+#[test]
+fn the_extension_that_compresses_a_mesh_is_named() {
+    let (mut root, bytes) = quad();
+    root["meshes"][0]["primitives"][0]["extensions"] = json!({ "KHR_draco_mesh_compression": { "bufferView": 0 } });
+    // The accessors of this mesh have data, too, for readers without Draco.
+    assert_eq!(measure(&root, &bytes), Ok(2.0 / 64.0));
+    root["accessors"][0].as_object_mut().unwrap().remove("bufferView");
+    assert_eq!(measure(&root, &bytes), Err(NoDensity::Compressed("KHR_draco_mesh_compression")));
+}
