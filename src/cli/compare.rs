@@ -7,7 +7,7 @@ use super::options::texture::{effort, finite, unit_interval};
 use super::terminal::outcome::Outcome;
 use super::terminal::progress::ProgressLine;
 use crate::codec::uastc::Effort;
-use crate::compare::{CompareOptions, Comparison, compare_file};
+use crate::compare::{CompareOptions, Comparison, FailedInput, compare_files};
 use crate::run::Progress;
 use crate::settings::Settings;
 use crate::text::printable;
@@ -18,17 +18,18 @@ use crate::text::printable;
 /// times are equal in every run.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  roughcast compare helmet.glb -o charts\n  \
-    roughcast compare wool_normal.png -o charts --roughness 0.3 --max-error 0.02")]
+    roughcast compare wool_normal.png sand_normal.png -o charts --roughness 0.3 --max-error 0.02")]
 pub struct Args {
-    /// .gltf or .glb, whose materials are charted, or a standalone normal or height map.
-    input: PathBuf,
+    /// .gltf or .glb files, whose materials are charted, or standalone normal or height maps.
+    #[arg(required = true, value_name = "INPUT")]
+    inputs: Vec<PathBuf>,
     /// Output folder.
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
     /// Texels of each mip level that are measured: more texels take longer and give more exact errors.
     #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u16).range(1..=4096), value_name = "N")]
     texels: u16,
-    /// INPUT is an image of heights, not of normals.
+    /// The inputs are images of heights, not of normals.
     #[arg(long)]
     height: bool,
     /// Distance between heights 0 and 1, in widths of the map.
@@ -61,11 +62,11 @@ pub struct Args {
 /// When `out` or `err` cannot be written to.
 pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<Outcome> {
     let progress = ProgressLine::new(1, args.quiet);
-    let charts = compare_file(&args.options(), &|share, name| progress.advance(0, share, name));
+    let charts = compare_files(&args.options(), &|share, name| progress.advance(0, share, name));
     progress.finish();
     match charts {
-        Err(error) => {
-            writeln!(err, "error: {}: {error}", args.input.display())?;
+        Err(FailedInput { input, error }) => {
+            writeln!(err, "error: {}: {error}", input.display())?;
             Ok(Outcome::Failed)
         }
         Ok(charts) => {
@@ -84,7 +85,7 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
 impl Args {
     fn options(&self) -> CompareOptions {
         CompareOptions {
-            input: self.input.clone(),
+            inputs: self.inputs.clone(),
             output: self.output.clone(),
             texels: self.texels.into(),
             height_scale: self.height.then_some(self.height_scale),
@@ -98,6 +99,7 @@ impl Args {
 
 fn summary(comparison: &Comparison) -> String {
     let mut text = format!("{}\n", printable(&comparison.material));
+    text.extend(comparison.verdict.iter().map(|verdict| format!("  {verdict}\n")));
     for entry in &comparison.entries {
         let chosen = if entry.chosen { "  chosen" } else { "" };
         text += &format!("  {:<18} {:.3}{chosen}\n", entry.name, entry.error);

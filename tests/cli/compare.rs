@@ -79,6 +79,26 @@ fn a_standalone_map_is_charted() {
 }
 
 #[test]
+fn several_inputs_share_one_page_that_begins_with_their_verdicts() {
+    let folder = tempdir().expect("a folder");
+    let inputs = ["maps/line_normal.png", "brushed/brushed.gltf"].map(|name| fixtures().join(name));
+    let [map, asset] = inputs.each_ref().map(|path| path.to_str().expect("a path in UTF-8"));
+    let output = folder.path().to_str().expect("a path in UTF-8");
+    let run = roughcast(["compare", map, asset, "-o", output, "--texels", "2"]);
+    assert_eq!((run.code, run.err.as_str()), (0, ""));
+    let report = report(folder.path());
+    let materials = report["materials"].as_array().expect("materials");
+    let page = fs::read_to_string(folder.path().join("compare.html")).expect("a page");
+    for (material, name) in materials.iter().zip(["line_normal.png: line_normal", "brushed.gltf: Brushed steel"]) {
+        assert_eq!(material["material"], name);
+        let verdict = material["verdict"].as_str().expect("a verdict");
+        assert!(page.contains(&format!("<li><b>{name}</b>: {verdict}</li>")) && run.out.contains(verdict), "{verdict}");
+    }
+    let run = roughcast(["compare", map, "missing.png", "-o", output]);
+    assert!(run.code == 1 && run.err.starts_with("error: missing.png: "), "{}", run.err);
+}
+
+#[test]
 fn the_numbers_do_not_depend_on_threads() {
     let (one, two) = (tempdir().expect("a folder"), tempdir().expect("a folder"));
     let input = fixtures().join("brushed/brushed.gltf");

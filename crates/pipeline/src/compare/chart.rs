@@ -5,7 +5,8 @@
 
 use std::fmt::Write;
 
-use super::labels::{Labels, width};
+use super::labels::{Labels, stack, width};
+use super::units::amount;
 use super::{Axis, Comparison, Entry, Kind};
 use crate::text::xml_escaped;
 
@@ -17,6 +18,8 @@ const LEFT: f64 = 56.0;
 const RIGHT: f64 = 150.0;
 const TOP: f64 = 34.0;
 const BOTTOM: f64 = 48.0;
+/// Space for labels to the left of the first point.
+const BEFORE: f64 = 150.0;
 
 /// Style of a chart. Colours are from a palette that colour-blind readers can distinguish (M. Okabe, K. Ito, "Color
 /// universal design", 2008).
@@ -29,7 +32,11 @@ pub const STYLE: &str = "svg{--ink:#1c2430;--soft:#6b7480;--grid:#e3e6ea;--paper
     svg .peer{fill:var(--peer);stroke:var(--peer)}svg .oracle{stroke:var(--ink);fill:none;stroke-dasharray:5 4}\
     svg .ring{fill:none;stroke:var(--ours);stroke-width:2}svg path.line{fill:none;stroke-width:1.6}\
     svg path.peer.line{stroke-width:1;opacity:.55}svg text.ours{fill:var(--ours);stroke:none}\
-    svg text.peer{fill:var(--peer);stroke:none}svg .chosen{font-weight:700}";
+    svg text.peer{fill:var(--peer);stroke:none}svg .chosen{font-weight:700}\
+    svg .entry{outline:none}svg .detail{visibility:hidden}svg .hit{fill:none;stroke:transparent;stroke-width:9}\
+    svg .entry:is(:hover,:focus-visible) .detail{visibility:visible}\
+    svg .entry:is(:hover,:focus-visible) text{font-weight:700}\
+    .chart:has(>.entry:is(:hover,:focus-visible))>.entry:not(:hover,:focus-visible){opacity:.2}";
 
 /// Draws both charts, one above the other, as an SVG file.
 pub fn file(comparison: &Comparison) -> String {
@@ -49,7 +56,7 @@ pub fn cost(comparison: &Comparison, axis: Axis, y: f64) -> String {
     let costs = points.iter().filter_map(|e| value(e));
     let (least, most) = costs.fold((f64::INFINITY, 0.0_f64), |(a, b), v| (a.min(v), b.max(v)));
     let has_blanks = points.iter().any(|e| value(e).is_none());
-    let start = LEFT + if has_blanks { 130.0 } else { 30.0 };
+    let start = LEFT + BEFORE;
     let span = if most > least { (most / least).ln() } else { 1.0 };
     let at = |v: f64| start + (v / least).ln() / span * (WIDTH - RIGHT - start);
     let scale = Scale::new(&comparison.entries, |e| e.error);
@@ -64,7 +71,7 @@ pub fn cost(comparison: &Comparison, axis: Axis, y: f64) -> String {
              text-anchor=\"middle\">{}</text>",
             HEIGHT - BOTTOM,
             HEIGHT - BOTTOM + 15.0,
-            number(tick)
+            amount(axis, tick)
         );
     }
     let middle = 0.5 * (LEFT + WIDTH - RIGHT);
@@ -80,6 +87,8 @@ pub fn cost(comparison: &Comparison, axis: Axis, y: f64) -> String {
         labels.avoid([LEFT, y, LEFT + 45.0, y + 18.0]);
     }
     for (x, y, entry) in placed {
+        let cost = value(entry).map_or("not measured".to_owned(), |n| amount(axis, n));
+        begin(&mut svg, entry, &format!("error {:.2}, {cost} {}", entry.error, axis.place()));
         let class = class(entry);
         if entry.chosen {
             let _ = write!(svg, "<circle class=\"ring\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"8\"/>");
@@ -96,6 +105,7 @@ pub fn cost(comparison: &Comparison, axis: Axis, y: f64) -> String {
             let _ = write!(svg, "<path class=\"lead\" d=\"M{x:.1} {y:.1}L{near:.1} {ly:.1}\"/>");
         }
         label(&mut svg, entry, &name, [lx, ly]);
+        svg += "</g>";
     }
     svg + "</svg>"
 }
@@ -119,42 +129,49 @@ pub fn levels(comparison: &Comparison, y: f64) -> String {
     }
     let middle = 0.5 * (LEFT + end);
     let _ = write!(svg, "<text x=\"{middle:.1}\" y=\"{}\" text-anchor=\"middle\">Level</text>", HEIGHT - 12.0);
-    let mut ends: Vec<(f64, &Entry)> = Vec::new();
+    let last = |entry: &Entry| entry.level_errors.last().map_or(HEIGHT - BOTTOM, |e| scale.y(*e));
+    let mut ends: Vec<&Entry> = entries.iter().collect();
+    ends.sort_by(|a, b| last(a).total_cmp(&last(b)));
+    let heights: Vec<f64> = ends.iter().map(|entry| last(entry)).collect();
+    let labels: Vec<f64> = stack(&heights, [TOP, HEIGHT - BOTTOM]);
+    let mut lines: Vec<(&Entry, f64)> = ends.into_iter().zip(labels).collect();
     // Our lines are drawn last, so that they lie on top.
-    for kind in [Kind::Peer, Kind::Oracle, Kind::Ours] {
-        for entry in entries.iter().filter(|e| e.kind == kind) {
-            let points = entry.level_errors.iter().enumerate();
-            let path: Vec<String> = points.map(|(l, e)| format!("{:.1} {:.1}", at(l), scale.y(*e))).collect();
-            let _ = write!(svg, "<path class=\"{} line\" d=\"M{}\"/>", class(entry), path.join("L"));
-            ends.extend(entry.level_errors.last().map(|e| (scale.y(*e), entry)));
-        }
-    }
-    ends.sort_by(|a, b| a.0.total_cmp(&b.0));
-    // From the top, each label is at the height of its line or below the previous label. Labels that would lie below
-    // the chart move up.
-    const STEP: f64 = 12.5;
-    let mut places = Vec::with_capacity(ends.len());
-    for (y, _) in &ends {
-        places.push(places.last().map_or(*y, |last: &f64| y.max(last + STEP)));
-    }
-    let mut floor = HEIGHT - BOTTOM;
-    for place in places.iter_mut().rev() {
-        *place = place.min(floor);
-        floor = *place - STEP;
-    }
-    for ((y, entry), place) in ends.into_iter().zip(places) {
-        let x = at(count.saturating_sub(1));
-        let _ = write!(svg, "<path class=\"lead\" d=\"M{x:.1} {y:.1}L{:.1} {place:.1}\"/>", x + 22.0);
-        label(&mut svg, entry, &entry.name, [x + 25.0, place]);
+    lines.sort_by_key(|(entry, _)| [Kind::Peer, Kind::Oracle, Kind::Ours].iter().position(|kind| *kind == entry.kind));
+    for (entry, height) in lines {
+        begin(&mut svg, entry, &format!("mean error {:.2}", entry.error));
+        let points = entry.level_errors.iter().enumerate();
+        let path: Vec<String> = points.map(|(l, e)| format!("{:.1} {:.1}", at(l), scale.y(*e))).collect();
+        let path = path.join("L");
+        let (x, y) = (at(count.saturating_sub(1)), last(entry));
+        let _ = write!(
+            svg,
+            "<path class=\"hit\" d=\"M{path}\"/><path class=\"{} line\" d=\"M{path}\"/>\
+             <path class=\"lead\" d=\"M{x:.1} {y:.1}L{:.1} {height:.1}\"/>",
+            class(entry),
+            x + 22.0
+        );
+        label(&mut svg, entry, &entry.name, [x + 25.0, height]);
+        svg += "</g>";
     }
     svg + "</svg>"
+}
+
+/// Opens the group of an entry, which stands out while a pointer is over it or it has the focus, and shows `detail`.
+fn begin(svg: &mut String, entry: &Entry, detail: &str) {
+    let text = xml_escaped(&format!("{}: {detail}", entry.name));
+    let (x, y) = (WIDTH - 8.0, HEIGHT - 12.0);
+    let _ = write!(
+        svg,
+        "<g class=\"entry\" tabindex=\"0\" role=\"img\" aria-label=\"{text}\">\
+         <text class=\"detail\" x=\"{x}\" y=\"{y}\" text-anchor=\"end\">{text}</text>"
+    );
 }
 
 fn open(comparison: &Comparison, title: &str, y: f64) -> String {
     let name = xml_escaped(&comparison.material.chars().take(60).collect::<String>());
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" y=\"{y}\" width=\"{WIDTH}\" height=\"{HEIGHT}\" \
-         viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\"><title>{name}: {title}</title>\
+         viewBox=\"0 0 {WIDTH} {HEIGHT}\" class=\"chart\" role=\"group\"><title>{name}: {title}</title>\
          <rect class=\"paper\" width=\"{WIDTH}\" height=\"{HEIGHT}\"/>\
          <text class=\"title\" x=\"{LEFT}\" y=\"20\">{name}: {title}</text>"
     )
@@ -233,16 +250,5 @@ fn ticks(least: f64, most: f64) -> Vec<f64> {
         (0 | 1, true) => vec![least, most],
         (0 | 1, false) if least.is_finite() => vec![least],
         _ => inside,
-    }
-}
-
-fn number(n: f64) -> String {
-    let short = |n: f64| if n < 10.0 && n.fract() != 0.0 { format!("{n:.1}") } else { format!("{n:.0}") };
-    match n {
-        _ if n >= 1e9 => format!("{} G", short(n / 1e9)),
-        _ if n >= 1e6 => format!("{} M", short(n / 1e6)),
-        _ if n >= 1e3 => format!("{} k", short(n / 1e3)),
-        _ if n < 0.1 => format!("{n:.3}"),
-        _ => short(n),
     }
 }

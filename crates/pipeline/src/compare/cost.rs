@@ -73,11 +73,22 @@ impl Axis {
     /// Returns the title of the axis.
     pub fn title(self) -> &'static str {
         match self {
-            Self::GpuBytes => "Bytes on the GPU",
-            Self::FileBytes => "Bytes in the files",
-            Self::BakeSeconds => "Bake time in seconds (varies)",
+            Self::GpuBytes => "Size on the GPU",
+            Self::FileBytes => "Size of the files",
+            Self::BakeSeconds => "Bake time (varies)",
             Self::Fetches => "Texture fetches",
             Self::Operations => "Operations in the shader",
+        }
+    }
+
+    /// Returns what follows an amount in a sentence.
+    pub fn place(self) -> &'static str {
+        match self {
+            Self::GpuBytes => "on the GPU",
+            Self::FileBytes => "in files",
+            Self::BakeSeconds => "to bake",
+            Self::Fetches => "texture fetches",
+            Self::Operations => "operations in the shader",
         }
     }
 

@@ -40,6 +40,9 @@ pub struct Entry {
 pub struct Comparison {
     /// Its name.
     pub material: String,
+    /// What `--model auto` chose and what that is worth, in a few sentences; absent if that is not known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub verdict: Option<String>,
     /// Our models, then peers, then the oracle.
     pub entries: Vec<Entry>,
 }

@@ -2,28 +2,30 @@
 
 use std::collections::BTreeSet;
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use serde_json::{Value, json};
 
 use super::report::ComparisonReport;
+use super::verdict::verdict;
 use super::{Comparison, OURS, Ours, chart, compare, csv, page};
 use crate::bake::{BakeError, BakedAsset, Source, bake_asset};
 use crate::codec::Target;
 use crate::codec::uastc::Effort;
 use crate::gltf::document::Document;
 use crate::gltf::material::{Layer, LayerKind, materials};
-use crate::output::PublishError;
+use crate::output::{Guard, PublishError};
 use crate::readback::{Input, ReadBackError, file_name, read_back};
 use crate::render::{Material, SceneName};
+use crate::report::LayerReport;
 use crate::settings::{Form, Model, Settings, SettingsError};
 
 /// What is compared, and where the charts are written.
 #[derive(Clone, Debug)]
 pub struct CompareOptions {
-    /// A .gltf or .glb file, or an image.
-    pub input: PathBuf,
+    /// .gltf or .glb files, or images.
+    pub inputs: Vec<PathBuf>,
     /// The folder of the charts.
     pub output: PathBuf,
     /// Texels of each level that are measured.
@@ -69,15 +71,52 @@ pub enum CompareError {
     Publish(#[from] PublishError),
 }
 
-/// Charts every material of the input, and writes the files. `progress` receives the finished share of the work and the
-/// name of the material.
+/// An input that cannot be charted, and why.
+#[derive(Debug)]
+pub struct FailedInput {
+    /// The input.
+    pub input: PathBuf,
+    /// The reason.
+    pub error: CompareError,
+}
+
+/// Charts every material of the inputs, and writes the files. `progress` receives the finished share of the work and
+/// the name of the material. If there are several inputs, names of materials begin with the name of the input.
 ///
 /// # Errors
-/// [`CompareError`] for the first file that cannot be read, baked or written.
-pub fn compare_file(options: &CompareOptions, progress: &dyn Fn(f32, &str)) -> Result<Charts, CompareError> {
-    let input = Input::read(&options.input, options.height_scale)?;
-    let comparisons = input
+/// [`FailedInput`] for the first input that cannot be read or baked, or whose charts cannot be written.
+pub fn compare_files(options: &CompareOptions, progress: &dyn Fn(f32, &str)) -> Result<Charts, FailedInput> {
+    let mut guard = Guard::default();
+    let mut materials = Vec::new();
+    for (i, path) in options.inputs.iter().enumerate() {
+        let share = |share: f32, name: &str| progress((i as f32 + share) / options.inputs.len() as f32, name);
+        let of_input = compare_input(options, path, &mut guard, &share)
+            .map_err(|error| FailedInput { input: path.clone(), error })?;
+        materials.extend(of_input);
+    }
+    let input = options.inputs.first().cloned().unwrap_or_default();
+    write(&options.output, &mut guard, materials).map_err(|error| FailedInput { input, error })
+}
+
+/// Compares the materials of the input at `path`, which `guard` then protects.
+fn compare_input(
+    options: &CompareOptions,
+    path: &Path,
+    guard: &mut Guard,
+    progress: &dyn Fn(f32, &str),
+) -> Result<Vec<Comparison>, CompareError> {
+    let input = Input::read(path, options.height_scale)?;
+    let mut comparisons = input
         .with_source(SceneName::Plane, Some(options.roughness), |source| compare_document(options, source, progress))?;
+    input.protect(guard, path);
+    if options.inputs.len() > 1 {
+        let file = path.file_name().unwrap_or_default().to_string_lossy();
+        comparisons.iter_mut().for_each(|comparison| comparison.material = format!("{file}: {}", comparison.material));
+    }
+    Ok(comparisons)
+}
+
+fn write(output: &Path, guard: &mut Guard, comparisons: Vec<Comparison>) -> Result<Charts, CompareError> {
     let report = ComparisonReport::new(comparisons);
     let comparisons = &report.materials;
     let mut files = vec![
@@ -90,10 +129,9 @@ pub fn compare_file(options: &CompareOptions, progress: &dyn Fn(f32, &str)) -> R
         let name = file_name("", &comparison.material, &mut taken);
         files.push((format!("compare-{name}.svg"), chart(comparison)));
     }
-    let mut guard = input.guard(Some(&options.input));
     let mut outputs = Vec::with_capacity(files.len());
     for (name, text) in files {
-        outputs.push((guard.reserve_file(&options.output.join(name))?, text));
+        outputs.push((guard.reserve_file(&output.join(name))?, text));
     }
     outputs.iter().try_for_each(|(output, text)| output.write(text.as_bytes()))?;
     Ok(Charts { files: outputs.iter().map(|(output, _)| output.path().to_owned()).collect(), report })
@@ -150,6 +188,7 @@ fn compare_material(
     };
     let auto = (Model::Auto, options.quality, "ours, auto".to_owned());
     let mut ours = Vec::with_capacity(OURS);
+    let mut layer = None;
     for (model, effort, label) in models.into_iter().flat_map(named).chain([auto]) {
         let start = Instant::now();
         let baked = bake_asset(source, &settings.with_model(model).with_quality(effort), &|_| {})?;
@@ -161,8 +200,16 @@ fn compare_material(
             seconds,
             chosen: model == Model::Auto,
         });
+        if model == Model::Auto {
+            let made = |layer: &LayerReport| layer.layer == LayerKind::Base && layer.model.is_some();
+            layer = baked.report.layers.into_iter().find(made);
+        }
         advance(ours.len() as f32 / (2 * OURS) as f32, &name);
     }
     let scored = |share: f32| advance(0.5 + 0.5 * share, &name);
-    Ok(ours.try_into().ok().and_then(|ours| compare(&name, &truth, ours, options.texels, &scored)))
+    let comparison = ours.try_into().ok().and_then(|ours| compare(&name, &truth, ours, options.texels, &scored));
+    Ok(comparison.map(|comparison| {
+        let verdict = layer.and_then(|layer| verdict(&comparison.entries, &layer, options.max_error));
+        Comparison { verdict, ..comparison }
+    }))
 }

@@ -1,6 +1,25 @@
-//! Positions for the labels of points, so that no label hides another.
+//! Positions for labels, so that no label hides another.
 
-const LINE: f64 = 12.5;
+/// Distance between lines of labels.
+pub const LINE: f64 = 12.5;
+
+/// Returns heights that are at least [`LINE`] apart, between `top` and `bottom`, and as near as possible to the heights
+/// `wanted`, which rise: the least squares under that constraint, by pooling adjacent violators.
+pub fn stack(wanted: &[f64], [top, bottom]: [f64; 2]) -> Vec<f64> {
+    // Sum and number of the labels of each block, without the distances between them.
+    let mut blocks: Vec<(f64, usize)> = Vec::new();
+    let mean = |(sum, count): (f64, usize)| sum / count as f64;
+    for (i, y) in wanted.iter().enumerate() {
+        let mut block = (y - i as f64 * LINE, 1);
+        while let Some(above) = blocks.pop_if(|above| mean(*above) >= mean(block)) {
+            block = (block.0 + above.0, block.1 + above.1);
+        }
+        blocks.push(block);
+    }
+    let lowest = (bottom - wanted.len().saturating_sub(1) as f64 * LINE).max(top);
+    let first = blocks.into_iter().flat_map(|block| std::iter::repeat_n(mean(block).clamp(top, lowest), block.1));
+    first.enumerate().map(|(i, y)| y + i as f64 * LINE).collect()
+}
 
 /// The areas of a chart that are already in use.
 pub struct Labels {

@@ -2,7 +2,7 @@
 //!
 //! The reference is level 0 of the material with unencoded normals. Our models are decoded baked textures. Peers read
 //! the encoded normals of plain mips and use exact moments for everything else. [`compare`] takes materials as the
-//! renderer reads them. [`compare_file`] bakes the materials of a file for it, and writes charts and tables.
+//! renderer reads them. [`compare_files`] bakes the materials of files for it, and writes charts and tables.
 
 mod chart;
 mod cost;
@@ -15,6 +15,8 @@ mod report;
 mod table;
 #[cfg(test)]
 mod tests;
+mod units;
+mod verdict;
 
 use crate::lobe::{Family, SquaredAlpha};
 use crate::math::symmetric::Symmetric2;
@@ -24,7 +26,7 @@ use crate::render::{Bumps, Material, Texture};
 pub use chart::file as chart;
 pub use cost::{Axis, Cost};
 pub use entry::{Comparison, Entry, Kind};
-pub use files::{Charts, CompareError, CompareOptions, compare_file};
+pub use files::{Charts, CompareError, CompareOptions, FailedInput, compare_files};
 pub use ours::Ours;
 pub use page::page;
 pub use report::{COMPARE_FORMAT, ComparisonReport};
@@ -86,7 +88,7 @@ pub fn compare(
         let error = averaged.iter().sum::<f64>() / averaged.len().max(1) as f64;
         Entry { name, kind, chosen, error, level_errors, cost }
     });
-    Some(Comparison { material: name.to_owned(), entries: entries.collect() })
+    Some(Comparison { material: name.to_owned(), verdict: None, entries: entries.collect() })
 }
 
 fn normals(material: &Material) -> Option<&Texture> {

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::chart;
-use super::table::row;
+use super::units::amount;
 use super::{Axis, Comparison};
 use crate::text::xml_escaped;
 
@@ -14,7 +14,8 @@ const STYLE: &str = ":root{color-scheme:light dark}body{margin:0 auto;max-width:
     table{border-collapse:collapse;font-size:13px;font-variant-numeric:tabular-nums}\
     th,td{padding:2px 8px;text-align:right;border-bottom:1px solid #8884;white-space:nowrap}\
     th:first-child,td:first-child{text-align:left}tr.chosen{font-weight:700}\
-    label{display:inline-block;margin:0 12px 6px 0}h2{overflow-wrap:anywhere}";
+    label{display:inline-block;margin:0 12px 6px 0}h2,li{overflow-wrap:anywhere}\
+    .verdicts{padding-left:1.2em;font-size:17px}.verdicts li{margin-bottom:6px}";
 
 /// Formats `comparisons` as a page that names `version` of this tool.
 pub fn page(comparisons: &[Comparison], version: &str) -> String {
@@ -27,8 +28,12 @@ pub fn page(comparisons: &[Comparison], version: &str) -> String {
     for i in 0..Axis::ALL.len() {
         let _ = write!(html, "body:has(#axis{i}:checked) .axis:not(.axis{i}){{display:none}}");
     }
-    html += "</style></head><body><h1>Lobe error against cost</h1>\
-        <p>Lobe error: the share of reflected half-vectors in the wrong place, 0 to 1. Circles are bakes of Roughcast, \
+    html += "</style></head><body><h1>Lobe error against cost</h1><ul class=\"verdicts\">";
+    for Comparison { material, verdict, .. } in comparisons {
+        let verdict = verdict.as_deref().unwrap_or("not known.");
+        let _ = write!(html, "<li><b>{}</b>: {}</li>", xml_escaped(material), xml_escaped(verdict));
+    }
+    html += "</ul><p>Lobe error: the share of reflected half-vectors in the wrong place, 0 to 1. Circles are bakes of Roughcast, \
         decoded as engines decode them. Squares are other tools' formulas on exact moments, with our encoded normals. \
         The dashed line is the best single lobe. The ring marks the choice of <code>--model auto</code>. Bake times \
         vary from run to run.</p>\
@@ -69,8 +74,12 @@ fn table(comparison: &Comparison) -> String {
     html += "</tr></thead><tbody>";
     for entry in &comparison.entries {
         html += if entry.chosen { "<tr class=\"chosen\">" } else { "<tr>" };
+        let kind = format!("{:?}", entry.kind).to_lowercase();
+        let chosen = if entry.chosen { "chosen" } else { "" };
+        let facts = [entry.name.clone(), kind, chosen.to_owned(), format!("{:.3}", entry.error)];
+        let costs = Axis::ALL.map(|axis| axis.value(&entry.cost).map_or(String::new(), |n| amount(axis, n)));
         let errors = entry.level_errors.iter().map(|e| format!("{e:.3}"));
-        for cell in row(entry).into_iter().chain(errors) {
+        for cell in facts.into_iter().chain(costs).chain(errors) {
             let _ = write!(html, "<td>{}</td>", xml_escaped(&cell));
         }
         html += "</tr>";

@@ -17,7 +17,7 @@ pub fn csv(comparisons: &[Comparison]) -> io::Result<String> {
     let levels = comparisons.iter().flat_map(|c| &c.entries).map(|e| e.level_errors.len()).max().unwrap_or(0);
     let heading = HEADINGS.map(str::to_owned).into_iter().chain((0..levels).map(|level| format!("level_{level}")));
     table.write_record(heading)?;
-    for Comparison { material, entries } in comparisons {
+    for Comparison { material, entries, .. } in comparisons {
         for entry in entries {
             let errors = &entry.level_errors;
             let by_level = (0..levels).map(|level| errors.get(level).map_or(String::new(), |e| format!("{e:.6}")));

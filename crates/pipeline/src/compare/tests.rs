@@ -1,9 +1,14 @@
 //! Tests of charts and tables, with invented numbers.
 
-use super::{Comparison, Cost, Entry, Kind, Ours, chart, csv};
+use serde_json::{Value, json};
+
+use super::labels::{LINE, stack};
+use super::verdict::verdict;
+use super::{Comparison, Cost, Entry, Kind, Ours, chart, csv, page};
 use crate::metric::Peer;
 use crate::mip::Level;
 use crate::render::{BaseAnisotropy, Bumps, LostBumps, Material, Texture};
+use crate::report::LayerReport;
 
 fn comparison(material: &str) -> Comparison {
     let entry = |i: u32, kind| Entry {
@@ -15,7 +20,11 @@ fn comparison(material: &str) -> Comparison {
         cost: Cost { gpu_bytes: (kind != Kind::Oracle).then_some(u64::from(1 + i) << 10), ..Cost::default() },
     };
     let kinds = (0..17).map(|i| (i, if i < 6 { Kind::Ours } else { Kind::Peer })).chain([(17, Kind::Oracle)]);
-    Comparison { material: material.to_owned(), entries: kinds.map(|(i, kind)| entry(i, kind)).collect() }
+    Comparison {
+        material: material.to_owned(),
+        verdict: None,
+        entries: kinds.map(|(i, kind)| entry(i, kind)).collect(),
+    }
 }
 
 #[test]
@@ -48,8 +57,49 @@ fn labels_every_entry_and_escapes_hostile_names() {
 }
 
 #[test]
+fn labels_of_lines_keep_their_distance_and_stay_near() {
+    assert_eq!(stack(&[50.0, 100.0], [0.0, 400.0]), [50.0, 100.0]);
+    // Three labels that want one place lie around it, and labels at a border lie inside.
+    assert_eq!(stack(&[100.0; 3], [0.0, 400.0]), [100.0 - LINE, 100.0, 100.0 + LINE]);
+    assert_eq!(stack(&[400.0; 2], [0.0, 400.0]), [400.0 - LINE, 400.0]);
+    let mut wanted: Vec<f64> = (0..20).map(|i| f64::from(i * i) % 83.0 + 4.0 * f64::from(i)).collect();
+    wanted.sort_by(f64::total_cmp);
+    let found = stack(&wanted, [0.0, 400.0]);
+    assert!(found.windows(2).all(|pair| pair[1] - pair[0] > LINE - 1e-9), "{found:?}");
+}
+
+#[test]
+fn the_page_begins_with_the_verdict() {
+    let layer = |misses: Value| -> LayerReport {
+        let candidate = |model, first| json!({ "model": model, "first": first, "bytes": 1, "errors": [0.05] });
+        let candidates = [candidate("none", 0), candidate("isotropic", 0), candidate("isotropic", 1)];
+        let choice = json!({ "finest": 0, "candidates": candidates, "chosen": 2, "misses": misses });
+        let report = json!({ "index": 0, "material": "m", "layer": "base", "model": "isotropic", "notes": [],
+            "choice": choice });
+        serde_json::from_value(report).unwrap()
+    };
+    let mut comparison = comparison("helmet");
+    comparison.entries[7].name = "plain mips".to_owned();
+    let within = verdict(&comparison.entries, &layer(json!([])), 0.1).unwrap();
+    assert_eq!(
+        within,
+        "Isotropic lobes at half size are the cheapest choice within 0.1 at every level: mean error 0.04, 3.1 kB on \
+         the GPU. Plain mips: 0.14. Best possible lobe: 0.34."
+    );
+    let miss = json!([{ "level": 3, "error": 0.3, "oracle": 0.2, "reason": "twoPeaked" }]);
+    let missed = verdict(&comparison.entries, &layer(miss), 0.1).unwrap();
+    assert!(missed.starts_with("No choice is within 0.1 at every level; isotropic lobes at half size are"), "{missed}");
+    comparison.verdict = Some(within);
+    let page = page(&[comparison], "0");
+    let place = |text: &str| page.find(text).unwrap();
+    assert!(place("<b>helmet</b>: Isotropic lobes") < place("<svg"));
+    // The table has amounts with units.
+    assert!(page.contains("<td>3.1 kB</td>"));
+}
+
+#[test]
 fn draws_a_chart_without_entries() {
-    let svg = chart(&Comparison { material: String::new(), entries: Vec::new() });
+    let svg = chart(&Comparison { material: String::new(), verdict: None, entries: Vec::new() });
     assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
 }
 

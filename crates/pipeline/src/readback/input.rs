@@ -88,11 +88,16 @@ impl Input {
     /// Returns a guard that keeps the input, which was read from `path`, and its files from being overwritten.
     pub fn guard(&self, path: Option<&Path>) -> Guard {
         let mut guard = Guard::default();
-        match (self, path) {
-            (Self::Asset { document, .. }, Some(path)) => protect(&mut guard, path, document),
-            (_, path) => path.iter().for_each(|path| guard.add_source(path)),
-        }
+        path.iter().for_each(|path| self.protect(&mut guard, path));
         guard
+    }
+
+    /// Makes `guard` keep the input, which was read from `path`, and its files from being overwritten.
+    pub fn protect(&self, guard: &mut Guard, path: &Path) {
+        match self {
+            Self::Asset { document, .. } => protect(guard, path, document),
+            Self::Map { .. } => guard.add_source(path),
+        }
     }
 
     /// Passes the document to `then`. A standalone map becomes the material of a new document, with `roughness`, else
