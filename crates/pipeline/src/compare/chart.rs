@@ -35,7 +35,6 @@ pub const STYLE: &str = "svg{--ink:#1c2430;--soft:#6b7480;--grid:#e3e6ea;--paper
     svg text.peer{fill:var(--peer);stroke:none}svg .chosen{font-weight:700}\
     svg .entry{outline:none}svg .detail{visibility:hidden}svg .hit{fill:none;stroke:transparent;stroke-width:9}\
     svg .entry:is(:hover,:focus-visible) .detail{visibility:visible}\
-    svg .entry:is(:hover,:focus-visible) text{font-weight:700}\
     .chart:has(>.entry:is(:hover,:focus-visible))>.entry:not(:hover,:focus-visible){opacity:.2}";
 
 /// Draws both charts, one above the other, as an SVG file.
@@ -100,11 +99,11 @@ pub fn cost(comparison: &Comparison, axis: Axis, y: f64) -> String {
         svg += &shape;
         let name = if entry.chosen { format!("{} (chosen)", entry.name) } else { entry.name.clone() };
         let [lx, ly] = labels.place([x, y], &name);
-        if (ly - y).abs() > 7.0 || lx < x {
-            let near = if lx < x { lx + width(&name) } else { lx };
+        let (near, anchor) = if lx < x { (lx + width(&name), "end") } else { (lx, "start") };
+        if (ly - y).abs() > 7.0 {
             let _ = write!(svg, "<path class=\"lead\" d=\"M{x:.1} {y:.1}L{near:.1} {ly:.1}\"/>");
         }
-        label(&mut svg, entry, &name, [lx, ly]);
+        label(&mut svg, entry, &name, [near, ly], anchor);
         svg += "</g>";
     }
     svg + "</svg>"
@@ -150,7 +149,7 @@ pub fn levels(comparison: &Comparison, y: f64) -> String {
             class(entry),
             x + 22.0
         );
-        label(&mut svg, entry, &entry.name, [x + 25.0, height]);
+        label(&mut svg, entry, &entry.name, [x + 25.0, height], "start");
         svg += "</g>";
     }
     svg + "</svg>"
@@ -185,14 +184,15 @@ fn class(entry: &Entry) -> &'static str {
     }
 }
 
-fn label(svg: &mut String, entry: &Entry, name: &str, [x, y]: [f64; 2]) {
+fn label(svg: &mut String, entry: &Entry, name: &str, [x, y]: [f64; 2], anchor: &str) {
     let class = match (entry.kind, entry.chosen) {
         (Kind::Oracle, _) => "soft",
         (Kind::Ours, true) => "ours chosen",
         (Kind::Ours, false) => "ours",
         (Kind::Peer, _) => "peer",
     };
-    let _ = write!(svg, "<text class=\"{class}\" x=\"{x:.1}\" y=\"{:.1}\">{}</text>", y + 4.0, xml_escaped(name));
+    let (y, name) = (y + 4.0, xml_escaped(name));
+    let _ = write!(svg, "<text class=\"{class}\" x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\">{name}</text>");
 }
 
 /// The vertical axis, which begins at 0.
