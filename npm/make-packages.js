@@ -72,6 +72,8 @@ function platformFolder() {
     version: main.version,
     description: `The native tool of the package roughcast for ${system} on ${processor}`,
     license: main.license,
+    // npm's provenance needs the address that the main package has.
+    ...(main.repository && { repository: main.repository }),
     files: ['bin', 'LICENSE-*'],
     os: [system],
     cpu: [processor],
