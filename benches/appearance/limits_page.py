@@ -14,6 +14,11 @@ ALONE = {
     "only the colours": "mean colours",
     "only the diffuse light": "diffuse light",
 }
+# Rows whose picture error is compared with that of the bake in the summary, and what they change.
+CHANGES = {
+    "bake in floats": "Picture errors without an encoding of the lobes",
+    "metalness by colour": "Picture errors with mips of metalness that are weighted by base colour",
+}
 # Rows of the tables of materials.
 ROWS = (
     "plain mips",
@@ -61,8 +66,22 @@ def in_short(results):
             found.setdefault(largest(material, measure), []).append(material["name"])
         order = sorted(found.items(), key=lambda item: -len(item[1]))
         text = "; ".join(f"**{part}** on {', '.join(names)}" for part, names in order)
-        lines.append(wrapped(f"- {label}, the largest part is {text}.").replace("\n", "\n  "))
+        lines.append(item(f"{label}, the largest part is {text}."))
+    for row, text in CHANGES.items():
+        changed = lambda material: abs(summary.picture_error(material, row) - summary.picture_error(material, "bake"))
+        figures = [change(material, row) for material in results if changed(material) > 0.0005]
+        lines.append(item(f"{text}: {', '.join(figures) or 'no material changes'}."))
     return "\n".join(lines)
+
+
+def item(text):
+    """Returns an item of a list, in lines of at most 120 columns."""
+    return wrapped(f"- {text}").replace("\n", "\n  ")
+
+
+def change(material, row):
+    """Returns the picture errors of the bake and of another row."""
+    return f"{material['name']} {' to '.join(f'{summary.picture_error(material, r):.3f}' for r in ('bake', row))}"
 
 
 def alone(results):
