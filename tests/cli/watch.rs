@@ -172,9 +172,7 @@ fn outputs_of_earlier_bakes_are_not_baked() {
     assert_as_baked(folder, "in the end");
     let run = session.stop();
     assert_eq!((run.code, run.err.lines().count()), (0, 1), "{}", run.err);
-    assert!(
-        run.err.starts_with("note: left out 1 file(s) that Roughcast has baked, such as assets/earlier/waves.gltf")
-    );
+    assert!(run.err.starts_with("note: left out 1 file(s) that Roughcast has baked, such as assets/earlier/waves.glb"));
 }
 
 /// The system queues fewer events than occur. It reports only that some of the last ones were lost.
@@ -284,7 +282,7 @@ fn a_command_runs_after_each_change_and_its_failure_is_a_warning() {
     session.until("idle");
     let run = session.stop();
     let text = fs::read_to_string(folder.join("hook.txt")).expect("a file");
-    let first = "+out/brushed/brushed.gltf\nout/knobs/knobs.gltf\nout/waves/waves.gltf-\n+-out/waves/waves.";
+    let first = "+out/brushed/brushed.gltf\nout/knobs/knobs.gltf\nout/waves/waves.glb-\n+-out/waves/waves.";
     assert!(text.starts_with(first), "{text}");
     assert!(run.err.contains("found exit status: 3") && run.err.contains("noise"), "{}", run.err);
     assert_eq!(run.code, 0);

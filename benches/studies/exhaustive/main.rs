@@ -74,9 +74,9 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// Sums of lobe errors and of total variations.
 #[derive(Clone, Copy, Default)]
 struct Sums {
-    /// Of exact normals, `fast`, `best`, the floor and the floor of normalised vectors.
+    /// Errors of exact normals, `fast`, `best`, the floor and the floor of normalised vectors.
     errors: [f64; 5],
-    /// Of `fast`, `best` and the floor, in both readings.
+    /// Variations of `fast`, `best` and the floor, in both readings.
     variations: [[f64; 3]; 2],
 }
 

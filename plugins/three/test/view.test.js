@@ -115,7 +115,7 @@ test('shows an asset of the user', options, async (t) => {
 test('reloads on events of a watch', options, async (t) => {
   const folder = temporary(t);
   roughcast('bake', path.join(repository, 'fixtures/waves'), '-o', folder, '--quiet');
-  const { url, input } = await view(t, path.join(folder, 'waves.gltf'), '--events');
+  const { url, input } = await view(t, path.join(folder, 'waves.glb'), '--events');
   const browser = await launch();
   t.after(() => browser.close());
   const page = await ready(browser, url, { viewport: { width: 400, height: 300 } });
@@ -123,7 +123,7 @@ test('reloads on events of a watch', options, async (t) => {
   input.write('{"event":"idle","assets":1,"failed":0}\nno JSON\n');
   await page.waitForTimeout(300);
   assert.equal(await page.evaluate(() => window.isOld), true, 'nothing is new');
-  input.write('{"event":"baked","output":"waves.gltf"}\n');
+  input.write('{"event":"baked","output":"waves.glb"}\n');
   await page.waitForFunction(() => !window.isOld && document.documentElement.dataset.ready);
   assert.deepEqual(page.problems, []);
 });

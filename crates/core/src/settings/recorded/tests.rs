@@ -8,7 +8,7 @@ fn text(settings: &Settings, model: Model) -> String {
 fn writes_defaults_in_a_fixed_order_with_the_digits_of_double_precision() {
     let expected = concat!(
         r#"{"profile":"portable","model":"auto","maxError":0.10000000149011612,"distribution":"auto","lobe":"ggx","#,
-        r#""target":"basis","quality":"fast","gltf":"fallback","frame":"unit","heightScale":null}"#
+        r#""target":"basis","quality":"fast","gltf":"auto","frame":"unit","heightScale":null}"#
     );
     assert_eq!(text(&Settings::default(), Model::Auto), expected);
 }
@@ -20,15 +20,16 @@ fn appends_settings_that_have_no_default() {
         height_scale: Some(0.2),
         max_model: MaxModel::Isotropic,
         rdo: Some(0.5),
+        scale_normals: true,
         view: Some(View::new(2.0, 1080)),
         quality: Effort::Best,
         ..Settings::default()
     };
     let expected = concat!(
         r#"{"profile":"portable","model":"none","maxError":0.10000000149011612,"distribution":"auto","lobe":"ggx","#,
-        r#""target":"basis","quality":"best","gltf":"fallback","#,
+        r#""target":"basis","quality":"best","gltf":"auto","#,
         r#""frame":{"mainDirection":[0.6000000238418579,0.800000011920929,0.0]},"heightScale":0.20000000298023224,"#,
-        r#""asked":"auto","maxModel":"isotropic","rdo":0.5,"#,
+        r#""asked":"auto","maxModel":"isotropic","rdo":0.5,"scaleNormals":true,"#,
         r#""view":{"nearest":2.0,"screenHeight":1080,"fov":45.0,"aspect":1.778,"trim":false}}"#
     );
     assert_eq!(text(&settings, Model::None), expected);
