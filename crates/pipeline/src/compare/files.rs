@@ -76,8 +76,8 @@ pub enum CompareError {
 pub struct FailedInput {
     /// The input.
     pub input: PathBuf,
-    /// The reason.
-    pub error: CompareError,
+    /// The reason. It is boxed, so that results stay small.
+    pub error: Box<CompareError>,
 }
 
 /// Charts every material of the inputs, and writes the files. `progress` receives the finished share of the work and
@@ -91,11 +91,11 @@ pub fn compare_files(options: &CompareOptions, progress: &dyn Fn(f32, &str)) -> 
     for (i, path) in options.inputs.iter().enumerate() {
         let share = |share: f32, name: &str| progress((i as f32 + share) / options.inputs.len() as f32, name);
         let of_input = compare_input(options, path, &mut guard, &share)
-            .map_err(|error| FailedInput { input: path.clone(), error })?;
+            .map_err(|error| FailedInput { input: path.clone(), error: Box::new(error) })?;
         materials.extend(of_input);
     }
     let input = options.inputs.first().cloned().unwrap_or_default();
-    write(&options.output, &mut guard, materials).map_err(|error| FailedInput { input, error })
+    write(&options.output, &mut guard, materials).map_err(|error| FailedInput { input, error: Box::new(error) })
 }
 
 /// Compares the materials of the input at `path`, which `guard` then protects.
