@@ -72,7 +72,7 @@ test('the command line bakes natively and by WebAssembly, to the same bytes', op
   assert.ok(jsonOf(path.join(wasm, 'out/model.glb')).extensionsRequired.includes('KHR_texture_basisu'));
 });
 
-test('one command bakes in an empty folder, within a minute', options, (t) => {
+test('one command bakes in an empty folder, and its time is printed', options, (t) => {
   for (const packages of [[main, platform], [main]]) {
     const folder = temporary(t);
     cpSync(path.join(fixtures, 'waves/waves.glb'), path.join(folder, 'model.glb'));
@@ -82,7 +82,6 @@ test('one command bakes in an empty folder, within a minute', options, (t) => {
     run('npx', command, { cwd: folder, env: environment });
     const seconds = (performance.now() - started) / 1e3;
     t.diagnostic(`${packages.length === 2 ? 'native' : 'WebAssembly'}: ${seconds.toFixed(1)} s`);
-    assert.ok(seconds < 60, `${seconds} s`);
     assert.ok(existsSync(path.join(folder, 'baked.glb')));
   }
 });
