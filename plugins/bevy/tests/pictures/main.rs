@@ -72,8 +72,9 @@ fn a_pyramid_shades_with_the_lobe_of_the_extension() {
     let mut renderer = Renderer::new(folder.path(), true);
     let baked = asset.bake("factor", "--profile pyramid --model anisotropic");
     let slope = baked.slope(asset.last_texel(&baked, "offset"));
-    // The mean slope of the map is 0. Encoding moves it by a step.
-    assert!(slope.length() < 0.01, "{slope}");
+    // The mean slope of the map is 0. The fit ends with steps of 0.02 alphas, which are 0.01 here, and encoding moves
+    // the slope by one step more, 0.005.
+    assert!(slope.abs().max_element() < 0.015, "{slope}");
     let d = baked.roughness(asset.last_texel(&baked, "factor"));
     let k = Mat2::from_cols_array(&[d.x * d.x + d.y * d.y, d.y * d.z, d.y * d.z, d.z * d.z]);
     let anisotropic = Lobe { a: base_lobe().a + 2.0 * baked.correction_factor() * k, slope };
