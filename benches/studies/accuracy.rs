@@ -7,18 +7,21 @@ use std::array::from_fn;
 use std::error::Error;
 use std::path::Path;
 
-use roughcast::bake::{BaseRoughness, EncodedMap, bake_map};
+use roughcast::bake::{BaseRoughness, bake_map};
 use roughcast::bump::{NormalLayout, NormalMap};
 use roughcast::codec::Target;
 use roughcast::codec::uastc::Effort;
 use roughcast::decode::decode;
 use roughcast::image::{DecodeOptions, Image};
-use roughcast::ktx2::Ktx2;
 use roughcast::lobe::{Alpha, Family, Roughness, SquaredAlpha};
 use roughcast::material::BumpMap;
 use roughcast::metric::{Decoded, Lobe, Peer, Surface, mean_errors, oracle, sample_texels};
-use roughcast::report::Content;
 use roughcast::settings::{Model, Settings};
+
+#[path = "baked_levels.rs"]
+mod baked_levels;
+
+use baked_levels::{decoded, files_of};
 
 const MAPS: [&str; 5] =
     ["aluminium_normal.png", "wool_normal.png", "sand_normal.jpg", "texture_bricks_normal.jpg", "water_normals.png"];
@@ -166,22 +169,4 @@ fn errors_by_level(image: &Image, alpha: f32, texels: usize) -> Result<Vec<Means
             Ok(Means { level, errors: from_fn(|i| means[i]), encoded_peers: from_fn(|i| means[COLUMNS + i]) })
         })
         .collect()
-}
-
-/// Returns the KTX2 files of a bake, each with the content of its texture.
-fn files_of(baked: &EncodedMap) -> Vec<(Content, Vec<u8>)> {
-    baked.textures.iter().map(|t| (t.content, t.mip_chain.to_ktx2(&[]).unwrap())).collect()
-}
-
-fn decoded(files: &[(Content, Vec<u8>)], level: u32) -> Result<Decoded, Box<dyn Error>> {
-    let of = |content| -> Result<Option<Image>, Box<dyn Error>> {
-        let file = files.iter().find(|f| f.0 == content);
-        file.map(|(_, bytes)| Ok(Ktx2::parse(bytes)?.decode_level(level)?)).transpose()
-    };
-    Ok(Decoded {
-        normal: of(Content::Normal)?.ok_or("the bake has no normals")?,
-        roughness: of(Content::Roughness)?,
-        roughness_factor: 1.0,
-        anisotropy: of(Content::Anisotropy)?,
-    })
 }
