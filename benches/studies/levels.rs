@@ -1,8 +1,9 @@
-//! Prints lobe errors by level, without block encoding: plain mips, both qualities, and the best lobe.
+//! Prints lobe errors by level: exact plain mips, both qualities, and the best lobe.
 //!
-//! `cargo run --release -p studies --bin levels [TEXELS] [NAME]` uses TEXELS texels per level and map, 16 by
-//! default, and only maps whose name contains NAME. It reads `../shared/data/maps` if it is present, and generates
-//! further maps, among them tiles of two populations.
+//! `cargo run --release -p studies --bin levels [TEXELS] [TARGET] [NAME]` uses TEXELS texels per level and map, 16 by
+//! default. TARGET is `float`, the default, or `basis` for bakes in UASTC. NAME selects the maps whose name contains
+//! it. The program reads `../shared/data/maps` if it is present, and generates further maps, among them tiles of two
+//! populations.
 
 use std::error::Error;
 use std::path::Path;
@@ -36,6 +37,11 @@ struct Material {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let texels = std::env::args().nth(1).map_or(Ok(16), |n| n.parse::<usize>())?;
+    let target = match std::env::args().nth(2).as_deref() {
+        None | Some("float") => Target::Float,
+        Some("basis") => Target::Basis,
+        Some(other) => return Err(format!("expected the target float or basis, found {other}").into()),
+    };
     let mut materials = generated();
     let shared = Path::new("../shared/data/maps");
     for name in
@@ -46,14 +52,14 @@ fn main() -> Result<(), Box<dyn Error>> {
             materials.push(Material { name: name.to_owned(), normals, roughness: None, factor: 0.316 });
         }
     }
-    if let Some(name) = std::env::args().nth(2) {
+    if let Some(name) = std::env::args().nth(3) {
         materials.retain(|material| material.name.contains(&name));
     }
     println!("| map | level | plain mips | fast | best | oracle | fast / oracle | best / oracle |");
     println!("|---|---|---|---|---|---|---|---|");
     let mut all = [0.0; 4];
     for material in &materials {
-        let levels = errors(material, texels)?;
+        let levels = errors(material, texels, target)?;
         for (level, [plain, fast, best, oracle]) in &levels {
             println!(
                 "| {} | {level} | {plain:.3} | {fast:.3} | {best:.3} | {oracle:.3} | {:.2} | {:.2} |",
@@ -86,7 +92,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 type LevelErrors = [f64; 4];
 
 /// Returns the errors by level.
-fn errors(material: &Material, texels: usize) -> Result<Vec<(u32, LevelErrors)>, Box<dyn Error>> {
+fn errors(material: &Material, texels: usize, target: Target) -> Result<Vec<(u32, LevelErrors)>, Box<dyn Error>> {
     let map = || NormalMap::new(material.normals.clone(), NormalLayout::Auto, false);
     let surface = surface(material, &map()?).ok_or("the sizes of normals and roughness differ")?;
     let surface = surface.magnified();
@@ -96,7 +102,7 @@ fn errors(material: &Material, texels: usize) -> Result<Vec<(u32, LevelErrors)>,
         let settings = Settings::default()
             .with_model(Model::Anisotropic)
             .with_quality(effort)
-            .with_target(Target::Float)
+            .with_target(target)
             .with_provenance(false);
         let baked = bake_map(&bump_map, Some(&base), &settings)?;
         Ok(files_of(&baked))

@@ -1,5 +1,7 @@
 //! Images as rows of RGBA values, as a shader reads them.
 
+use std::array::from_fn;
+
 use rayon::prelude::*;
 
 use crate::image::MapError;
@@ -84,16 +86,9 @@ impl Rgba<'_> {
 
     /// Returns red and blue if both are constant over the image.
     pub fn common_red_blue(&self) -> Option<[f32; 2]> {
-        let channels = self.0.channels as usize;
-        let are_same = match &self.0.samples {
-            Samples::U8(all) => have_same_red_blue(all, channels),
-            Samples::U16(all) => have_same_red_blue(all, channels),
-            Samples::F32(all) => have_same_red_blue(all, channels),
-        };
-        let mut first = [[0.0; 4]];
-        self.row(0, &mut first);
-        let [[red, _, blue, _]] = first;
-        are_same.then_some([red, blue])
+        let [red, _, blue] = self.0.colour_ranges();
+        let is_constant = |[least, largest]: [f32; 2]| least == largest;
+        (is_constant(red) && is_constant(blue)).then_some([red[0], blue[0]])
     }
 }
 
@@ -112,29 +107,59 @@ impl Image {
         }
     }
 
-    /// Returns the least and the largest blue, read as in [`Rgba`].
-    pub fn blue_range(&self) -> [f32; 2] {
-        fn range<T: Copy + PartialOrd + Send + Sync>(samples: &[T], channels: usize) -> [T; 2] {
-            let blue = if channels > 2 { 2 } else { 0 };
-            let wider = |[least, largest]: [T; 2], [low, high]: [T; 2]| {
-                [if low < least { low } else { least }, if high > largest { high } else { largest }]
-            };
-            let first = || [samples[blue]; 2];
-            let in_chunk = |texels: &[T]| {
-                texels.chunks_exact(channels).fold(first(), |range, texel| wider(range, [texel[blue]; 2]))
-            };
-            samples.par_chunks(channels << 12).map(in_chunk).reduce(first, wider)
-        }
+    /// Returns the least and the largest red, green and blue, read as in [`Rgba`].
+    pub fn colour_ranges(&self) -> [[f32; 2]; 3] {
         let channels = self.channels as usize;
-        if channels == 2 {
-            return [0.0; 2];
-        }
-        match &self.samples {
-            Samples::U8(all) => range(all, channels).map(|v| UNORM8[usize::from(v)]),
-            Samples::U16(all) => range(all, channels).map(|v| f32::from(v) / 65535.0),
-            Samples::F32(all) => range(all, channels),
+        let channel_ranges: Vec<[f32; 2]> = match &self.samples {
+            Samples::U8(all) => ranges(all, channels, |v| UNORM8[usize::from(v)]),
+            Samples::U16(all) => ranges(all, channels, |v| f32::from(v) / 65535.0),
+            Samples::F32(all) => ranges(all, channels, |v| v),
+        };
+        match channel_ranges[..] {
+            [grey] => [grey; 3],
+            [red, green] => [red, green, [0.0; 2]],
+            [red, green, blue, ..] => [red, green, blue],
+            [] => [[0.0; 2]; 3],
         }
     }
+}
+
+/// Samples that are compared with as many others side by side: a multiple of each number of channels.
+const PERIOD: usize = 192;
+
+/// Returns the least and the largest sample of each channel.
+fn ranges<T: Copy + PartialOrd + Send + Sync>(
+    samples: &[T],
+    channels: usize,
+    value: impl Fn(T) -> f32,
+) -> Vec<[f32; 2]> {
+    let first: [T; PERIOD] = from_fn(|i| samples[i % channels]);
+    let widen = |low: &mut [T; PERIOD], high: &mut [T; PERIOD], samples: &[T]| {
+        for ((low, high), sample) in low.iter_mut().zip(high).zip(samples) {
+            *low = if *sample < *low { *sample } else { *low };
+            *high = if *sample > *high { *sample } else { *high };
+        }
+    };
+    let in_chunk = |samples: &[T]| {
+        let (mut low, mut high) = (first, first);
+        samples.chunks(PERIOD).for_each(|samples| widen(&mut low, &mut high, samples));
+        (low, high)
+    };
+    let (low, high) = samples.par_chunks(PERIOD << 8).map(in_chunk).reduce(
+        || (first, first),
+        |(mut low, mut high), other| {
+            widen(&mut low, &mut high, &other.0);
+            widen(&mut low, &mut high, &other.1);
+            (low, high)
+        },
+    );
+    let of_channel = |channel: usize| {
+        let places = (channel..PERIOD).step_by(channels);
+        places.fold([value(low[channel]), value(high[channel])], |[least, largest], i| {
+            [least.min(value(low[i])), largest.max(value(high[i]))]
+        })
+    };
+    (0..channels).map(of_channel).collect()
 }
 
 /// Writes green of all texels to `out`, or grey for images of one channel.
@@ -145,24 +170,6 @@ fn green<T: Copy>(samples: &[T], channels: usize, out: &mut [f32], value: impl F
         3 => each(samples, out, |&[_, green, _]| value(green)),
         _ => each(samples, out, |&[_, green, _, _]| value(green)),
     }
-}
-
-/// Returns whether the first channel is constant, and also the third channel if there is one.
-fn have_same_red_blue<T: Copy + PartialEq + Sync>(samples: &[T], channels: usize) -> bool {
-    let [red, blue] = [samples[0], samples[if channels > 2 { 2 } else { 0 }]];
-    let in_chunk = |texels: &[T]| match channels {
-        1 => all(texels, |&[grey]| grey == red),
-        2 => all(texels, |&[r, _]| r == red),
-        3 => all(texels, |&[r, _, b]| (r == red) & (b == blue)),
-        _ => all(texels, |&[r, _, b, _]| (r == red) & (b == blue)),
-    };
-    samples.par_chunks(channels << 12).all(in_chunk)
-}
-
-/// Returns whether `predicate` holds for every texel of N samples.
-fn all<T, const N: usize>(samples: &[T], predicate: impl Fn(&[T; N]) -> bool) -> bool {
-    // The loop always runs to the end, so that the compiler can vectorise it.
-    samples.as_chunks::<N>().0.iter().fold(true, |all, texel| all & predicate(texel))
 }
 
 fn expand<T: Copy>(samples: &[T], channels: usize, out: &mut [[f32; 4]], value: impl Fn(T) -> f32) {

@@ -15,8 +15,8 @@ use crate::mip::{FinerRow, MipTail, TexelRows, level_sizes};
 struct LevelFit {
     /// Only texels are fitted whose finer texels differ in width by more than [`UNEVEN`], at this level or below.
     uneven_only: bool,
-    /// The level whose texels are the parts of a footprint.
-    parts: usize,
+    /// The level whose texels are the parts of a footprint, in rows with uneven texels and in other rows.
+    parts: [usize; 2],
     /// Strata of these texels along each axis of a footprint.
     strata: u32,
     effort: FitEffort,
@@ -30,28 +30,29 @@ const UNEVEN: f32 = 2.0;
 /// it is within 1.02 to 1.15 x of the best lobe there.
 ///
 /// `fast` takes the lobes of level 1 as parts from level 4 on: they are in memory, they stand for the whole footprint
-/// up to level 6, and a merge of four texels hardly drifts.
+/// up to level 6, and a merge of four texels hardly drifts. From level 6 on, the lobes of level 2 do as well if they
+/// are alike.
 const FAST: [LevelFit; 7] = [
-    level_fit(true, 0, DRAWN, 64, 2, 0),
-    level_fit(true, 0, DRAWN, 64, 2, 0),
-    level_fit(true, 1, DRAWN, 64, 2, 0),
-    level_fit(false, 1, DRAWN, 64, 1, 0),
-    level_fit(false, 1, DRAWN + DRAWN / 2, 128, 1, 0),
-    level_fit(false, 1, DRAWN, 256, 2, 4),
-    level_fit(false, 1, DRAWN, 512, 2, 4),
+    level_fit(true, [0, 0], DRAWN, 64, 2, 0),
+    level_fit(true, [0, 0], DRAWN, 64, 2, 0),
+    level_fit(true, [1, 1], DRAWN, 64, 2, 0),
+    level_fit(false, [1, 1], DRAWN, 64, 1, 0),
+    level_fit(false, [1, 2], DRAWN, 128, 1, 0),
+    level_fit(false, [1, 2], DRAWN, 256, 2, 4),
+    level_fit(false, [1, 2], DRAWN, 512, 2, 4),
 ];
 const BEST: [LevelFit; 6] = [
-    level_fit(false, 0, DRAWN, 128, 2, 0),
-    level_fit(false, 0, DRAWN, 256, 2, 0),
-    level_fit(false, 0, DRAWN, 256, 2, 0),
-    level_fit(false, 0, 2 * DRAWN, 512, 2, 4),
-    level_fit(false, 0, 2 * DRAWN, 1024, 2, 4),
-    level_fit(false, 0, 2 * DRAWN, 2048, 2, 4),
+    level_fit(false, [0, 0], DRAWN, 128, 2, 0),
+    level_fit(false, [0, 0], DRAWN, 256, 2, 0),
+    level_fit(false, [0, 0], DRAWN, 256, 2, 0),
+    level_fit(false, [0, 0], 2 * DRAWN, 512, 2, 4),
+    level_fit(false, [0, 0], 2 * DRAWN, 1024, 2, 4),
+    level_fit(false, [0, 0], 2 * DRAWN, 2048, 2, 4),
 ];
 
 const fn level_fit(
     uneven_only: bool,
-    parts: usize,
+    parts: [usize; 2],
     strata: u32,
     half_vectors: usize,
     descents: usize,
@@ -79,15 +80,16 @@ pub fn fit_levels<R: TexelRows<Texel: LobeTexel>>(
     for level in FIRST..sizes.len() {
         let fit = &fits[(level - FIRST).min(fits.len() - 1)];
         let (size, finer_size) = (sizes[level], sizes[level - 1]);
-        let is_uneven: Vec<AtomicBool> = (0..size.0 * size.1).map(|_| AtomicBool::new(!fit.uneven_only)).collect();
+        let is_uneven: Vec<AtomicBool> = (0..size.0 * size.1).map(|_| AtomicBool::default()).collect();
         tail.update_level(level_0, level, |y, finer, out| {
             let is_uneven = &is_uneven[(y * size.0) as usize..][..out.len()];
-            if fit.uneven_only {
-                mark_uneven(&|y, out: &mut [_]| finer(level - 1, y, out), finer_size, &finer_uneven, y, is_uneven);
-            }
-            let is_fitted: Vec<bool> = is_uneven.iter().map(|flag| flag.load(Ordering::Relaxed)).collect();
-            if is_fitted.contains(&true) {
-                fit_row(finer, [sizes[fit.parts], size], y, family, fit, &is_fitted, out);
+            mark_uneven(&|y, out: &mut [_]| finer(level - 1, y, out), finer_size, &finer_uneven, y, is_uneven);
+            let is_uneven: Vec<bool> = is_uneven.iter().map(|flag| flag.load(Ordering::Relaxed)).collect();
+            let is_even_row = !is_uneven.contains(&true);
+            if !(fit.uneven_only && is_even_row) {
+                let parts = fit.parts[usize::from(is_even_row)];
+                let is_fitted = |x: u32| !fit.uneven_only || is_uneven[x as usize];
+                fit_row(finer, (parts, sizes[parts]), (y, size), family, fit, is_fitted, out);
             }
         });
         finer_uneven = is_uneven.into_iter().map(AtomicBool::into_inner).collect();
@@ -121,25 +123,25 @@ fn mark_uneven<T: LobeTexel>(
     }
 }
 
-/// Fits texels of row `y` of a level, from the lobes in `out`. `finer` writes rows of the level of the parts, which has
-/// the first of two sizes; the level has the second size.
+/// Fits texels of row `y` of a level of `size`, from the lobes in `out`. The parts are texels of the level
+/// `part_level`, which has the size `whole`; `finer` writes its rows.
 fn fit_row<T: LobeTexel>(
     finer: &FinerRow<'_, T>,
-    [whole, size]: [(u32, u32); 2],
-    y: u32,
+    (part_level, whole): (usize, (u32, u32)),
+    (y, size): (u32, (u32, u32)),
     family: Family,
-    LevelFit { parts: part_level, strata, effort, .. }: &LevelFit,
-    is_fitted: &[bool],
+    LevelFit { strata, effort, .. }: &LevelFit,
+    is_fitted: impl Fn(u32) -> bool,
     out: &mut [T],
 ) {
     let footprint = |x| DrawnFootprint { whole, size, texel: (x, y), strata: *strata };
     let rows = footprint(0).rows();
     let mut texels = vec![T::default(); whole.0 as usize * rows.len()];
     for ((row, _), texels) in rows.iter().zip(texels.chunks_exact_mut(whole.0 as usize)) {
-        finer(*part_level, *row, texels);
+        finer(part_level, *row, texels);
     }
     let mut parts = Vec::new();
-    for (x, texel) in (0..).zip(out).filter(|(x, _)| is_fitted[*x as usize]) {
+    for (x, texel) in (0..).zip(out).filter(|(x, _)| is_fitted(*x)) {
         parts.clear();
         for ((row, share), texels) in rows.iter().zip(texels.chunks_exact(whole.0 as usize)) {
             parts.extend(footprint(x).columns(*row).into_iter().map(|(column, weight)| {

@@ -182,7 +182,7 @@ impl<'a> Level0<'a> {
     fn magnified(&self, Sampler { wrap, magnification }: Sampler) -> Magnified<'_, Self> {
         // Resampled texels are no texels of the texture that engines magnify.
         let is_linear = magnification == Magnification::Linear && self.bumps.unchanged().is_some();
-        Magnified { source: self, wrap: is_linear.then_some(wrap) }
+        Magnified { source: self, wrap: is_linear.then_some(wrap), is_isotropic: !self.base.is_anisotropic() }
     }
 
     /// Returns the unit normal of an offset of the bumps.

@@ -23,6 +23,8 @@ pub struct Magnified<'r, R> {
     pub source: &'r R,
     /// The sampler's mode, across and down; `None` if the texels themselves count.
     pub wrap: Option<[Wrap; 2]>,
+    /// Whether all texels have one alpha in all directions.
+    pub is_isotropic: bool,
 }
 
 /// The share of the neighbour at a node, along each axis: 1/2 - 1/sqrt 12.
@@ -44,12 +46,21 @@ impl<R: TexelRows<Texel = OrientedLobe>> TexelRows for Magnified<'_, R> {
     }
 
     fn rows(&self, first: u32, out: &mut [OrientedLobe]) {
-        let Some([across, down]) = self.wrap else { return self.source.rows(first, out) };
+        match self.wrap {
+            None => self.source.rows(first, out),
+            Some(wrap) if self.is_isotropic => self.widened_rows::<ISOTROPIC>(wrap, first, out),
+            Some(wrap) => self.widened_rows::<ANISOTROPIC>(wrap, first, out),
+        }
+    }
+}
+
+impl<R: TexelRows<Texel = OrientedLobe>> Magnified<'_, R> {
+    fn widened_rows<const N: usize>(&self, [across, down]: [Wrap; 2], first: u32, out: &mut [OrientedLobe]) {
         let (width, height) = (self.width() as usize, self.height());
-        let mut rows: [Row; 3] = from_fn(|_| Row::new(width));
+        let mut rows: [Row<N>; 3] = from_fn(|_| Row::new(width));
         for (y, out) in (first..).zip(out.chunks_exact_mut(width)) {
             let [before, after] = neighbours(y, height, down);
-            let mut read = |y, row: &mut Row| {
+            let mut read = |y, row: &mut Row<N>| {
                 self.source.row(y, out);
                 row.read(out, across);
             };
@@ -74,21 +85,23 @@ fn neighbours(i: u32, size: u32, wrap: Wrap) -> [u32; 2] {
     }
 }
 
-/// What a sampler interpolates of a lobe: the normal and, for the squared alphas uu and vv, the roughness, which is the
-/// fourth root. Engines interpolate the direction and the strength of an anisotropy; here uv is interpolated, which
-/// differs little between neighbours.
-const NUMBERS: usize = 6;
+/// What a sampler interpolates of an anisotropic lobe: the normal and, for the squared alphas uu and vv, the roughness,
+/// which is the fourth root. Engines interpolate the direction and the strength of an anisotropy; here uv is
+/// interpolated, which differs little between neighbours.
+const ANISOTROPIC: usize = 6;
+/// The numbers of an isotropic lobe: the normal and one roughness.
+const ISOTROPIC: usize = 4;
 
-/// A row of level 0 by number.
-struct Row {
+/// A row of level 0 by number: [`ISOTROPIC`] or [`ANISOTROPIC`] numbers for each texel.
+struct Row<const N: usize> {
     /// The texels. Before the first texel stands its neighbour; after the last texel stands its neighbour, repeated to
     /// fill a vector.
-    texels: [Vec<f32>; NUMBERS],
+    texels: [Vec<f32>; N],
     /// The points to the left and to the right of the centre of each texel.
-    sides: [[Vec<f32>; NUMBERS]; 2],
+    sides: [[Vec<f32>; N]; 2],
 }
 
-impl Row {
+impl<const N: usize> Row<N> {
     /// Returns room for a row of `width` texels.
     fn new(width: usize) -> Self {
         let whole = width.next_multiple_of(LANES);
@@ -110,18 +123,18 @@ impl Row {
 
     /// Writes the numbers of `lobes` from place `first` on.
     fn write(&mut self, first: usize, lobes: &[OrientedLobe]) {
-        let [x, y, z, uu, uv, vv] = self.texels.each_mut().map(|numbers| numbers[first..].iter_mut());
-        let numbers = x.zip(y).zip(z).zip(uu).zip(uv).zip(vv);
-        numbers.zip(lobes).for_each(|((((((x, y), z), uu), uv), vv), lobe)| {
-            [*x, *y, *z] = lobe.normal;
-            let a = &lobe.squared_alpha.0;
-            (*uu, *uv, *vv) = (a.uu, a.uv, a.vv);
-        });
+        let mut texels = self.texels.each_mut().map(|numbers| &mut numbers[first..][..lobes.len()]);
+        for (i, OrientedLobe { normal: [x, y, z], squared_alpha: SquaredAlpha(a) }) in lobes.iter().enumerate() {
+            // An isotropic lobe has the first numbers only.
+            for (texels, number) in texels.iter_mut().zip([*x, *y, *z, a.uu, a.uv, a.vv]) {
+                texels[i] = number;
+            }
+        }
     }
 
     #[inline(always)]
     fn interpolate(&mut self) {
-        for i in [3, 5] {
+        for i in (3..N).step_by(2) {
             self.texels[i].iter_mut().for_each(|a| *a = a.sqrt().sqrt());
         }
         let [left, right] = &mut self.sides;
@@ -137,10 +150,10 @@ impl Row {
 }
 
 #[inline(always)]
-fn widened_row<S: Simd>(simd: S, rows: &[Row; 3], out: &mut [OrientedLobe]) {
+fn widened_row<S: Simd, const N: usize>(simd: S, rows: &[Row<N>; 3], out: &mut [OrientedLobe]) {
     let zero = Wide::splat(simd, 0.0);
     for (chunk, out) in out.chunks_mut(LANES).enumerate() {
-        let mut columns = [[[zero; NUMBERS]; 2]; 3];
+        let mut columns = [[[zero; N]; 2]; 3];
         for (column, row) in columns.iter_mut().zip(rows) {
             for (point, side) in column.iter_mut().zip(&row.sides) {
                 for (number, numbers) in point.iter_mut().zip(side) {
@@ -149,8 +162,7 @@ fn widened_row<S: Simd>(simd: S, rows: &[Row; 3], out: &mut [OrientedLobe]) {
             }
         }
         let [x, y, z, uu, uv, vv] = widened(&columns);
-        let [x, y, z, uu, uv, vv]: [[f32; LANES]; NUMBERS] =
-            [x.into(), y.into(), z.into(), uu.into(), uv.into(), vv.into()];
+        let [x, y, z, uu, uv, vv]: [[f32; LANES]; 6] = [x.into(), y.into(), z.into(), uu.into(), uv.into(), vv.into()];
         for (lane, lobe) in out.iter_mut().enumerate() {
             let squared_alpha = SquaredAlpha(Symmetric2::new(uu[lane], uv[lane], vv[lane]));
             *lobe = OrientedLobe { normal: [x[lane], y[lane], z[lane]], squared_alpha };
@@ -162,12 +174,12 @@ fn widened_row<S: Simd>(simd: S, rows: &[Row; 3], out: &mut [OrientedLobe]) {
 /// by twice the covariance of the slopes. `columns` are the points to the left and to the right of the centre of the
 /// texel before, of the texel, and of the texel after, down the image.
 #[inline(always)]
-fn widened<F: Real>(columns: &[[[F; NUMBERS]; 2]; 3]) -> [F; NUMBERS] {
+fn widened<F: Real, const N: usize>(columns: &[[[F; N]; 2]; 3]) -> [F; 6] {
     let zero = columns[0][0][0].splat_like(0.0);
     let (near, far) = (zero.splat_like(1.0 - SHARE), zero.splat_like(SHARE));
     let quarter = zero.splat_like(0.25);
-    let (mut nodes, mut mean) = ([[zero; NUMBERS]; 4], [zero; NUMBERS]);
-    for i in 0..NUMBERS {
+    let (mut nodes, mut mean) = ([[zero; N]; 4], [zero; N]);
+    for i in 0..N {
         for side in 0..2 {
             let centre = near * columns[1][side][i];
             nodes[side][i] = centre + far * columns[0][side][i];
@@ -175,7 +187,8 @@ fn widened<F: Real>(columns: &[[[F; NUMBERS]; 2]; 3]) -> [F; NUMBERS] {
         }
         mean[i] = (nodes[0][i] + nodes[1][i] + (nodes[2][i] + nodes[3][i])) * quarter;
     }
-    let [x, y, z, u, uv, v] = mean;
+    let (x, y, z, u) = (mean[0], mean[1], mean[2], mean[3]);
+    let (uv, v) = if N == ANISOTROPIC { (mean[N - 2], mean[N - 1]) } else { (zero, u) };
     let length = (x * x + y * y + z * z).sqrt();
     let axes = frame([x / length, y / length, z / length]);
     let (mut sums, mut products) = ([zero; 2], [zero; 3]);

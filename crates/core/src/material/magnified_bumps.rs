@@ -54,7 +54,8 @@ impl TexelRows for MagnifiedBumps<'_> {
         let unchanged = self.rows.unchanged().filter(|_| self.sampler.magnification == Magnification::Linear);
         let Some(bump_map) = unchanged else { return self.rows.row(y, out) };
         let mut lobes = vec![OrientedLobe::default(); out.len()];
-        Magnified { source: &Normals(bump_map), wrap: Some(self.sampler.wrap) }.row(y, &mut lobes);
+        let wrap = Some(self.sampler.wrap);
+        Magnified { source: &Normals(bump_map), wrap, is_isotropic: true }.row(y, &mut lobes);
         for (moments, lobe) in out.iter_mut().zip(lobes) {
             // A lobe without width is widened by twice the covariance.
             *moments = Moments { mean: lobe.offset(), covariance: 0.5 * lobe.squared_alpha.0 };

@@ -21,7 +21,8 @@ impl Metalness {
     /// Returns the metalness of the roughness texture, if there is one, with `metallicFactor`.
     pub fn new(roughness: Option<&Image>, factor: f32) -> Self {
         let Some(image) = roughness.filter(|_| factor > 0.0) else { return Self::Constant(factor.clamp(0.0, 1.0)) };
-        let [least, largest] = image.blue_range().map(|blue| factor * blue);
+        let [_, _, blue] = image.colour_ranges();
+        let [least, largest] = blue.map(|blue| factor * blue);
         if largest <= METALNESS_NOISE {
             Self::Constant(0.0)
         } else if largest - least <= METALNESS_NOISE {

@@ -136,7 +136,7 @@ fn default_texels<T: Merge>(count: usize) -> Vec<T> {
 }
 
 /// Rows of a level that are computed from finer rows that were read together.
-const ROWS_TOGETHER: usize = 4;
+const ROWS_TOGETHER: usize = 8;
 
 /// The most levels of a band. A band then has 32 rows of level 0; for 4096 columns of lobes, its levels 1 and 2 fit
 /// into 1 MB.

@@ -58,7 +58,7 @@ fn grey_with_alpha_is_grey_in_every_colour() {
 }
 
 #[test]
-fn the_range_of_blue_is_that_of_rgba_texels() {
+fn the_ranges_of_colours_are_those_of_rgba_texels() {
     for channels in 1..=4 {
         let bytes: Vec<u8> = (0..9000 * channels).map(|i| (20 + i * 19 % 201) as u8).collect();
         let all: [Samples; 3] = [
@@ -70,9 +70,11 @@ fn the_range_of_blue_is_that_of_rgba_texels() {
             let image = Image { width: 9000, height: 1, channels, samples };
             let mut texels = vec![[0.0; 4]; 9000];
             Rgba(&image).row(0, &mut texels);
-            let blue = || texels.iter().map(|texel| texel[2]);
-            let range = [blue().fold(f32::MAX, f32::min), blue().fold(f32::MIN, f32::max)];
-            assert_eq!(image.blue_range(), range, "{channels} channels");
+            let ranges = [0, 1, 2].map(|channel| {
+                let colours = || texels.iter().map(|texel| texel[channel]);
+                [colours().fold(f32::MAX, f32::min), colours().fold(f32::MIN, f32::max)]
+            });
+            assert_eq!(image.colour_ranges(), ranges, "{channels} channels");
         }
     }
 }

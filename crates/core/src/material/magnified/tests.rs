@@ -27,7 +27,7 @@ fn white_noise_keeps_four_ninths_of_its_variance() {
     for wrap in [Wrap::Repeat, Wrap::Clamp] {
         let mut source = noise(128, 0.005);
         source.texels.iter_mut().for_each(|lobe| lobe.squared_alpha = SquaredAlpha::isotropic(Alpha(0.1)));
-        let magnified = Magnified { source: &source, wrap: Some([wrap; 2]) };
+        let magnified = Magnified { source: &source, wrap: Some([wrap; 2]), is_isotropic: true };
         let (mut variance, mut row) = (0.0, vec![OrientedLobe::default(); 128]);
         for y in 0..128 {
             magnified.row(y, &mut row);
@@ -49,7 +49,7 @@ fn texels_agree_with_points_in_double_precision() {
     let normals: Vec<_> = source.texels.iter().map(|lobe| lobe.normal.map(f64::from)).collect();
     let alphas: Vec<_> = source.texels.iter().map(|lobe| lobe.squared_alpha).collect();
     let surface = Surface::new(8, 8, &normals, &alphas).unwrap().magnified();
-    let magnified = Magnified { source: &source, wrap: Some([Wrap::Repeat; 2]) };
+    let magnified = Magnified { source: &source, wrap: Some([Wrap::Repeat; 2]), is_isotropic: true };
     let mut row = vec![OrientedLobe::default(); 8];
     for y in 0..8 {
         magnified.row(y, &mut row);
@@ -68,6 +68,19 @@ fn texels_agree_with_points_in_double_precision() {
     }
 }
 
+/// Isotropic lobes are widened by fewer numbers, to the same bits.
+#[test]
+fn isotropic_lobes_need_fewer_numbers() {
+    let source = noise(20, 0.3);
+    let [few, all] = [true, false].map(|is_isotropic| {
+        let magnified = Magnified { source: &source, wrap: Some([Wrap::Repeat; 2]), is_isotropic };
+        let mut rows = vec![OrientedLobe::default(); 400];
+        magnified.rows(0, &mut rows);
+        rows
+    });
+    assert_eq!(few, all);
+}
+
 /// Between a rough and a smooth texel the roughness is interpolated, not the squared alpha.
 #[test]
 fn roughness_is_interpolated() {
@@ -78,7 +91,7 @@ fn roughness_is_interpolated() {
     let texels = (0..16).map(|i| lobe(if i % 2 == 0 { 0.2 } else { 0.8 })).collect();
     let source = Level { width: 4, height: 4, texels };
     let mut row = [OrientedLobe::default(); 4];
-    Magnified { source: &source, wrap: Some([Wrap::Repeat; 2]) }.row(0, &mut row);
+    Magnified { source: &source, wrap: Some([Wrap::Repeat; 2]), is_isotropic: true }.row(0, &mut row);
     let wanted = (1.0 - SHARE) * 0.2 + SHARE * 0.8;
     let roughness = row[0].squared_alpha.0.uu.powf(0.25);
     assert!((roughness - wanted).abs() < 1e-5, "{roughness}");
