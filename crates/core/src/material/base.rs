@@ -2,12 +2,13 @@
 
 use crate::image::Rgba;
 use crate::lobe::{Anisotropy, Roughness, SquaredAlpha};
+use crate::material::metalness::{ColouredRows, MetalnessLevels};
 use crate::material::reflectance::ReflectanceRows;
 use crate::math::symmetric::Symmetric2;
 use crate::mip::{LinearResampled, MipTail, TexelRows, Wrap, level_sizes};
 
-/// A texel of the base lobe: A (uu, uv, vv), then the red and blue channels of the roughness texture, which are only
-/// averaged.
+/// A texel of the base lobe: A (uu, uv, vv), then the red and blue channels of the roughness texture. Red is averaged;
+/// blue, the metalness, counts by base colour where that varies, too.
 pub type BaseTexel = [f32; 5];
 
 /// Returns the base lobe of a texel.
@@ -123,6 +124,11 @@ impl BaseRows<'_> {
         SquaredAlpha::isotropic(self.roughness(green).into()).0.uu
     }
 
+    /// Returns the metalness with the base colour by which it counts, if both vary.
+    fn coloured(&self) -> Option<ColouredRows<'_, '_>> {
+        ColouredRows::new(self.roughness.as_ref()?, self.reflectance.as_ref()?)
+    }
+
     /// Returns red and blue of the roughness texture if they are constant.
     fn constant_red_blue(&self) -> Option<[f32; 2]> {
         self.roughness.as_ref().map_or(Some([1.0; 2]), |rows| rows.source().common_red_blue())
@@ -217,8 +223,23 @@ impl TexelRows for SquaredAlphaRows<'_, '_> {
     }
 }
 
-/// Levels 1 and coarser of the base lobe, with as few numbers for each texel as the lobe needs.
-pub enum BaseLevels {
+/// Levels 1 and coarser of the base lobe.
+pub struct BaseLevels {
+    texels: TexelLevels,
+    /// Blue, where it counts by base colour.
+    metalness: Option<MetalnessLevels>,
+}
+
+impl BaseLevels {
+    /// Builds the levels over `rows`.
+    pub fn new(rows: &BaseRows<'_>) -> Self {
+        let metalness = rows.coloured().map(|rows| MetalnessLevels::new(&rows));
+        Self { texels: TexelLevels::new(rows), metalness }
+    }
+}
+
+/// Levels 1 and coarser, with as few numbers for each texel as the lobe needs.
+enum TexelLevels {
     /// Without textures all texels are equal.
     Uniform,
     /// Isotropic lobes, where red and blue of the roughness texture are constant.
@@ -234,9 +255,8 @@ pub enum BaseLevels {
     Anisotropic(MipTail<BaseTexel>),
 }
 
-impl BaseLevels {
-    /// Builds the levels over `rows`.
-    pub fn new(rows: &BaseRows<'_>) -> Self {
+impl TexelLevels {
+    fn new(rows: &BaseRows<'_>) -> Self {
         if rows.roughness.is_none() && rows.direction.is_none() {
             Self::Uniform
         } else if rows.is_anisotropic() {
@@ -252,19 +272,19 @@ impl BaseLevels {
 /// The base lobe with all its levels.
 pub struct Base<'a> {
     rows: BaseRows<'a>,
-    tail: BaseLevels,
+    levels: BaseLevels,
 }
 
 impl<'a> Base<'a> {
     /// Builds all levels over `rows`.
     pub fn new(rows: BaseRows<'a>) -> Self {
-        let tail = BaseLevels::new(&rows);
-        Self { rows, tail }
+        let levels = BaseLevels::new(&rows);
+        Self { rows, levels }
     }
 
-    /// Joins `rows` with `tail`, which was built of equal rows before.
-    pub fn with_levels(rows: BaseRows<'a>, tail: BaseLevels) -> Self {
-        Self { rows, tail }
+    /// Joins `rows` with `levels`, which were built of equal rows before.
+    pub fn with_levels(rows: BaseRows<'a>, levels: BaseLevels) -> Self {
+        Self { rows, levels }
     }
 
     /// Returns level 0.
@@ -274,10 +294,10 @@ impl<'a> Base<'a> {
 
     /// Returns whether red and blue of the roughness texture are constant.
     pub fn has_constant_red_blue(&self) -> bool {
-        match self.tail {
-            BaseLevels::Uniform | BaseLevels::ConstantRedBlue { .. } => true,
-            BaseLevels::Isotropic(_) => false,
-            BaseLevels::Anisotropic(_) => self.rows.constant_red_blue().is_some(),
+        match self.levels.texels {
+            TexelLevels::Uniform | TexelLevels::ConstantRedBlue { .. } => true,
+            TexelLevels::Isotropic(_) => false,
+            TexelLevels::Anisotropic(_) => self.rows.constant_red_blue().is_some(),
         }
     }
 
@@ -288,28 +308,31 @@ impl<'a> Base<'a> {
 
     /// Writes row `y` of `level` to `out`.
     pub fn row(&self, level: usize, y: u32, out: &mut [BaseTexel]) {
-        match &self.tail {
-            BaseLevels::Uniform => self.rows.row(0, out),
-            BaseLevels::ConstantRedBlue { .. } | BaseLevels::Isotropic(_) if level == 0 => self.rows.row(y, out),
-            BaseLevels::ConstantRedBlue { tail, red_blue: [red, blue] } => {
+        match &self.levels.texels {
+            TexelLevels::Uniform => self.rows.row(0, out),
+            TexelLevels::ConstantRedBlue { .. } | TexelLevels::Isotropic(_) if level == 0 => self.rows.row(y, out),
+            TexelLevels::ConstantRedBlue { tail, red_blue: [red, blue] } => {
                 tail.with_row(&SquaredAlphaRows(&self.rows), level, y, |row| {
                     out.iter_mut().zip(row).for_each(|(texel, [alpha])| *texel = base_texel([*alpha, *red, *blue]));
                 });
             }
-            BaseLevels::Isotropic(tail) => {
+            TexelLevels::Isotropic(tail) => {
                 tail.with_row(&IsotropicRows(&self.rows), level, y, |row| {
                     out.iter_mut().zip(row).for_each(|(texel, isotropic)| *texel = base_texel(*isotropic));
                 });
             }
-            BaseLevels::Anisotropic(tail) => tail.row(&self.rows, level, y, out),
+            TexelLevels::Anisotropic(tail) => tail.row(&self.rows, level, y, out),
+        }
+        if let (Some(levels), Some(rows), 1..) = (&self.levels.metalness, self.rows.coloured(), level) {
+            levels.row(&rows, level, y, |x, metalness| out[x][4] = metalness);
         }
     }
 
     /// Writes the red and blue of row `y` of `level` to `out`.
     pub fn red_blue(&self, level: usize, y: u32, out: &mut [[f32; 2]]) {
-        match &self.tail {
-            BaseLevels::ConstantRedBlue { red_blue, .. } => out.fill(*red_blue),
-            BaseLevels::Isotropic(_) | BaseLevels::Anisotropic(_) if level == 0 => {
+        match &self.levels.texels {
+            TexelLevels::ConstantRedBlue { red_blue, .. } => out.fill(*red_blue),
+            TexelLevels::Isotropic(_) | TexelLevels::Anisotropic(_) if level == 0 => {
                 let mut texels = vec![[0.0; 4]; out.len()];
                 self.rows.texture_row(y, &mut texels);
                 out.iter_mut().zip(texels).for_each(|(red_blue, [red, _, blue, _])| *red_blue = [red, blue]);

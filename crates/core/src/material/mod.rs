@@ -13,6 +13,7 @@ mod fit_levels;
 mod lobes;
 mod magnified;
 mod magnified_bumps;
+mod metalness;
 mod mip_chain;
 mod normals;
 pub mod notes;

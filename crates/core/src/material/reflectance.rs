@@ -112,6 +112,17 @@ impl<'a> ReflectanceRows<'a> {
         }
     }
 
+    /// Returns whether both the metalness and the base colour vary, so that bright and dark texels can differ in
+    /// metalness.
+    pub fn metalness_varies_with_colour(&self) -> bool {
+        !self.metalness.is_constant() && !self.metal_f0.is_constant()
+    }
+
+    /// Returns the luminances of the base colour of row `y`, which has `width` texels, in [0, 1].
+    pub fn colour_row(&self, y: u32, width: usize) -> Vec<[f32; 1]> {
+        self.metal_f0.row(y, width)
+    }
+
     /// Writes the reflectance of row `y` to `out`.
     pub fn row(&self, y: u32, out: &mut [f32]) {
         let numbers = [&self.metalness, &self.metal_f0, &self.dielectric_f0, &self.specular];
