@@ -142,6 +142,7 @@ pub(crate) fn two_planes<S: Simd, const N: usize>(
         #[inline(always)]
         || match N {
             2 => planes::<S, N, 1>(simd, texels, all, selector, scale, mode, rounds),
+            4 => planes::<S, N, 3>(simd, texels, all, selector, scale, mode, rounds),
             _ => planes::<S, N, 2>(simd, texels, all, selector, scale, mode, rounds),
         },
     )

@@ -13,7 +13,8 @@ use crate::metric::{Effort, Metric};
 use crate::pack::pack_solid;
 use crate::row::{Row, groups};
 
-/// Encodes opaque RGB with given settings. Alpha is ignored and decodes as 255.
+/// Encodes RGB or RGBA with given settings. Alpha is ignored and decodes as 255, unless the metric is
+/// [`Metric::Rgba`].
 ///
 /// The encoded bytes do not depend on the machine, its instruction set or the number of threads.
 #[derive(Clone, Copy, Debug)]
@@ -93,7 +94,11 @@ impl Encoder {
 
     /// Encodes four rows of equal length. The search is compiled here, once for each instruction set.
     fn encode_row(&self, rows: [&[[u8; 4]]; 4], lobes: Option<[&[Lobe]; 4]>, blocks: &mut [[u8; BLOCK_BYTES]]) {
-        let texels = (0..blocks.len()).map(|column| gather_texels(rows, column * 4)).collect();
+        let texels = |column: usize| match self.metric {
+            Metric::Rgba => gather(rows, column * 4),
+            _ => gather_opaque(rows, column * 4),
+        };
+        let texels = (0..blocks.len()).map(texels).collect();
         let lobes = lobes.filter(|_| self.metric == Metric::Direction);
         let lobes = lobes.map(|rows| (0..blocks.len()).map(|column| gather(rows, column * 4)).collect());
         let row = Row::new(texels, lobes);
@@ -102,7 +107,7 @@ impl Encoder {
 }
 
 /// Returns the texels of the block that begins at column `left` of four rows, made opaque.
-fn gather_texels(rows: [&[[u8; 4]]; 4], left: usize) -> Texels {
+fn gather_opaque(rows: [&[[u8; 4]]; 4], left: usize) -> Texels {
     let mut texels = gather(rows, left);
     texels.iter_mut().for_each(|texel| texel[3] = 255);
     texels

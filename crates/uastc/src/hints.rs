@@ -15,9 +15,11 @@ use texel_simd::{LANES, Real};
 pub(crate) const ETC1_OFFSETS: [[i32; 2]; 8] =
     [[2, 8], [5, 17], [9, 29], [13, 42], [18, 60], [24, 80], [33, 106], [47, 183]];
 
-/// The EAC hint of opaque blocks in modes that store alpha: table 11, whose offsets are evenly spaced, in the low four
-/// bits, and the least multiplier above.
-const OPAQUE_EAC: u64 = 0x1b;
+/// The EAC table of blocks in modes that store alpha: its offsets, from -10 to 9, are evenly spaced.
+const EAC_TABLE: u8 = 11;
+
+/// The difference of the largest and the least offset of [`EAC_TABLE`].
+const EAC_RANGE: u8 = 19;
 
 /// Hints of a block that is not solid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -32,6 +34,8 @@ pub(crate) struct Hints {
     pub tables: [u8; 2],
     /// How the ETC1 bases differ from the rounded averages.
     pub bias: u8,
+    /// The factor of the offsets in the EAC block of alpha, 1 to 15.
+    pub eac_multiplier: u8,
 }
 
 impl Hints {
@@ -49,7 +53,7 @@ impl Hints {
             out.push(self.bias.into(), 5);
         }
         if mode.has_alpha() {
-            out.push(OPAQUE_EAC, 8);
+            out.push(u64::from(EAC_TABLE | self.eac_multiplier << 4), 8);
         }
     }
 
@@ -63,7 +67,7 @@ impl Hints {
     /// Chooses the hints for a block of `mode` that is made from `texels`.
     pub fn of(texels: &Texels, mode: &Mode) -> Self {
         let level = |c: usize| texels.map(|texel| f32::from(texel[c]));
-        Self::new(etc1_fields(&[level(0), level(1), level(2)]), mode)
+        Self::new(etc1_fields(&[level(0), level(1), level(2)]), texels, mode)
     }
 
     /// Chooses the hints of one block in each lane.
@@ -73,19 +77,27 @@ impl Hints {
         for (lanes, field) in fields.iter_mut().zip(etc1_fields(&channels(simd, texels))) {
             *lanes = field.into();
         }
-        std::array::from_fn(|j| Self::new(fields.map(|field| field[j]), modes[j]))
+        std::array::from_fn(|j| Self::new(fields.map(|field| field[j]), texels[j], modes[j]))
     }
 
     #[inline(always)]
-    fn new([flip, differential, state, first, second]: [f32; 5], mode: &Mode) -> Self {
+    fn new([flip, differential, state, first, second]: [f32; 5], texels: &Texels, mode: &Mode) -> Self {
         Self {
             bc1_selectors: mode.subsets == 1 && mode.planes == 1,
             flip: flip > 0.0,
             differential: differential > 0.0,
             tables: [first as u8, second as u8],
             bias: LEAST_BIAS[state as usize],
+            eac_multiplier: if mode.has_alpha() { eac_multiplier(texels) } else { 1 },
         }
     }
+}
+
+/// Returns the least factor with which the offsets of an EAC block span all alphas of `texels`. Offsets beyond 0 and 255
+/// are clamped, so that both ends are exact.
+fn eac_multiplier(texels: &Texels) -> u8 {
+    let (least, most) = texels.iter().fold((255, 0), |(least, most), &[.., a]| (a.min(least), a.max(most)));
+    u8::div_ceil(most - least, EAC_RANGE).max(1)
 }
 
 /// Computes the ETC1 fields of [`Hints`] for one block, or for one block in each lane: flip, differential, the index

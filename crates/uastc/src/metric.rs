@@ -28,6 +28,11 @@ impl Effort {
 pub enum Metric {
     /// Squared differences of red, green and blue, in levels of 0 to 255.
     Rgb,
+    /// Squared differences of red, green, blue and alpha, in levels of 0 to 255.
+    ///
+    /// This is the only metric that stores alpha: for all others alpha is ignored and decodes as 255. Blocks whose
+    /// texels are all opaque are those of [`Metric::Rgb`].
+    Rgba,
     /// Squared differences of red, green and blue, each difference multiplied by its channel's weight first.
     ///
     /// Use this metric for textures whose channels hold unrelated quantities of different importance. At least one
@@ -62,7 +67,7 @@ impl Metric {
     pub(crate) fn scale(self) -> [f32; 3] {
         match self {
             Self::Weighted(weights) => weights.map(Weight::factor),
-            Self::Rgb | Self::Direction => [1.0; 3],
+            Self::Rgb | Self::Rgba | Self::Direction => [1.0; 3],
         }
     }
 }

@@ -11,10 +11,16 @@ use crate::line::{Line, Points};
 use texel_simd::Wide;
 
 impl<S: Simd> Blocks<S> {
-    /// Refines the endpoints of opaque blocks of one mode and selector. Blocks of grey and alpha are left out, because
-    /// they were refined when they were fitted.
+    /// Refines the endpoints of blocks of one mode and selector, which store `N` channels. `M` is one less than `N`.
+    /// Blocks of grey and alpha are left out, because they were refined when they were fitted.
     #[inline(always)]
-    pub(crate) fn polish(&mut self, simd: S, texels: &[Grid<S>; 3], scale: &[f32; 3], passes: usize) {
+    pub(crate) fn polish<const N: usize, const M: usize>(
+        &mut self,
+        simd: S,
+        texels: &[Grid<S>; N],
+        scale: &[f32; N],
+        passes: usize,
+    ) {
         if self.modes[0].channels == 2 {
             return;
         }
@@ -27,8 +33,8 @@ impl<S: Simd> Blocks<S> {
                 let (range, ramp) = (mode.range, mode.ramp());
                 *self = Self { modes: self.modes, pattern: self.pattern, selector, ..Self::empty(simd, mode) };
                 if mode.planes == 2 {
-                    let (single, others) = split_channels::<_, 3, 2>(texels, selector);
-                    let [low, high] = ends_of(&ends[0]);
+                    let (single, others) = split_channels::<_, N, M>(texels, selector);
+                    let [low, high]: [[_; N]; 2] = ends_of(&ends[0]);
                     let points =
                         Points { texels: &single, subset: None, scale: [channel_at(selector, &scale)], range, ramp };
                     let single =
@@ -39,7 +45,7 @@ impl<S: Simd> Blocks<S> {
                     let others =
                         points.line_between(simd, other_channels(selector, &low), other_channels(selector, &high)).0;
                     let others = points.polish(simd, others, passes);
-                    self.set_planes::<3, 2>(&single, &others);
+                    self.set_planes::<N, M>(&single, &others);
                 } else {
                     let masks = self.masks(simd);
                     for subset in 0..mode.subsets {
@@ -56,10 +62,15 @@ impl<S: Simd> Blocks<S> {
     }
 }
 
-/// Returns the low and the high ends of the first three channels.
+/// Returns the low and the high ends of the first `N` channels.
 #[inline(always)]
-fn ends_of<S: Simd>([r, g, b, _]: &[[Wide<S>; 2]; 4]) -> [[Wide<S>; 3]; 2] {
-    [[r[0], g[0], b[0]], [r[1], g[1], b[1]]]
+fn ends_of<S: Simd, const N: usize>(ends: &[[Wide<S>; 2]; 4]) -> [[Wide<S>; N]; 2] {
+    let mut all = [[ends[0][0]; N], [ends[0][1]; N]];
+    for c in 1..N {
+        all[0][c] = ends[c][0];
+        all[1][c] = ends[c][1];
+    }
+    all
 }
 
 impl<S: Simd, const N: usize> Points<'_, S, N> {

@@ -13,7 +13,7 @@ use crate::lobe::{BlockLobes, LobeErrors, Lobes, block_scale};
 use crate::normals::{self as directions, Modes};
 use crate::pack::Block;
 use crate::tables::{MODE_0, MODES};
-use crate::{Effort, Metric, search};
+use crate::{Effort, Metric, alpha, search};
 use texel_simd::{LANES, Real, Wide};
 
 /// The texels of a row of blocks, and the best blocks found for them so far.
@@ -49,10 +49,17 @@ impl Row {
     /// Searches the blocks at `indices`.
     #[inline(always)]
     pub fn search<S: Simd>(&mut self, simd: S, indices: &[usize], metric: Metric, effort: Effort) {
-        match (metric, effort) {
-            (Metric::Direction, effort) => self.search_directions(simd, indices, effort),
-            (_, Effort::Fast) => self.search_colours_fast(simd, indices, &metric.scale()),
-            (_, Effort::Best) => self.search_colours_best(simd, indices, &metric.scale()),
+        if metric == Metric::Direction {
+            return self.search_directions(simd, indices, effort);
+        }
+        let (opaque, with_alpha): (Vec<_>, Vec<_>) = indices.iter().copied().partition(|&k| is_opaque(&self.texels[k]));
+        match effort {
+            Effort::Fast => self.search_colours_fast(simd, &opaque, &metric.scale()),
+            Effort::Best => self.search_colours_best(simd, &opaque, &metric.scale()),
+        }
+        // Only `Metric::Rgba` keeps alpha.
+        if !with_alpha.is_empty() {
+            self.search_alpha(simd, &with_alpha, effort);
         }
     }
 
@@ -222,8 +229,26 @@ impl Row {
             simd,
             indices,
             #[inline(always)]
-            |blocks, group| blocks.polish(simd, &colours(simd, group.texels, scale), scale, 2),
+            |blocks, group| blocks.polish::<3, 2>(simd, &colours(simd, group.texels, scale), scale, 2),
         );
+    }
+
+    /// Searches blocks of colours with alpha.
+    #[inline(always)]
+    fn search_alpha<S: Simd>(&mut self, simd: S, indices: &[usize], effort: Effort) {
+        self.replace_by_groups(
+            indices,
+            #[inline(always)]
+            |group, _| alpha::best_rgba(simd, &channels(simd, group.texels), effort),
+        );
+        if effort == Effort::Best {
+            self.change_by_kind(
+                simd,
+                indices,
+                #[inline(always)]
+                |blocks, group| blocks.polish::<4, 3>(simd, &channels(simd, group.texels), &[1.0; 4], 2),
+            );
+        }
     }
 
     /// Replaces the blocks at `indices` by those that `make` makes from the texels of a group. `make` also returns `N`
@@ -316,6 +341,11 @@ impl Row {
 /// with its last member.
 pub(crate) fn groups(indices: &[usize]) -> impl Iterator<Item = (&[usize], [usize; LANES])> {
     indices.chunks(LANES).map(|group| (group, std::array::from_fn(|j| group[j.min(group.len() - 1)])))
+}
+
+/// Returns whether alpha is 255 in all texels.
+fn is_opaque(texels: &Texels) -> bool {
+    texels.iter().all(|texel| texel[3] == 255)
 }
 
 /// Returns whether red and blue are constant.

@@ -107,17 +107,17 @@ pub(crate) static MODE_6: Mode = Mode { planes: 2, ..rgb(6, (0x1b, 5), 2, &RANGE
 /// Mode 7: RGB, two subsets of 4 weights, in patterns of its own.
 static MODE_7: Mode = Mode { subsets: 2, patterns: &MODE_7_PATTERNS, ..rgb(7, (0x7, 5), 2, &RANGE_40) };
 /// Mode 9: RGBA, two subsets of 4 weights.
-static MODE_9: Mode = Mode { subsets: 2, ..rgba(9, (0xf, 5), 2, &RANGE_16, true) };
+pub(crate) static MODE_9: Mode = Mode { subsets: 2, ..rgba(9, (0xf, 5), 2, &RANGE_16, true) };
 /// Mode 10: RGBA, 16 weights.
-static MODE_10: Mode = rgba(10, (0x2, 3), 4, &RANGE_48, false);
+pub(crate) static MODE_10: Mode = rgba(10, (0x2, 3), 4, &RANGE_48, false);
 /// Mode 11: RGBA, two planes of 4 weights.
-static MODE_11: Mode = Mode { planes: 2, ..rgba(11, (0x0, 2), 2, &RANGE_48, false) };
+pub(crate) static MODE_11: Mode = Mode { planes: 2, ..rgba(11, (0x0, 2), 2, &RANGE_48, false) };
 /// Mode 12: RGBA, 8 weights.
-static MODE_12: Mode = rgba(12, (0x6, 3), 3, &RANGE_192, false);
+pub(crate) static MODE_12: Mode = rgba(12, (0x6, 3), 3, &RANGE_192, false);
 /// Mode 13: RGBA, two planes of 2 weights, exact endpoints.
-static MODE_13: Mode = Mode { planes: 2, ..rgba(13, (0x1f, 5), 1, &RANGE_256, true) };
+pub(crate) static MODE_13: Mode = Mode { planes: 2, ..rgba(13, (0x1f, 5), 1, &RANGE_256, true) };
 /// Mode 14: RGBA, 4 weights, exact endpoints.
-static MODE_14: Mode = rgba(14, (0xd, 5), 2, &RANGE_256, true);
+pub(crate) static MODE_14: Mode = rgba(14, (0xd, 5), 2, &RANGE_256, true);
 /// Mode 15: grey and alpha, 16 weights, exact endpoints.
 pub(crate) static MODE_15: Mode = Mode { channels: 2, ..rgb(15, (0x5, 7), 4, &RANGE_256) };
 /// Mode 16: grey and alpha, two subsets of 4 weights, exact endpoints.

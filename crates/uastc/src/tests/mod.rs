@@ -1,6 +1,7 @@
 //! Tests of the encoder and the decoder against independent decoders: `basisu` for UASTC and for transcoding, and
 //! `texture2ddecoder` for the transcoded blocks.
 
+mod alpha;
 mod decode;
 mod direction;
 mod hints;
@@ -165,4 +166,4 @@ pub(super) fn green(spread: u64) -> impl Iterator<Item = Texels> {
 pub(super) const EFFORTS: [Effort; 2] = [Effort::Fast, Effort::Best];
 /// A metric in which green outweighs red and blue, as for roughness in ORM maps.
 pub(super) const SURFACE: Metric = Metric::Weighted([Weight::Quarter, Weight::Full, Weight::Quarter]);
-pub(super) const METRICS: [Metric; 3] = [Metric::Rgb, SURFACE, Metric::Direction];
+pub(super) const METRICS: [Metric; 4] = [Metric::Rgb, Metric::Rgba, SURFACE, Metric::Direction];
