@@ -78,7 +78,7 @@ fn measured(blocks: Vec<u8>, texels: &Texels<'_>, effort: Effort) -> Result<(usi
     let levels = vec![StoredLevel::new(blocks, format, effort)?];
     let file = Ktx2Writer { format, width, height, levels, keys: &[] }.into_bytes()?;
     let decoded = Ktx2::parse(&file)?.decode_level(0)?;
-    let source = texels.to_rgba8();
+    let source = texels.to_rgba8(false);
     let mut error = 0.0;
     for (k, texel) in source.chunks_exact(4).enumerate() {
         for (c, &level) in texel[..3].iter().enumerate() {

@@ -14,6 +14,8 @@ export interface Settings {
   quality?: 'fast' | 'best';
   /** Signal-to-noise ratio in dB, above 0 and up to 6, that each level may lose for fewer bytes. Default: none. */
   rdo?: number;
+  /** Most texels along a side of a written texture, at least 4. Default: none, the size of the images. */
+  maxSize?: number;
   /** Assumed distribution of the slopes under a texel. Default: auto, which measures it. */
   distribution?: 'auto' | 'normal' | 'uniform';
   /** The lobe that the engine shades with. Default: ggx. */
@@ -26,6 +28,8 @@ export interface Settings {
   provenance?: boolean;
   /** Preset of `target`, `gltf`, `model` and `maxModel` for an engine; explicit settings win over it. */
   engine?: 'three' | 'babylon' | 'playcanvas' | 'filament' | 'bevy' | 'godot';
+  /** Which textures are written: those that the bake changes, or base colour and others, too. Default: bumps. */
+  textures?: 'bumps' | 'all';
   /** How the document refers to textures. Default: auto, which is strict in a .glb and fallback in a .gltf. */
   gltf?: 'auto' | 'fallback' | 'strict' | 'dual';
   /** Whether a .glb with everything inside is written. Default: the container of the input. */

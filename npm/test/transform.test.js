@@ -115,6 +115,7 @@ test('the transform writes what a bake of the document writes', options, async (
     ['waves/waves.glb', { profile: 'both' }],
     ['knobs/knobs.gltf', { profile: 'portable' }],
     ['brushed/brushed.gltf', { profile: 'both', frame: 'natural' }],
+    ['brushed/brushed.gltf', { textures: 'all', maxSize: 64 }],
   ]) {
     // Provenance names the images of the source document, which are those of another document in the transform.
     const all = { ...settings, provenance: false };

@@ -67,7 +67,7 @@ fn check_normals(format: PayloadFormat, normal: impl Fn(u32, u32, u32) -> [f64; 
     let file = texture(format, Metric::Direction, &keys, texel);
     let mut findings = Findings::new("normal.ktx2");
     let scope = Scope { is_deep: true, ..Scope::default() };
-    check_texture(&file, Usage { by_basisu: false, normals: true }, &scope, &mut findings);
+    check_texture(&file, Usage { normals: true, ..Usage::default() }, &scope, &mut findings);
     findings.into_list()
 }
 

@@ -175,7 +175,7 @@ fn check_to(is_deep: bool, file: &[u8]) -> Vec<(Code, String)> {
     let mut findings = Findings::new("file.ktx2");
     let min_version = Version::new(0, 0, 5);
     let scope = Scope { is_deep, min_version: Some(&min_version), ..Scope::default() };
-    check_texture(file, Usage { by_basisu: true, normals: false }, &scope, &mut findings);
+    check_texture(file, Usage { by_basisu: true, ..Usage::default() }, &scope, &mut findings);
     findings.into_list().into_iter().map(|f| (f.code, f.place)).collect()
 }
 
@@ -183,6 +183,31 @@ fn check_to(is_deep: bool, file: &[u8]) -> Vec<(Code, String)> {
 fn whole_textures_are_clean() {
     assert_eq!(check(&UASTC), []);
     assert_eq!(check(&normals([0.5, 0.5, 1.0, 1.0], PayloadFormat::UastcRgb)), []);
+}
+
+#[test]
+fn colours_are_srgb_and_may_have_alpha() {
+    for format in [PayloadFormat::UastcSrgb, PayloadFormat::UastcSrgbAlpha] {
+        let of = |content: &str| {
+            let level = |size| {
+                let row = |_: u32, out: &mut [[f32; 4]]| out.fill([0.2, 0.4, 0.6, 0.5]);
+                let texels = Texels { width: size, height: size, row: &row, lobes: None };
+                encode(&texels, format, Metric::Rgba, Effort::Fast).unwrap()
+            };
+            let provenance = Provenance { content: content.into(), ..provenance() };
+            check(&write(format, 4, &[level(4), level(2), level(1)], &provenance.keys()))
+        };
+        assert_eq!(of("colour"), []);
+        let found: Vec<Code> = of("linear").into_iter().map(|(code, _)| code).collect();
+        let has_alpha = format == PayloadFormat::UastcSrgbAlpha;
+        let expected = [Code::Transfer, Code::Primaries].into_iter().chain(has_alpha.then_some(Code::Channels));
+        assert_eq!(found, expected.collect::<Vec<_>>());
+    }
+    let linear = Provenance { content: "colour".into(), ..provenance() };
+    let level = |size: u32| vec![0; 16 * size.div_ceil(4).pow(2) as usize];
+    let file = write(PayloadFormat::UastcRgb, 4, &[level(4), level(2), level(1)], &linear.keys());
+    let found: Vec<Code> = check_to(false, &file).into_iter().map(|(code, _)| code).collect();
+    assert_eq!(found, [Code::Transfer, Code::Primaries]);
 }
 
 #[test]

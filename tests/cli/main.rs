@@ -13,6 +13,7 @@ mod fixtures;
 mod goldens;
 mod merge;
 mod notes;
+mod plain_textures;
 mod plan;
 mod process;
 #[path = "../common/random.rs"]

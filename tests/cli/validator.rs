@@ -62,6 +62,12 @@ fn defaults_and_presets_are_valid() {
 }
 
 #[test]
+fn all_textures_and_smaller_ones_are_valid() {
+    assert_valid(&["--textures", "all"]);
+    assert_valid(&["--textures", "all", "--max-size", "8", "--gltf", "strict", "--glb"]);
+}
+
+#[test]
 fn trimmed_textures_are_valid() {
     let view = ["--nearest", "400", "--screen-height", "1080", "--trim", "--profile", "both"];
     assert_valid(&view);

@@ -290,6 +290,10 @@ pub enum Content {
     Factor,
     /// The standard deviation lambda_1.
     Lambda1,
+    /// sRGB colours, with alpha if materials blend or mask by it.
+    Colour,
+    /// Linear values of a texture that the bake does not change, such as occlusion.
+    Linear,
 }
 
 impl Content {
@@ -302,6 +306,8 @@ impl Content {
             Self::Offset => "offset",
             Self::Factor => "factor",
             Self::Lambda1 => "lambda1",
+            Self::Colour => "colour",
+            Self::Linear => "linear",
         }
     }
 }

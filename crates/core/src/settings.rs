@@ -93,6 +93,22 @@ pub enum MaxModel {
     Anisotropic,
 }
 
+/// Which textures of materials are written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum Textures {
+    /// Those that the bake changes: normals, roughness and anisotropy. All other images stay as they are.
+    #[default]
+    #[cfg_attr(feature = "cli", value(help = "Those that the bake changes; all other images stay as they are"))]
+    Bumps,
+    /// Base colour, emissive, occlusion, metalness with roughness, clearcoat, transmission, thickness and iridescence,
+    /// too.
+    #[cfg_attr(feature = "cli", value(help = "Base colour, emissive, occlusion and other maps, too"))]
+    All,
+}
+
 /// How the document refers to textures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
@@ -146,6 +162,12 @@ pub struct Settings {
     /// How much signal-to-noise ratio, in dB, each level of [`Target::Basis`] may lose for fewer bytes: above 0, up to
     /// 6. `None` leaves the blocks as they are.
     pub rdo: Option<f64>,
+    /// Which textures of materials are written. [`Textures::All`] needs [`Target::Basis`], the only payload with sRGB
+    /// colours.
+    pub textures: Textures,
+    /// The most texels that a side of a written texture has, at least 4: level 0 is the first level within this size.
+    /// `None` keeps the size of the images.
+    pub max_size: Option<u32>,
     /// How the document refers to textures.
     pub gltf: Form,
     /// Whether a .glb with everything inside is written, or a .gltf with external files. `None` keeps the container of
@@ -179,6 +201,8 @@ impl Default for Settings {
             target: Target::default(),
             quality: Effort::Fast,
             rdo: None,
+            textures: Textures::default(),
+            max_size: None,
             gltf: Form::default(),
             glb: None,
             scale_normals: false,
@@ -213,6 +237,7 @@ impl Settings {
         with_lobe: lobe, Family;
         with_target: target, Target;
         with_quality: quality, Effort;
+        with_textures: textures, Textures;
         with_gltf: gltf, Form;
         with_scale_normals: scale_normals, bool;
         with_max_texels: max_texels, u64;
@@ -242,6 +267,15 @@ impl Settings {
     /// [`SettingsError::Range`] for a value that is out of range.
     pub fn with_rdo(self, rdo: f64) -> Result<Self, SettingsError> {
         Ok(Self { rdo: Some(limit::RDO.check(rdo)?), ..self })
+    }
+
+    /// Sets [`Settings::max_size`].
+    ///
+    /// # Errors
+    /// [`SettingsError::Range`] for a value that is out of range.
+    pub fn with_max_size(self, max_size: u32) -> Result<Self, SettingsError> {
+        limit::MAX_SIZE.check(f64::from(max_size))?;
+        Ok(Self { max_size: Some(max_size), ..self })
     }
 
     /// Sets [`Settings::frame`].
@@ -279,8 +313,12 @@ impl Settings {
         if self.glb == Some(true) && self.gltf == Form::Dual {
             return Err(SettingsError::DualInGlb);
         }
+        if self.textures == Textures::All && self.target != Target::Basis {
+            return Err(SettingsError::ColoursWithoutBasis { target: self.target });
+        }
         limit::MAX_ERROR.check(f64::from(self.max_error))?;
         self.rdo.map(|loss| limit::RDO.check(loss)).transpose()?;
+        self.max_size.map(|size| limit::MAX_SIZE.check(f64::from(size))).transpose()?;
         self.height_scale.map(|scale| limit::HEIGHT_SCALE.check(f64::from(scale))).transpose()?;
         check_frame(self.frame)?;
         self.view.map_or(Ok(()), |view| view.validate())

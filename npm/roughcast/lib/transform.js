@@ -24,7 +24,7 @@ export function roughcast({ backend, onProgress, onReport, ...settings } = {}) {
     const source = await io.writeBinary(partToBake(document, needsMeshes(settings)));
     // glTF-Transform knows one image for each texture, which is the KTX2: a fallback beside it would be lost.
     const result = await bake(source, { settings: { ...settings, gltf: 'strict', glb: true }, backend, onProgress });
-    replaceMaterials(document, await io.readBinary(result.document.bytes), result.report);
+    replaceMaterials(document, await io.readBinary(result.document.bytes), result.report, settings);
     log(document.getLogger(), result.report);
     onReport?.(result.report);
   }
@@ -58,12 +58,16 @@ function leaveOutHeightTexture(material, logger) {
   logger.warn(`roughcast: ${material.getName()}: ${why}. Bake the file with the command line or bake() instead.`);
 }
 
-/** Makes the materials of `document` those of `baked`, which has the same materials in the same order. */
-function replaceMaterials(document, baked, report) {
+/**
+ * Makes the materials of `document` those of `baked`, which has the same materials in the same order. Without bumps a
+ * material changes only if all textures are written.
+ */
+function replaceMaterials(document, baked, report, { textures }) {
   addExtensions(document, baked);
   const before = new Set(document.getRoot().listTextures());
   const counterpart = copier(document, sameTextures(before, baked.getRoot().listTextures()));
-  const changed = new Set(report.layers.filter((layer) => layer.model !== undefined).map((layer) => layer.index));
+  const isChanged = (layer) => textures === 'all' || layer.model !== undefined;
+  const changed = new Set(report.layers.filter(isChanged).map((layer) => layer.index));
   for (const index of changed) {
     const material = document.getRoot().listMaterials()[index];
     const [extras, extensions] = [material.getExtras(), material.listExtensions()];

@@ -10,7 +10,7 @@ use crate::codec::Target;
 use crate::codec::uastc::Effort;
 use crate::lobe::Distribution;
 use crate::project::{Engine, Values};
-use crate::settings::{Form, Limit, MaxModel, Model, Profile, Settings, limit};
+use crate::settings::{Form, Limit, MaxModel, Model, Profile, Settings, Textures, limit};
 
 /// How textures are baked and encoded.
 #[derive(Debug, Args)]
@@ -39,6 +39,10 @@ pub struct TextureOptions {
     /// Payload: UASTC for every engine, BC4/BC5/BC7, or half floats. [default: basis]
     #[arg(long, value_enum)]
     target: Option<Target>,
+    /// Most texels along a side of a written texture, at least 4: level 0 is the first level within this size. Coarser
+    /// levels of bumps know their roughness, so nothing of it is lost. For example --max-size 1024.
+    #[arg(long, value_parser = side, value_name = "N")]
+    max_size: Option<u32>,
     /// Largest number of texels of an input image. [default: 268435456]
     #[arg(long, value_name = "N")]
     max_texels: Option<u64>,
@@ -51,6 +55,10 @@ pub struct TextureOptions {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "glTF options")]
 pub struct DocumentOptions {
+    /// Which textures are written as KTX2. For example --textures all --rdo 0.5, so that no other tool is needed for base
+    /// colour, emissive and occlusion. [default: bumps]
+    #[arg(long, value_enum)]
+    textures: Option<Textures>,
     /// How textures are referenced. A PNG copy of each is for engines without KTX2: beside a .gltf they load one of the
     /// two, but a .glb would make every engine load both. [default: auto, or what --engine needs]
     #[arg(long, value_enum)]
@@ -93,6 +101,7 @@ impl TextureOptions {
             rdo: self.rdo,
             distribution: self.distribution,
             target: self.target,
+            max_size: self.max_size,
             max_texels: self.max_texels,
             provenance: self.no_provenance.then_some(false),
             ..Values::default()
@@ -110,6 +119,7 @@ impl DocumentOptions {
     /// Returns `values` with the explicit values of these options.
     pub fn values(&self, values: Values) -> Values {
         Values {
+            textures: self.textures,
             gltf: self.gltf,
             engine: self.engine,
             max_model: self.max_model,
@@ -148,6 +158,11 @@ pub fn finite(text: &str) -> Result<f32, String> {
 fn unit_interval_f64(text: &str) -> Result<f64, String> {
     unit_interval(text)?;
     finite_f64(text)
+}
+
+fn side(text: &str) -> Result<u32, String> {
+    let side: u32 = text.parse().map_err(|_| format!("expected a number of texels, found {text:?}"))?;
+    within(&limit::MAX_SIZE, side)
 }
 
 fn decibels(text: &str) -> Result<f64, String> {

@@ -80,7 +80,12 @@ impl<'a> Assembly<'a> {
         })
     }
 
-    /// Adds the textures and layers of a bump map.
+    /// Returns JSON pointers of the references that have a new texture.
+    pub fn taken_slots(&self) -> BTreeSet<&str> {
+        self.textures.iter().flat_map(|texture| &texture.slots).map(|slot| slot.pointer.as_str()).collect()
+    }
+
+    /// Adds the textures and layers of a bump map, or a texture that belongs to none.
     pub fn add(&mut self, output: GroupOutput) -> Result<(), BakeError> {
         let first = self.textures.len();
         for (texture, ktx2) in ktx2_files(output.textures, self.settings)? {

@@ -12,6 +12,7 @@ use super::geometry::Geometry;
 use super::group::group_by_bump_map;
 use super::output_document;
 use super::output_sizes::output_sizes;
+use super::plain_textures::group_plain_textures;
 use super::reader::Reader;
 use super::source::{Source, SourceError};
 use crate::gltf::document::{Container, check_version};
@@ -19,9 +20,9 @@ use crate::gltf::material::materials;
 use crate::report::{AssetReport, LayerReport};
 use crate::settings::Settings;
 
-/// Bakes every material of `source` that has bumps. `advance` is called after each bump map with the share of the work
-/// that is done. An asset without bumps is returned byte for byte, unless another container is asked
-/// for.
+/// Bakes every material of `source` that has bumps, and encodes other textures if `settings` ask for them. `advance` is
+/// called after each bump map and texture with the share of the work that is done. An asset without new textures is
+/// returned byte for byte, unless another container is asked for.
 ///
 /// # Errors
 /// [`BakeError`] for the first fault of the asset.
@@ -38,14 +39,22 @@ pub fn bake_asset(source: &Source<'_>, settings: &Settings, advance: &dyn Fn(f32
     let flat: Vec<LayerReport> = materials.iter().filter(|m| m.layers.is_empty()).map(LayerReport::flat).collect();
     // Step 2: group the layers by bump map.
     let groups = group_by_bump_map(&root, materials, settings, &geometry)?;
+    let plain = group_plain_textures(&root, settings)?;
     let mut assembly = Assembly::new(&reader, settings)?;
-    if groups.is_empty() && container == source.document.container() {
+    if groups.is_empty() && plain.is_empty() && container == source.document.container() {
         return unchanged(source, flat);
     }
     // Steps 3 to 8 for each bump map; step 9, the assembly, takes each as it comes.
+    let steps = (groups.len() + plain.len()) as f32;
     for (done, group) in groups.iter().enumerate() {
         assembly.add(bake_group(group, &reader, &geometry, settings)?)?;
-        advance((done + 1) as f32 / groups.len() as f32);
+        advance((done + 1) as f32 / steps);
+    }
+    for (done, texture) in plain.into_iter().enumerate() {
+        if let Some(output) = texture.bake(&assembly.taken_slots(), &reader, settings)? {
+            assembly.add(output)?;
+        }
+        advance((groups.len() + done + 1) as f32 / steps);
     }
     assembly.finish(flat)
 }

@@ -16,7 +16,7 @@ use super::pyramid::PyramidInput;
 use super::reader::Reader;
 use super::reflectance::ReflectanceInput;
 use crate::gltf::texel_size::NoDensity;
-use crate::material::notes;
+use crate::material::{first_within, notes};
 use crate::note::{self, Note, Unread};
 use crate::settings::{Finest, Settings};
 
@@ -128,15 +128,20 @@ impl GroupBake<'_> {
         self.geometry.finest(layer.material, &layer.layer.bumps.texture().mapping, size)
     }
 
-    /// Returns the finest level that the view can sample of a map of `size` on any of `layers`; 0 if that is not known.
+    /// Returns the finest level that is sampled of a map of `size` on any of `layers`: the view cannot sample finer
+    /// levels, or they are larger than textures may be.
     fn finest_level<'l>(&self, layers: impl IntoIterator<Item = &'l GroupLayer>, size: (u32, u32)) -> usize {
         let level = |layer: &GroupLayer| self.finest(layer, size).and_then(Result::ok).map_or(0, |finest| finest.level);
-        layers.into_iter().map(level).min().unwrap_or(0)
+        layers.into_iter().map(level).min().unwrap_or(0).max(first_within(self.settings, size))
     }
 
     /// Returns the finest level that is written of such a map.
     fn first_level<'l>(&self, layers: impl IntoIterator<Item = &'l GroupLayer>, size: (u32, u32)) -> usize {
-        if self.settings.view.is_some_and(|view| view.trim) { self.finest_level(layers, size) } else { 0 }
+        if self.settings.view.is_some_and(|view| view.trim) {
+            self.finest_level(layers, size)
+        } else {
+            first_within(self.settings, size)
+        }
     }
 
     /// Returns the finest level that the view can sample of `layer`, and the notes that are known before any lobe is

@@ -72,7 +72,20 @@ impl<'a> Images<'a> {
     /// Decodes the image of `texture`, which `material` uses for a base lobe or its reflectance.
     pub fn colours(&self, texture: &TextureSource, material: &str) -> Result<Image, ImageError> {
         let file = self.file(texture, material)?;
-        let image = self.decoded(&file, texture, material, decode_colours)?;
+        self.decoded_colours(&file, texture, material)
+    }
+
+    /// Decodes the image of `texture`, which `material` uses and the bake does not change. Returns `None` for a KTX2.
+    pub fn colours_unless_ktx2(&self, texture: &TextureSource, material: &str) -> Result<Option<Image>, ImageError> {
+        let file = self.file(texture, material)?;
+        if file.starts_with(&::ktx2::MAGIC) {
+            return Ok(None);
+        }
+        self.decoded_colours(&file, texture, material).map(Some)
+    }
+
+    fn decoded_colours(&self, file: &[u8], texture: &TextureSource, material: &str) -> Result<Image, ImageError> {
+        let image = self.decoded(file, texture, material, decode_colours)?;
         image.into_finite_colours().map_err(|error| ImageError::Map {
             material: material.to_owned(),
             texture: describe(&texture.location),

@@ -13,6 +13,8 @@
 //! | 8 | `products`, `pyramid`, `encode` | rows of values | encoded levels, KTX2 files |
 //! | 9 | `assemble` | textures | the document, its files, a report |
 //!
+//! Textures that the bake does not change take steps 3 and 7 to 9 in `plain_textures`.
+//!
 //! [`bake_asset`] runs all steps. [`bake_map`] runs steps 4 to 8 of a material of one map; both go through
 //! `bake_bump_map`, which bakes the layers of one bump map by `bake_layer`.
 
@@ -39,6 +41,7 @@ mod new_file;
 mod offsets;
 mod output_document;
 mod output_sizes;
+mod plain_textures;
 mod planned_files;
 mod products;
 mod provenance;

@@ -9,6 +9,8 @@ use super::output_document;
 use crate::gltf::document::{Container, Document, check_version};
 use crate::gltf::json::Json;
 use crate::gltf::material::materials;
+use crate::gltf::plain_textures::plain_textures;
+use crate::settings::Textures;
 
 /// The facts of a document that are known before its bake.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,12 +19,22 @@ pub struct PlannedFiles {
     pub files: Vec<PathBuf>,
     /// Files that buffers name. The output names them, too, unless it is a .glb.
     pub buffers: Vec<PathBuf>,
-    /// Whether a material has bumps. A document without bumps is returned unchanged if it keeps its container.
+    /// Whether a material has bumps.
     pub has_bumps: bool,
+    /// Whether a material has a texture that only [`Textures::All`] writes.
+    pub has_plain_textures: bool,
     /// The container of the document.
     pub container: Container,
     /// Whether a buffer of the document is the BIN chunk of a .glb, which becomes a file beside a .gltf.
     pub has_bin: bool,
+}
+
+impl PlannedFiles {
+    /// Returns whether a bake may write textures. A document without new textures is returned unchanged if it keeps its
+    /// container.
+    pub fn may_write_textures(&self, textures: Textures) -> bool {
+        self.has_bumps || textures == Textures::All && self.has_plain_textures
+    }
 }
 
 /// Returns the facts of `document`.
@@ -38,6 +50,7 @@ pub fn planned_files(document: &Document) -> Result<PlannedFiles, BakeError> {
         files: output_document::files(json)?,
         buffers: output_document::buffer_files(json)?,
         has_bumps: materials.iter().any(|material| !material.layers.is_empty()),
+        has_plain_textures: !plain_textures(&root).is_empty(),
         container: document.container(),
         has_bin: document.buffer_0().is_some(),
     })

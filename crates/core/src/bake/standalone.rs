@@ -11,7 +11,7 @@ use crate::bake::products::EncodedTexture;
 use crate::bake::pyramid::PyramidInput;
 use crate::bump::Frame;
 use crate::image::Image;
-use crate::material::{BumpMap, FrameTransforms, notes};
+use crate::material::{BumpMap, FrameTransforms, first_within, notes};
 use crate::mip::{Magnification, Sampler};
 use crate::note::Note;
 use crate::report::Choice;
@@ -52,7 +52,8 @@ pub fn bake_map(
     let map = MapOffsets::new(bump_map, settings, sampler)?;
     let mut notes = notes::of_bump_map(bump_map, map.bumps.size());
     let layer = std::iter::once_with(|| layer_input(&map, base_roughness));
-    let BumpMapProducts { normals, layers, pyramid } = bake_bump_map(&map, 0, layer, || vec![tangent_frame()])?;
+    let first = first_within(settings, map.bumps.size());
+    let BumpMapProducts { normals, layers, pyramid } = bake_bump_map(&map, first, layer, || vec![tangent_frame()])?;
     let (mut textures, mut model, mut choice) = (Vec::from_iter(normals), Model::None, None);
     for layer in layers {
         notes.extend(layer.notes);
@@ -64,7 +65,7 @@ pub fn bake_map(
     Ok(EncodedMap { textures, model, choice, notes })
 }
 
-/// Returns the only layer of a standalone map, all of whose levels can be sampled.
+/// Returns the only layer of a standalone map, all of whose written levels can be sampled.
 fn layer_input<'a>(
     map: &MapOffsets<'_>,
     base_roughness: Option<&'a BaseRoughness>,
@@ -76,15 +77,17 @@ fn layer_input<'a>(
         reflectance: None,
         wrap: map.sampler.wrap,
     };
+    let size = input.grid(map.settings, Some(map.bump_map))?;
+    let first = first_within(map.settings, size);
     Ok(LayerInput {
-        size: input.grid(map.settings, Some(map.bump_map))?,
+        size,
         base: PreparedBase { input, levels: None, note: None },
         can_be_roughened: base_roughness.is_some(),
         slope_scale: 1.0,
         is_in_pyramid: base_roughness.is_some(),
         max_model: map.settings.model_limit(),
-        finest: 0,
-        first: 0,
+        finest: first,
+        first,
     })
 }
 

@@ -16,7 +16,7 @@ pub fn encode(texels: &Texels<'_>, format: PayloadFormat, effort: Effort) -> Res
     let (width, height) = (texels.width, texels.height);
     let failed = |reason: String| EncodeError::Encoder { format, width, height, reason };
     let vulkan = format.vulkan().ok_or_else(|| failed("not a BC format".into()))?;
-    let rgba = texels.to_rgba8();
+    let rgba = texels.to_rgba8(false);
     let surface = SurfaceRef { data: &rgba, width, height, depth: 1, stride: width * 4, slice_stride: 0 };
     let image = ImageRef {
         surfaces: vec![vec![surface]],

@@ -22,7 +22,7 @@ pub const ORM: Metric = Metric::Weighted([Weight::Quarter, Weight::Full, Weight:
 /// [`EncodeError::Encoder`].
 pub(super) fn uastc_blocks(
     texels: &Texels<'_>,
-    _: PayloadFormat,
+    format: PayloadFormat,
     metric: Metric,
     effort: Effort,
 ) -> Result<Vec<u8>, EncodeError> {
@@ -37,7 +37,7 @@ pub(super) fn uastc_blocks(
             // Blocks below the last row repeat it.
             let y = (first + i as u32).min(texels.height - 1);
             (texels.row)(y, values);
-            dispatch!(instructions, _simd => unorm8_row(values, line.as_flattened_mut()));
+            dispatch!(instructions, _simd => unorm8_row(values, format.has_alpha(), line.as_flattened_mut()));
             if let Some(row) = texels.lobes {
                 row(y, &mut lobes[width * i..width * (i + 1)]);
             }
@@ -125,7 +125,8 @@ pub(super) fn bc(_: &Texels<'_>, _: PayloadFormat, _: Metric, _: Effort) -> Resu
 /// # Errors
 /// [`EncodeError::Encoder`] if `blocks` are not those of a level of that size.
 pub fn lower_rate(blocks: &mut [u8], texels: &Texels<'_>, metric: Metric, loss: f64) -> Result<(), EncodeError> {
-    let rgba = texels.to_rgba8();
+    // Only opaque blocks are rewritten.
+    let rgba = texels.to_rgba8(false);
     let image = Image::new(&rgba, texels.width, texels.height).map_err(|e| refused(texels, &e))?;
     let blocks = blocks.as_chunks_mut::<BLOCK_BYTES>().0;
     uastc::lower_rate(blocks, &image, metric, loss).map_err(|e| refused(texels, &e))

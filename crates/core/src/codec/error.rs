@@ -1,6 +1,6 @@
 //! Why a level cannot be encoded.
 
-use crate::codec::format::PayloadFormat;
+use crate::codec::format::{PayloadFormat, Target};
 use crate::memory::OutOfMemory;
 
 /// Why a level cannot be encoded.
@@ -12,6 +12,12 @@ pub enum EncodeError {
         "target `bc` needs the block encoders of cargo feature `bc`, found a build without it; install with `--features bc`"
     )]
     WithoutBc,
+    /// The target has no format for sRGB colours.
+    #[error("expected a target that holds sRGB colours, found `{}`; use `--target basis`", target.name())]
+    WithoutColours {
+        /// The target.
+        target: Target,
+    },
     /// The block encoder failed.
     #[error("the {format:?} encoder failed on a level of {width} x {height}: {reason}; try another target")]
     Encoder {

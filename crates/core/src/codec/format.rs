@@ -18,12 +18,27 @@ pub enum Target {
     Float,
 }
 
-/// How texels are stored. All formats hold linear data, never sRGB.
+impl Target {
+    /// Returns the name, as the command line has it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Basis => "basis",
+            Self::Bc => "bc",
+            Self::Float => "float",
+        }
+    }
+}
+
+/// How texels are stored. Formats hold linear data, unless their names say sRGB.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum PayloadFormat {
     /// UASTC LDR 4x4, opaque RGB.
     UastcRgb,
+    /// UASTC LDR 4x4, opaque sRGB colours.
+    UastcSrgb,
+    /// UASTC LDR 4x4, sRGB colours with straight alpha.
+    UastcSrgbAlpha,
     /// One channel, 8 bytes per 4x4 block.
     Bc4,
     /// Two channels, 16 bytes per 4x4 block.

@@ -25,10 +25,11 @@ pub struct Texels<'a> {
 }
 
 impl Texels<'_> {
-    /// Returns the texels as opaque RGBA8. Values are clamped to [0, 1] and rounded to the nearest step, ties to even.
-    pub fn to_rgba8(&self) -> Vec<u8> {
+    /// Returns the texels as RGBA8, which is opaque unless they have alpha. Values are clamped to [0, 1] and rounded to
+    /// the nearest step, ties to even.
+    pub fn to_rgba8(&self, has_alpha: bool) -> Vec<u8> {
         self.convert(4, |texels, out: &mut [u8]| {
-            dispatch!(Level::new(), _simd => unorm8_row(texels, out));
+            dispatch!(Level::new(), _simd => unorm8_row(texels, has_alpha, out));
         })
     }
 
@@ -81,14 +82,16 @@ fn unorm8(value: f32) -> u8 {
     (value.max(0.0).min(1.0) * 255.0 + WHOLE).to_bits() as u8
 }
 
-/// Writes texels as opaque RGBA8.
+/// Writes texels as RGBA8, which is opaque unless they have alpha.
 #[inline(always)]
-pub(super) fn unorm8_row(texels: &[[f32; 4]], out: &mut [u8]) {
+pub(super) fn unorm8_row(texels: &[[f32; 4]], has_alpha: bool, out: &mut [u8]) {
     for (byte, value) in out.iter_mut().zip(texels.as_flattened()) {
         *byte = unorm8(*value);
     }
-    for texel in out.as_chunks_mut::<4>().0 {
-        texel[3] = 255;
+    if !has_alpha {
+        for texel in out.as_chunks_mut::<4>().0 {
+            texel[3] = 255;
+        }
     }
 }
 

@@ -4,7 +4,7 @@
 use std::num::NonZeroU8;
 
 use ktx2::dfd::{Basic, ChannelTypeQualifiers, DataFormatFlags, SampleInformation};
-use ktx2::{ColorModel, TransferFunction};
+use ktx2::{ColorModel, ColorPrimaries, TransferFunction};
 
 use crate::codec::encode::{bc, half, lower_rate, uastc_blocks};
 use crate::codec::error::EncodeError;
@@ -32,6 +32,8 @@ pub struct Codec {
     pub holds_normals: bool,
     /// How a KTX2 file names it.
     pub identity: Identity,
+    /// Whether values are sRGB colours, whose alpha is linear.
+    pub is_srgb: bool,
     /// The Vulkan format of the same blocks with sRGB colours, which other writers use.
     pub srgb: Option<ktx2::Format>,
     /// Columns and rows of a texel block; 1 if there are no blocks.
@@ -59,21 +61,22 @@ pub enum Identity {
 }
 
 /// All formats. Those of a target are in the order of their channels.
-static TABLE: [Codec; 7] = [
+static TABLE: [Codec; 9] = [
+    UASTC,
     Codec {
-        format: PayloadFormat::UastcRgb,
-        target: Target::Basis,
-        channels: 3,
-        holds_normals: true,
-        identity: Identity::Transcodable(uastc_rgb),
-        srgb: None,
-        block_edge: 4,
-        block_bytes: 16,
-        is_normalised: true,
-        is_supercompressed: true,
-        rounding: Rounding::UASTC,
-        lower_rate: Some(lower_rate),
-        encode: uastc_blocks,
+        format: PayloadFormat::UastcSrgb,
+        holds_normals: false,
+        is_srgb: true,
+        identity: Identity::Transcodable(uastc_srgb),
+        ..UASTC
+    },
+    Codec {
+        format: PayloadFormat::UastcSrgbAlpha,
+        channels: 4,
+        holds_normals: false,
+        is_srgb: true,
+        identity: Identity::Transcodable(uastc_srgb_alpha),
+        ..UASTC
     },
     Codec {
         format: PayloadFormat::Bc4,
@@ -115,6 +118,24 @@ static TABLE: [Codec; 7] = [
     FLOAT,
 ];
 
+/// Opaque UASTC, with the facts that all formats of [`Target::Basis`] share.
+const UASTC: Codec = Codec {
+    format: PayloadFormat::UastcRgb,
+    target: Target::Basis,
+    channels: 3,
+    holds_normals: true,
+    identity: Identity::Transcodable(uastc_rgb),
+    is_srgb: false,
+    srgb: None,
+    block_edge: 4,
+    block_bytes: 16,
+    is_normalised: true,
+    is_supercompressed: true,
+    rounding: Rounding::UASTC,
+    lower_rate: Some(lower_rate),
+    encode: uastc_blocks,
+};
+
 /// BC7, with the facts that all formats of [`Target::Bc`] share.
 const BC: Codec = Codec {
     format: PayloadFormat::Bc7,
@@ -122,6 +143,7 @@ const BC: Codec = Codec {
     channels: 3,
     holds_normals: false,
     identity: Identity::Vulkan(ktx2::Format::BC7_UNORM_BLOCK),
+    is_srgb: false,
     srgb: Some(ktx2::Format::BC7_SRGB_BLOCK),
     block_edge: 4,
     block_bytes: 16,
@@ -139,6 +161,7 @@ const FLOAT: Codec = Codec {
     channels: 3,
     holds_normals: true,
     identity: Identity::Vulkan(ktx2::Format::R16G16B16A16_SFLOAT),
+    is_srgb: false,
     srgb: None,
     block_edge: 1,
     block_bytes: 8,
@@ -172,12 +195,35 @@ fn uastc_rgb() -> Basic {
     }
 }
 
+/// Returns the descriptor of opaque sRGB colours in UASTC.
+fn uastc_srgb() -> Basic {
+    Basic {
+        color_primaries: Some(ColorPrimaries::BT709),
+        transfer_function: Some(TransferFunction::SRGB),
+        ..uastc_rgb()
+    }
+}
+
+/// Returns the descriptor of sRGB colours with alpha in UASTC: channel 3 is RGBA.
+fn uastc_srgb_alpha() -> Basic {
+    let mut basic = uastc_srgb();
+    basic.sample_information.iter_mut().for_each(|sample| sample.channel_type = 3);
+    basic
+}
+
 impl Target {
     /// Returns the format for texels of `channels` (1 to 3) channels.
     pub fn format(self, channels: u32) -> PayloadFormat {
         let mut rows = TABLE.iter().filter(|codec| codec.target == self);
         // A test holds that every target has a format for 1 to 3 channels.
         rows.find(|codec| codec.channels >= channels).map_or(PayloadFormat::UastcRgb, |codec| codec.format)
+    }
+
+    /// Returns the format for sRGB colours, with or without alpha; `None` if the target has none.
+    pub fn colour_format(self, has_alpha: bool) -> Option<PayloadFormat> {
+        let channels = if has_alpha { 4 } else { 3 };
+        let is_it = |codec: &&Codec| codec.target == self && codec.is_srgb && codec.channels == channels;
+        TABLE.iter().find(is_it).map(|codec| codec.format)
     }
 
     /// Returns the format for normals.
@@ -203,7 +249,8 @@ impl Codec {
     }
 
     /// Returns the facts of the format that a KTX2 file names, if it is one that Roughcast writes, or its sRGB form.
-    /// `format` is the Vulkan format of the header, and `model` the colour model of the descriptor.
+    /// `format` is the Vulkan format of the header, and `model` the colour model of the descriptor. All
+    /// formats of UASTC round alike, so the first of them stands for all.
     pub fn of_file(format: Option<ktx2::Format>, model: Option<ColorModel>) -> Option<&'static Self> {
         TABLE.iter().find(|codec| match codec.identity {
             Identity::Vulkan(vulkan) => format.is_some() && (format == Some(vulkan) || format == codec.srgb),
@@ -230,6 +277,11 @@ impl PayloadFormat {
     /// Returns the bytes of a block, or of a texel if there are no blocks.
     pub fn block_bytes(self) -> usize {
         self.codec().block_bytes
+    }
+
+    /// Returns whether texels have alpha.
+    pub fn has_alpha(self) -> bool {
+        self.codec().channels > 3
     }
 
     /// Returns whether normals in this format have a z. Readers of formats with two channels rebuild z.

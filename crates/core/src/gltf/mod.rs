@@ -7,6 +7,7 @@ pub mod json;
 pub mod layers;
 pub mod material;
 pub mod meshes;
+pub mod plain_textures;
 pub mod rewrite;
 pub mod rotation_map;
 pub mod roughness_pyramid;

@@ -20,7 +20,7 @@ pub use format::FileFormat;
 pub use decoded::{Image, Samples};
 
 pub use rgba::Rgba;
-pub use srgb::srgb_to_linear;
+pub use srgb::{linear_to_srgb, srgb_to_linear};
 
 /// Why an image cannot be used as a map.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

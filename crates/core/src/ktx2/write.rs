@@ -225,7 +225,8 @@ impl Ktx2Writer<'_> {
 
 /// Returns the "Data Format Descriptor", total size and one basic block, and the `typeSize` of the header.
 fn data_format_descriptor(format: PayloadFormat) -> (Vec<u8>, u32) {
-    let (mut basic, type_size) = match format.codec().identity {
+    let codec = format.codec();
+    let (mut basic, type_size) = match codec.identity {
         // Only formats of the table in `codec` get here, and a test writes a file of each of them.
         Identity::Vulkan(vulkan) => {
             Basic::from_format(vulkan).expect("the crate describes every format that is written")
@@ -233,8 +234,10 @@ fn data_format_descriptor(format: PayloadFormat) -> (Vec<u8>, u32) {
         Identity::Transcodable(descriptor) => (descriptor(), 1),
     };
     // KHR_texture_basisu: data that is not colour has unspecified primaries and a linear transfer function.
-    basic.color_primaries = None;
-    basic.transfer_function = Some(TransferFunction::Linear);
+    if !codec.is_srgb {
+        basic.color_primaries = None;
+        basic.transfer_function = Some(TransferFunction::Linear);
+    }
     let block = Block::Basic(basic).to_vec();
     let total = block.len() as u32 + 4;
     ([&total.to_le_bytes()[..], &block].concat(), type_size)

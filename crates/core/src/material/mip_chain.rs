@@ -67,6 +67,13 @@ impl Encoding {
         Self { format: settings.target.normal_format(), metric: Metric::Direction, ..Self::of(settings, 3) }
     }
 
+    /// Returns the encoding of sRGB colours; `None` if the target has no format for them.
+    pub fn of_colours(settings: &Settings, has_alpha: bool) -> Option<Self> {
+        let metric = if has_alpha { Metric::Rgba } else { Metric::Rgb };
+        let format = settings.target.colour_format(has_alpha)?;
+        Some(Self { format, metric, ..Self::of(settings, 3) })
+    }
+
     /// Leaves out levels finer than `finest`.
     pub fn starting_at(self, finest: usize) -> Self {
         Self { finest, ..self }
@@ -101,7 +108,7 @@ pub enum GridError {
 }
 
 /// Returns the smallest grid that holds all of `sizes` and that the target's blocks allow: KHR_texture_basisu and BCn
-/// need multiples of 4.
+/// need multiples of 4, also at the first level that is at most as large as [`Settings::max_size`].
 ///
 /// # Errors
 /// [`GridError`] if the grid has more texels, before rounding up, than the settings allow an image, or if there is no
@@ -115,7 +122,22 @@ pub fn grid(settings: &Settings, sizes: impl IntoIterator<Item = (u32, u32)>) ->
     let texels = u64::from(width) * u64::from(height);
     memory::check(kept_bytes(texels, settings.rdo.is_some(), settings.profile.has_pyramid()))?;
     let edge = settings.target.format(3).codec().block_edge;
-    Ok((width.next_multiple_of(edge), height.next_multiple_of(edge)))
+    let on_level = |level: usize| [width, height].map(|size| size.next_multiple_of(edge << level));
+    let fits = |level: &usize| settings.max_size.is_none_or(|most| on_level(*level).iter().all(|n| n >> level <= most));
+    // Settings have a least size of a block, which every grid has at this level at the latest.
+    let level = (0..MAX_HALVINGS).find(fits).unwrap_or(0);
+    let [width, height] = on_level(level);
+    Ok((width, height))
+}
+
+/// More than the halvings of any image: its sides are below 2^24 texels.
+const MAX_HALVINGS: usize = 24;
+
+/// Returns the first level of a grid of `size` texels that is at most as large as [`Settings::max_size`].
+pub fn first_within(settings: &Settings, (width, height): (u32, u32)) -> usize {
+    let Some(most) = settings.max_size else { return 0 };
+    let sizes = level_sizes(width, height);
+    sizes.iter().position(|(width, height)| *width.max(height) <= most).unwrap_or(sizes.len() - 1)
 }
 
 /// Returns about how many bytes a bake of the default quality keeps in memory for the levels over a grid of `texels`,
@@ -161,7 +183,8 @@ pub fn encode_mip_chain(
     let png = || {
         let row = |y: u32, out: &mut [[f32; 4]]| (rows.values)(first, y, out);
         let texels = Texels { width, height, row: &row, lobes: None };
-        encoding.fallback.then(|| fallback(&texels, encoding.effort)).transpose()
+        let has_alpha = encoding.format.has_alpha();
+        encoding.fallback.then(|| fallback(&texels, has_alpha, encoding.effort)).transpose()
     };
     let (levels, fallback) = rayon::join(|| encode_levels(kept, first, encoding, BAND_BYTES, rows), png);
     let (levels, fallback) = (levels?, fallback?);

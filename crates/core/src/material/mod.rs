@@ -1,4 +1,5 @@
-//! The products of a bake: normals, roughness, anisotropy, and offsets with D or lambda_1, one file each. Beside them
+//! The products of a bake: normals, roughness, anisotropy, offsets with D or lambda_1, and plain textures, one file
+//! each. Beside them
 //! stand the base lobe, its roughening by bumps, and the mip chains that hold encoded products. This module knows
 //! neither documents nor files.
 
@@ -7,6 +8,7 @@ mod base;
 mod bump_map;
 mod bumps;
 mod correction;
+mod coverage;
 mod diagnostics;
 mod filter_loss;
 mod fit_levels;
@@ -18,6 +20,7 @@ mod mip_chain;
 mod normals;
 pub mod notes;
 mod offset_texture;
+mod plain_texture;
 mod product;
 mod pyramid_levels;
 mod quantity;
@@ -33,9 +36,12 @@ pub use bump_map::{BumpMap, FrameTransforms, Framed};
 pub use bumps::Bumps;
 pub use filter_loss::filter_loss;
 pub(crate) use mip_chain::EDGE;
-pub use mip_chain::{Encoding, GridError, LevelRow, LevelRows, LobeRow, MipChain, encode_mip_chain, grid, kept_bytes};
+pub use mip_chain::{
+    Encoding, GridError, LevelRow, LevelRows, LobeRow, MipChain, encode_mip_chain, first_within, grid, kept_bytes,
+};
 pub use normals::Normals;
 pub use offset_texture::{OffsetTexture, slopes_of_texel};
+pub use plain_texture::PlainTexture;
 pub use product::{Product, with_rows};
 pub use pyramid_levels::{
     LobeLevels, PyramidLevels, Rotated, correction_factor, lost_variance, lost_variance_of_lobes,

@@ -1,5 +1,7 @@
 //! Settings that a bake refuses.
 
+use crate::codec::Target;
+
 /// A setting that makes no sense. Settings have the names of their flags and of their keys in `roughcast.toml`.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -21,6 +23,16 @@ pub enum SettingsError {
         name: &'static str,
         /// What it needs.
         needs: &'static str,
+    },
+    /// Only UASTC holds sRGB colours.
+    #[error(
+        "expected --target basis for --textures all, since its other payloads hold no sRGB colours, found --target \
+         {}; write the colours with --target basis, or leave them with --textures bumps",
+        target.name()
+    )]
+    ColoursWithoutBasis {
+        /// The payload.
+        target: Target,
     },
     /// A .glb has no external texture that both references could name.
     #[error(

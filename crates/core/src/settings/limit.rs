@@ -40,6 +40,8 @@ pub const MAX_ERROR: Limit =
     Limit { name: "max-error", expected: "a number from 0 to 1", accepts: |x| (0.0..=1.0).contains(&x) };
 /// The range of [`Settings::rdo`](crate::settings::Settings::rdo), in dB.
 pub const RDO: Limit = Limit { name: "rdo", expected: "a number above 0, up to 6", accepts: |x| 0.0 < x && x <= 6.0 };
+/// The range of [`Settings::max_size`](crate::settings::Settings::max_size), in texels: a block has four.
+pub const MAX_SIZE: Limit = Limit { name: "max-size", expected: "a number of texels from 4", accepts: |x| x >= 4.0 };
 /// The range of [`Settings::height_scale`](crate::settings::Settings::height_scale).
 pub const HEIGHT_SCALE: Limit = Limit {
     name: "height-scale",

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Form, MaxModel, Model, Profile, Settings, View};
+use super::{Form, MaxModel, Model, Profile, Settings, Textures, View};
 use crate::bump::Frame;
 use crate::codec::Target;
 use crate::codec::uastc::Effort;
@@ -47,6 +47,12 @@ pub struct RecordedSettings {
     /// [`Settings::scale_normals`]; absent if it is not set.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub scale_normals: bool,
+    /// [`Settings::textures`]; absent if only baked textures are written.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub textures: Option<Textures>,
+    /// [`Settings::max_size`]; absent if it is not set.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub max_size: Option<u32>,
     /// [`Settings::view`]; absent if it is not set.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub view: Option<View>,
@@ -71,6 +77,8 @@ impl RecordedSettings {
             max_model: Some(settings.max_model).filter(|max_model| *max_model != MaxModel::Anisotropic),
             rdo: settings.rdo,
             scale_normals: settings.scale_normals,
+            textures: Some(settings.textures).filter(|textures| *textures != Textures::Bumps),
+            max_size: settings.max_size,
             view: settings.view,
         }
     }

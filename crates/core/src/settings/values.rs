@@ -8,7 +8,7 @@ use crate::codec::Target;
 use crate::codec::uastc::Effort;
 use crate::lobe::{Distribution, Family};
 use crate::settings::engines::Engine;
-use crate::settings::{Form, MaxModel, Model, Profile, Settings, SettingsError, View, limit};
+use crate::settings::{Form, MaxModel, Model, Profile, Settings, SettingsError, Textures, View, limit};
 
 /// Declares the settings, each once: the struct that holds them, and what is done with every one of them.
 macro_rules! values {
@@ -104,9 +104,11 @@ values! {
     distribution: Distribution,
     lobe: Family,
     target: Target,
+    max_size: u32,
     max_texels: u64,
     provenance: bool,
     engine: Engine,
+    textures: Textures,
     gltf: Form,
     glb: bool,
     scale_normals: bool,
@@ -146,6 +148,7 @@ impl Values {
             target: Some(defaults.target),
             max_texels: Some(defaults.max_texels),
             provenance: Some(defaults.provenance),
+            textures: Some(defaults.textures),
             gltf: Some(defaults.gltf),
             glb: defaults.glb,
             scale_normals: Some(defaults.scale_normals),
@@ -195,6 +198,8 @@ impl Values {
         settings.target = self.target.unwrap_or_default();
         settings.quality = self.quality.unwrap_or(settings.quality);
         settings.rdo = rdo;
+        settings.max_size = self.max_size;
+        settings.textures = self.textures.unwrap_or_default();
         settings.gltf = form;
         settings.glb = self.glb;
         settings.scale_normals = self.scale_normals.unwrap_or(defaults.scale_normals);

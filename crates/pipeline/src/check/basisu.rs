@@ -3,11 +3,13 @@
 use ktx2::dfd::DataFormatFlags;
 use ktx2::{ColorModel, SupercompressionScheme};
 
+use super::descriptor::Values;
 use super::findings::{Code, Findings};
 use crate::ktx2::Ktx2;
 
-/// Checks the payload. If `required`, the extension names the file, which must then be Basis Universal.
-pub fn check_basisu(file: &Ktx2<'_>, required: bool, findings: &mut Findings) {
+/// Checks the payload of a file whose texels are `values`. If `required`, the extension names the file, which must then
+/// be Basis Universal.
+pub fn check_basisu(file: &Ktx2<'_>, required: bool, values: Values, findings: &mut Findings) {
     let header = file.header();
     if header.pixel_height == 0 || header.pixel_depth > 0 || header.layer_count > 0 || header.face_count != 1 {
         let message = "expected a plain 2D texture, found a 1D, 3D, cube or array one; bake again";
@@ -49,9 +51,9 @@ pub fn check_basisu(file: &Ktx2<'_>, required: bool, findings: &mut Findings) {
             "expected UASTC, found ETC1S: Bevy refuses ETC1S, which is too coarse for data; bake with --target basis";
         findings.add(Code::NotUastc, "header", message);
     }
-    // Channel 0 is RGB in both models.
+    // Channel 0 is RGB in both models, and channel 3 of UASTC is RGBA.
     let channels: Vec<u8> = basic.sample_information.iter().map(|s| s.channel_type).collect();
-    if channels != [0] {
+    if channels != [0] && !(values == Values::Colours && channels == [3]) {
         let message = format!(
             "expected the RGB channel (0), found {channels:?}: engines read other channels differently; bake again"
         );

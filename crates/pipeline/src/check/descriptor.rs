@@ -1,7 +1,7 @@
-//! Checks of the data format descriptor: it matches the format and describes data, not colours.
+//! Checks of the data format descriptor: it matches the format, and describes colours or data as its content says.
 
 use ktx2::dfd::Basic;
-use ktx2::{ColorModel, TransferFunction};
+use ktx2::{ColorModel, ColorPrimaries, TransferFunction};
 
 use super::findings::{Code, Findings};
 use crate::ktx2::Ktx2;
@@ -9,8 +9,17 @@ use crate::text::name_of;
 
 const PLACE: &str = "data format descriptor";
 
+/// What the texels of a file are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Values {
+    /// sRGB colours, which may have alpha.
+    Colours,
+    /// Linear data without alpha.
+    Data,
+}
+
 /// Checks model, blocks, samples, typeSize, transfer function and primaries.
-pub fn check_descriptor(file: &Ktx2<'_>, findings: &mut Findings) {
+pub fn check_descriptor(file: &Ktx2<'_>, values: Values, findings: &mut Findings) {
     let Some(found) = file.descriptor() else {
         findings.add(Code::Descriptor, PLACE, "expected a basic descriptor block, found none; bake again");
         return;
@@ -35,13 +44,20 @@ pub fn check_descriptor(file: &Ktx2<'_>, findings: &mut Findings) {
     if let Some(what) = mismatch {
         findings.add(Code::Descriptor, PLACE, format!("{what} for {}; bake again", file.format_name()));
     }
-    if found.transfer_function != Some(TransferFunction::Linear) {
-        let found = name_of(found.transfer_function.as_ref());
-        let message = format!("expected Linear, found {found}: engines would decode the data as colours; bake again");
+    let (transfer, primaries, effect) = match values {
+        Values::Data => (TransferFunction::Linear, None, "engines would decode the data as colours"),
+        Values::Colours => {
+            (TransferFunction::SRGB, Some(ColorPrimaries::BT709), "engines would show the colours too bright")
+        }
+    };
+    if found.transfer_function != Some(transfer) {
+        let (expected, found) = (name_of(Some(&transfer)), name_of(found.transfer_function.as_ref()));
+        let message = format!("expected {expected}, found {found}: {effect}; bake again");
         findings.add(Code::Transfer, PLACE, message);
     }
-    if let Some(primaries) = found.color_primaries {
-        findings.add(Code::Primaries, PLACE, format!("expected unspecified, found {primaries:?}; bake again"));
+    if found.color_primaries != primaries {
+        let (expected, found) = (name_of(primaries.as_ref()), name_of(found.color_primaries.as_ref()));
+        findings.add(Code::Primaries, PLACE, format!("expected {expected}, found {found}; bake again"));
     }
 }
 

@@ -1,6 +1,6 @@
 //! Checks of a baked glTF document and of every file that the document names.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use ::gltf::json::{Image, Root};
@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use super::files::{Files, ReferencedFiles};
 use super::findings::{Code, Finding, Findings};
-use super::materials::check_materials;
+use super::materials::{Uses, check_materials};
 use super::partial_file::PartialFile;
 use super::provenance::check_document_provenance;
 use super::pyramid_levels::{OffsetFile, RoughnessFile, check_pyramid_levels};
@@ -58,7 +58,7 @@ pub fn check_document(name: &str, bytes: &[u8], files: &dyn Files, scope: &Scope
     let of_images = Findings::new(name);
     let mut images = Images { name, referenced, root: &root, scope, contents: BTreeMap::new(), findings: of_images };
     for image in 0..root.images.len() {
-        images.check(image, &textures, &uses.normals, &mut findings);
+        images.check(image, &textures, &uses, &mut findings);
     }
     images.check_pyramids(&uses.pyramids, &textures, &mut findings);
     let is_baked = images.contents.values().any(Option::is_some);
@@ -132,7 +132,7 @@ struct Images<'a> {
 }
 
 impl Images<'_> {
-    fn check(&mut self, index: usize, textures: &Textures, normals: &BTreeSet<usize>, findings: &mut Findings) {
+    fn check(&mut self, index: usize, textures: &Textures, uses: &Uses, findings: &mut Findings) {
         let Some(image) = self.root.images.get(index) else { return };
         let place = format!("/images/{index}");
         let Some(location) = location(image) else {
@@ -149,7 +149,8 @@ impl Images<'_> {
         }
         let usage = Usage {
             by_basisu: textures.users(index).any(|(_, t)| t.basisu == Some(index)),
-            normals: textures.users(index).any(|(texture, _)| normals.contains(&texture)),
+            normals: textures.users(index).any(|(texture, _)| uses.normals.contains(&texture)),
+            colours: textures.users(index).any(|(texture, _)| uses.colours.contains(&texture)),
         };
         if partial.is_ktx2() || usage.by_basisu {
             match external(&location) {

@@ -70,13 +70,13 @@ codes! {
     Swizzle 1010 Error "KTXswizzle is not rgba";
     Descriptor 1011 Error "the data format descriptor does not match the format";
     TypeSize 1012 Error "typeSize does not match the format";
-    Transfer 1013 Error "the transfer function is not linear";
-    Primaries 1014 Error "the colour primaries are not unspecified";
+    Transfer 1013 Error "the transfer function does not suit the texels";
+    Primaries 1014 Error "the colour primaries do not suit the texels";
     // 11xx: KHR_texture_basisu, section "KTX v2 Images with Basis Universal Supercompression".
     NotBasis 1101 Warning "KHR_texture_basisu names a texture that is not Basis Universal";
     NotUastc 1102 Warning "the payload is ETC1S";
     Scheme 1103 Error "the supercompression scheme is not allowed for the payload";
-    Channels 1104 Error "the payload's channels are not RGB";
+    Channels 1104 Error "the payload's channels do not suit the texels";
     SizeMultiple 1105 Error "width or height is not a multiple of 4";
     NotPlain2d 1106 Error "the texture is not a plain 2D texture";
     AlphaPremultiplied 1107 Error "alpha is marked as premultiplied";

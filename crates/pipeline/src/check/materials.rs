@@ -10,6 +10,7 @@ use serde_json::Value;
 use super::findings::{Code, Findings};
 use super::texture_references::Textures;
 use crate::gltf::layers::{LAYERS, member};
+use crate::gltf::plain_textures::{Meaning, plain_textures};
 use crate::gltf::rewrite::references;
 use crate::gltf::roughness_pyramid::{EXTENSION, RoughnessPyramid};
 
@@ -18,6 +19,8 @@ use crate::gltf::roughness_pyramid::{EXTENSION, RoughnessPyramid};
 pub struct Uses {
     /// Textures that normals are read from.
     pub normals: BTreeSet<usize>,
+    /// Textures that sRGB colours are read from.
+    pub colours: BTreeSet<usize>,
     /// Extensions that satisfy their schema, with their JSON pointers.
     pub pyramids: Vec<(String, RoughnessPyramid)>,
 }
@@ -25,6 +28,8 @@ pub struct Uses {
 /// Checks references, extensions and tangent spaces of all materials.
 pub fn check_materials(root: &Root, value: &Value, textures: &Textures, findings: &mut Findings) -> Uses {
     let mut uses = Uses::default();
+    let plain = plain_textures(value).into_iter().filter(|plain| matches!(plain.meaning, Meaning::Colour(_)));
+    uses.colours.extend(plain.map(|plain| plain.texture));
     let count = textures.len();
     let of_materials = references(value).into_iter().filter(|(pointer, _)| pointer.starts_with("/materials/"));
     for (pointer, texture) in of_materials {

@@ -3,11 +3,12 @@
 use super::basisu::check_basisu;
 use super::container::{check_keys, check_levels};
 use super::decoded_levels::check_decoded_levels;
-use super::descriptor::check_descriptor;
+use super::descriptor::{Values, check_descriptor};
 use super::findings::{Code, Findings};
 use super::provenance::check_provenance;
 use super::scope::Scope;
-use crate::ktx2::{Ktx2, PROVENANCE_KEY};
+use crate::ktx2::{Ktx2, PROVENANCE_KEY, provenance};
+use crate::report::Content;
 
 /// How a document uses a texture.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -16,6 +17,8 @@ pub struct Usage {
     pub by_basisu: bool,
     /// A material reads normals from it.
     pub normals: bool,
+    /// A material reads sRGB colours from it.
+    pub colours: bool,
 }
 
 /// Checks a KTX2 file and returns its content as recorded by its provenance. A file of another writer is only parsed,
@@ -33,8 +36,11 @@ pub fn check_texture(bytes: &[u8], usage: Usage, scope: &Scope<'_>, findings: &m
     }
     check_levels(&file, findings);
     check_keys(&file, bytes, findings);
-    check_descriptor(&file, findings);
-    check_basisu(&file, usage.by_basisu, findings);
+    let recorded = provenance(&file).map(|provenance| provenance.content);
+    let are_colours = recorded.map_or(usage.colours, |content| content == Content::Colour.name());
+    let values = if are_colours { Values::Colours } else { Values::Data };
+    check_descriptor(&file, values, findings);
+    check_basisu(&file, usage.by_basisu, values, findings);
     let content = check_provenance(&file, scope, findings).map(|provenance| provenance.content);
     if scope.is_deep {
         check_decoded_levels(&file, usage.normals || matches!(content.as_deref(), Some("normal" | "offset")), findings);

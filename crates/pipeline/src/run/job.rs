@@ -119,11 +119,12 @@ impl Job {
             identity["name"] = json!(name);
         }
         let container = settings.settings()?.container(facts.container);
+        let writes_textures = facts.may_write_textures(settings.textures.unwrap_or_default());
         let stem = name.unwrap_or(&stem);
         Ok(Self {
             id: digest(identity.to_string().as_bytes()),
-            outputs: outputs(&facts, container, stem, output),
-            cost: if facts.has_bumps { inputs.iter().map(|input| input.bytes).sum() } else { 0 },
+            outputs: outputs(&facts, writes_textures, container, stem, output),
+            cost: if writes_textures { inputs.iter().map(|input| input.bytes).sum() } else { 0 },
             command: command(source, &named_output(output, name, container), settings),
             source: source.to_owned(),
             output: output.to_owned(),
@@ -231,11 +232,17 @@ fn file_name<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<String
     Err(D::Error::custom(format!("expected the name of a file without folders, found {name:?}")))
 }
 
-fn outputs(facts: &PlannedFiles, container: Container, stem: &str, folder: &Path) -> Vec<JobOutput> {
+fn outputs(
+    facts: &PlannedFiles,
+    writes_textures: bool,
+    container: Container,
+    stem: &str,
+    folder: &Path,
+) -> Vec<JobOutput> {
     let file = |path: PathBuf| JobOutput { path, kind: OutputKind::File };
     let mut outputs = vec![file(folder.join(format!("{stem}.{}", container.extension())))];
     if container == Container::Gltf {
-        if facts.has_bumps || facts.has_bin {
+        if writes_textures || facts.has_bin {
             let name = format!("{}.roughcast", portable_stem(stem));
             outputs.push(JobOutput { path: folder.join(name), kind: OutputKind::Folder });
         }

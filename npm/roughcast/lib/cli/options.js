@@ -17,6 +17,7 @@ const TEXTURE = {
   distribution: text,
   lobe: text,
   target: text,
+  'max-size': text,
   'max-texels': text,
   'no-provenance': flag,
 };
@@ -25,6 +26,7 @@ const TEXTURE = {
 export const DOCUMENT = {
   engine: text,
   'max-model': text,
+  textures: text,
   gltf: text,
   glb: flag,
   frame: text,
@@ -45,7 +47,7 @@ export const OUTPUT = {
   verbose: { type: 'boolean', short: 'v' },
 };
 
-const NUMBERS = ['max-error', 'rdo', 'max-texels', 'height-scale', 'nearest', 'screen-height', 'fov', 'aspect'];
+const NUMBERS = ['max-error', 'rdo', 'max-size', 'max-texels', 'height-scale', 'nearest', 'screen-height', 'fov', 'aspect'];
 
 /**
  * Reads arguments.
