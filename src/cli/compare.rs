@@ -7,14 +7,14 @@ use super::options::texture::{effort, finite, unit_interval};
 use super::terminal::outcome::Outcome;
 use super::terminal::progress::ProgressLine;
 use crate::codec::uastc::Effort;
-use crate::compare::{CompareOptions, Comparison, FailedInput, compare_files};
+use crate::compare::{CompareOptions, Comparison, FailedInput, MAX_PICTURE_WIDTH, compare_files};
 use crate::run::Progress;
 use crate::settings::Settings;
 use crate::text::printable;
 
-/// Chart lobe error against cost: every model, every peer and the best single lobe, on your own material.
+/// Chart lobe and picture error against cost: every model, every peer and the best single lobe, on your own material.
 ///
-/// Writes compare.html (everything), compare-MATERIAL.svg, compare.csv and compare.json. All values except the bake
+/// Writes compare.html (everything), compare-MATERIAL.svg, compare.csv and compare.json. Errors: lower is better. All values except the bake
 /// times are equal in every run.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  roughcast compare helmet.glb -o charts\n  \
@@ -45,6 +45,10 @@ pub struct Args {
     /// The quality of the bake that is marked.
     #[arg(long, value_parser = effort(), default_value = "fast", value_name = "QUALITY")]
     quality: Effort,
+    /// Width in pixels of the spheres that are drawn for the picture errors; 0 draws none. Most of their time is the
+    /// truth, 512 samples per pixel.
+    #[arg(long, default_value_t = 96, value_parser = picture_width, value_name = "PX")]
+    picture_width: u32,
     /// Largest number of texels of an input image.
     #[arg(long, default_value_t = 1 << 28, value_name = "N")]
     max_texels: u64,
@@ -92,6 +96,7 @@ impl Args {
             roughness: self.roughness,
             max_error: self.max_error,
             quality: self.quality,
+            picture_width: self.picture_width,
             max_texels: self.max_texels,
         }
     }
@@ -102,7 +107,15 @@ fn summary(comparison: &Comparison) -> String {
     text.extend(comparison.verdict.iter().map(|verdict| format!("  {verdict}\n")));
     for entry in &comparison.entries {
         let chosen = if entry.chosen { "  chosen" } else { "" };
-        text += &format!("  {:<18} {:.3}{chosen}\n", entry.name, entry.error);
+        let picture = entry.picture_error.map_or(String::new(), |error| format!("  picture {error:.3}"));
+        text += &format!("  {:<23} lobe {:.3}{picture}{chosen}\n", entry.name, entry.error);
     }
     text
+}
+
+/// Parses the width of pictures, or 0 for none. Pictures of fewer than 8 pixels show nothing.
+fn picture_width(text: &str) -> Result<u32, String> {
+    let is_possible = |width: &u32| *width == 0 || (8..=MAX_PICTURE_WIDTH).contains(width);
+    let width = text.parse().ok().filter(is_possible);
+    width.ok_or_else(|| format!("expected 0 or 8 to {MAX_PICTURE_WIDTH}, found {text:?}"))
 }

@@ -25,7 +25,7 @@ use crate::text::printable;
 pub struct Args {
     /// .gltf or .glb, whose materials are drawn, or a standalone normal or height map.
     input: Option<PathBuf>,
-    /// Output folder: a sheet of all columns for each scene, and each picture alone.
+    /// Output folder: a sheet of all columns for each scene, each picture alone, and index.html, which shows them all.
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
     /// What to draw. [default: plane,sphere for an input, else lake,pattern,highlight]
@@ -94,6 +94,7 @@ pub fn run(args: &Args, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<
                 writeln!(out, "{}", serde_json::to_string_pretty(&report).map_err(io::Error::other)?)?;
             } else if !args.quiet {
                 report.sheets.iter().try_for_each(|sheet| out.write_all(summary(sheet).as_bytes()))?;
+                writeln!(out, "{}", printable(&report.gallery))?;
             }
             Ok(Outcome::Done)
         }
@@ -122,10 +123,10 @@ impl Args {
 
 fn summary(sheet: &SheetReport) -> String {
     let mut text = format!("{}\n", printable(&sheet.path));
-    for RowReport { distance, columns, noise } in &sheet.rows {
-        for ColumnReport { name, difference } in columns {
+    for RowReport { distance, columns, noise, .. } in &sheet.rows {
+        for ColumnReport { name, difference, .. } in columns {
             text += &format!(
-                "  distance {distance}, {name:<8}  relative L1 {:.3}  SSIM {:.3}\n",
+                "  distance {distance}, {name:<8}  relative L1 {:.3} (lower is better)  SSIM {:.3} (higher is better)\n",
                 difference.relative_l1, difference.ssim
             );
         }

@@ -285,6 +285,9 @@ fn outputs_of_render_satisfy_their_schema() {
             ("/sheets/0/rows/0/distance", json!(0)),
             ("/sheets/0/rows/0/columns/0/name", json!("supersampled")),
             ("/sheets/0/rows/0/columns/0/relativeL1", Value::Null),
+            ("/sheets/0/rows/0/crop/width", json!(0)),
+            ("/sheets/0/rows/0/size", json!([8])),
+            ("/gallery", Value::Null),
         ],
     );
 }
@@ -297,7 +300,7 @@ fn outputs_of_compare_satisfy_their_schema() {
     write_asset(&source);
     let input = source.join("ridges.gltf");
     let paths = ["compare", input.to_str().unwrap(), "-o", output.to_str().unwrap()];
-    let report = json_of(&[&paths[..], &["--texels", "1", "--json"]].concat());
+    let report = json_of(&[&paths[..], &["--texels", "1", "--picture-width", "8", "--json"]].concat());
     assert_valid(&schema, &report);
     let file: Value = serde_json::from_slice(&fs::read(output.join("compare.json")).unwrap()).unwrap();
     assert_eq!(file, report);
@@ -311,6 +314,8 @@ fn outputs_of_compare_satisfy_their_schema() {
             ("/materials/0/entries/0/kind", json!("theirs")),
             ("/materials/0/entries/0/levelErrors/0", json!(-1)),
             ("/materials/0/entries/0/fetches", json!(1.5)),
+            ("/materials/0/entries/0/pictureError", json!(-1)),
+            ("/materials/0/pictureNoise", json!("low")),
         ],
     );
 }

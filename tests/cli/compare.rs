@@ -11,7 +11,8 @@ use super::process::{Run, copy, files, fixtures, roughcast};
 
 fn compare(input: &Path, output: &Path, options: &[&str]) -> Run {
     let paths = [input, output].map(|path| path.to_str().expect("a path in UTF-8"));
-    let run = roughcast([&["compare", paths[0], "-o", paths[1], "--texels", "2"], options].concat());
+    let quick = ["--texels", "2", "--picture-width", "24"];
+    let run = roughcast([&["compare", paths[0], "-o", paths[1]], quick.as_slice(), options].concat());
     assert_eq!((run.code, run.err.as_str()), (0, ""), "compare {options:?}");
     run
 }
@@ -76,6 +77,24 @@ fn a_standalone_map_is_charted() {
     };
     assert!(entries.iter().all(|e| e["error"].as_f64() >= Some(error("oracle"))));
     assert!(error("ours, anisotropic, best") < error("plain mips"));
+    // Pictures of all but the best lobe are judged, and each output has their errors.
+    let noise = report["materials"][0]["pictureNoise"].as_f64().expect("a noise");
+    assert!(page.contains(&format!("a picture error of {noise:.3}")) && noise < 0.1, "{noise}");
+    let picture = |name: &str| {
+        let entry = entries.iter().find(|e| e["name"] == name).expect("an entry");
+        entry["pictureError"].as_f64().expect("an error")
+    };
+    for (row, entry) in rows.iter().zip(entries).filter(|(_, entry)| entry["kind"] != "oracle") {
+        let error = picture(entry["name"].as_str().expect("a name"));
+        assert!(row.contains(&format!(",{error:.6},")), "{row}: {error}");
+        assert!(run.out.contains(&format!("picture {error:.3}")) && error > 0.0, "{error}");
+    }
+    let oracle = entries.iter().find(|e| e["kind"] == "oracle").expect("the oracle");
+    assert_eq!(oracle["pictureError"], Value::Null);
+    // Plain mips of ours and the formula of plain mips are one material, drawn in two ways.
+    let [ours, formula] = ["ours, none, fast", "plain mips"].map(picture);
+    assert!((ours - formula).abs() < 0.02, "{ours} {formula}");
+    assert!(picture("ours, anisotropic, best") < formula);
 }
 
 #[test]
@@ -84,7 +103,7 @@ fn several_inputs_share_one_page_that_begins_with_their_verdicts() {
     let inputs = ["maps/line_normal.png", "brushed/brushed.gltf"].map(|name| fixtures().join(name));
     let [map, asset] = inputs.each_ref().map(|path| path.to_str().expect("a path in UTF-8"));
     let output = folder.path().to_str().expect("a path in UTF-8");
-    let run = roughcast(["compare", map, asset, "-o", output, "--texels", "2"]);
+    let run = roughcast(["compare", map, asset, "-o", output, "--texels", "2", "--picture-width", "0"]);
     assert_eq!((run.code, run.err.as_str()), (0, ""));
     let report = report(folder.path());
     let materials = report["materials"].as_array().expect("materials");
@@ -96,6 +115,23 @@ fn several_inputs_share_one_page_that_begins_with_their_verdicts() {
     }
     let run = roughcast(["compare", map, "missing.png", "-o", output]);
     assert!(run.code == 1 && run.err.starts_with("error: missing.png: "), "{}", run.err);
+}
+
+#[test]
+fn pictures_can_be_left_out() {
+    let folder = tempdir().expect("a folder");
+    let input = fixtures().join("maps/line_normal.png");
+    let [input, output] = [&input, folder.path()].map(|path: &Path| path.to_str().expect("a path in UTF-8"));
+    let run = roughcast(["compare", input, "-o", output, "--texels", "2", "--picture-width", "0"]);
+    assert_eq!((run.code, run.err.as_str()), (0, ""));
+    let report = report(folder.path());
+    assert_eq!(report["materials"][0]["pictureNoise"], Value::Null);
+    assert_eq!(report["materials"][0]["entries"][0]["pictureError"], Value::Null);
+    let page = fs::read_to_string(folder.path().join("compare.html")).expect("a page");
+    assert!(!page.contains("picture error against") && !run.out.contains("picture"));
+    for width in ["7", "513", "-1", "x"] {
+        assert_eq!(roughcast(["compare", input, "-o", "out", "--picture-width", width]).code, 2, "{width}");
+    }
 }
 
 #[test]

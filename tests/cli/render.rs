@@ -95,6 +95,38 @@ fn every_material_scene_and_distance_is_written() {
 }
 
 #[test]
+fn the_gallery_shows_every_picture_with_its_error() {
+    let folder = tempdir().expect("a folder");
+    let knobs = fixtures().join("knobs/knobs.gltf");
+    let input = knobs.to_str().expect("a path in UTF-8");
+    let options = ["--scene", "sphere,highlight", "--distance", "2", "--json"];
+    let run = render(&[&[input], options.as_slice(), &QUICK].concat(), folder.path());
+    let report: Value = serde_json::from_str(&run.out).expect("JSON");
+    let path = report["gallery"].as_str().expect("a path");
+    assert!(path.ends_with("index.html"), "{path}");
+    let page = fs::read_to_string(path).expect("a page");
+    assert!(!page.contains("<script") && !page.contains("http") && !page.contains("url("));
+    let sources: Vec<&str> = page.split("src=\"").skip(1).filter_map(|rest| rest.split('"').next()).collect();
+    for source in &sources {
+        assert!(folder.path().join(source).is_file(), "{source}");
+    }
+    let sheets = report["sheets"].as_array().expect("sheets");
+    assert!(sheets.len() > 2);
+    for sheet in sheets {
+        let title = sheet["title"].as_str().expect("a title");
+        assert!(page.contains(&format!("<h2>{title}</h2>")), "{title}");
+        for row in sheet["rows"].as_array().expect("rows") {
+            for column in row["columns"].as_array().expect("columns") {
+                let name = Path::new(column["path"].as_str().expect("a path")).file_name().expect("a name");
+                assert!(sources.contains(&name.to_str().expect("UTF-8")), "{name:?}");
+                let error = column["relativeL1"].as_f64().expect("an error");
+                assert!(page.contains(&format!("error {error:.3}, lower is better")), "{error}");
+            }
+        }
+    }
+}
+
+#[test]
 fn pictures_do_not_depend_on_threads() {
     let (one, three) = (tempdir().expect("a folder"), tempdir().expect("a folder"));
     let options = ["--scene", "lake,highlight", "--exr"];

@@ -37,31 +37,68 @@ pub const STYLE: &str = "svg{--ink:#1c2430;--soft:#6b7480;--grid:#e3e6ea;--paper
     svg .entry:is(:hover,:focus-visible) .detail{visibility:visible}\
     .chart:has(>.entry:is(:hover,:focus-visible))>.entry:not(:hover,:focus-visible){opacity:.2}";
 
-/// Draws both charts, one above the other, as an SVG file.
+/// What the vertical axis of a chart against cost shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Measure {
+    /// The mean lobe error.
+    Lobe,
+    /// The error of pictures.
+    Picture,
+}
+
+impl Measure {
+    /// Returns the measures of which `comparison` has values.
+    pub fn of(comparison: &Comparison) -> &'static [Self] {
+        let has_pictures = comparison.entries.iter().any(|entry| entry.picture_error.is_some());
+        if has_pictures { &[Self::Lobe, Self::Picture] } else { &[Self::Lobe] }
+    }
+
+    fn value(self, entry: &Entry) -> Option<f64> {
+        match self {
+            Self::Lobe => Some(entry.error),
+            Self::Picture => entry.picture_error,
+        }
+    }
+
+    fn title(self) -> &'static str {
+        match self {
+            Self::Lobe => "mean lobe error",
+            Self::Picture => "picture error",
+        }
+    }
+}
+
+/// Draws all charts, one above the other, as an SVG file.
 pub fn file(comparison: &Comparison) -> String {
-    let height = 2.0 * HEIGHT;
+    let against_cost = Measure::of(comparison);
+    let height = (against_cost.len() + 1) as f64 * HEIGHT;
+    let tops = (0..).map(|i| f64::from(i) * HEIGHT);
+    let charts: String = against_cost.iter().zip(tops).map(|(m, y)| cost(comparison, Axis::GpuBytes, *m, y)).collect();
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {height}\" width=\"{WIDTH}\" \
-         height=\"{height}\"><style>{STYLE}</style>{}{}</svg>\n",
-        cost(comparison, Axis::GpuBytes, 0.0),
-        levels(comparison, HEIGHT)
+         height=\"{height}\"><style>{STYLE}</style>{charts}{}</svg>\n",
+        levels(comparison, height - HEIGHT)
     )
 }
 
-/// Draws error against cost. Entries without a cost stand at the left border.
-pub fn cost(comparison: &Comparison, axis: Axis, y: f64) -> String {
+/// Draws an error against cost. Entries without a cost stand at the left border.
+pub fn cost(comparison: &Comparison, axis: Axis, measure: Measure, y: f64) -> String {
     let value = |entry: &Entry| axis.value(&entry.cost).filter(|v| *v > 0.0);
-    let points: Vec<&Entry> = comparison.entries.iter().filter(|e| e.kind != Kind::Oracle).collect();
+    let points: Vec<&Entry> =
+        comparison.entries.iter().filter(|e| e.kind != Kind::Oracle && measure.value(e).is_some()).collect();
+    let error = |entry: &Entry| measure.value(entry).unwrap_or(0.0);
     let costs = points.iter().filter_map(|e| value(e));
     let (least, most) = costs.fold((f64::INFINITY, 0.0_f64), |(a, b), v| (a.min(v), b.max(v)));
     let has_blanks = points.iter().any(|e| value(e).is_none());
     let start = LEFT + BEFORE;
     let span = if most > least { (most / least).ln() } else { 1.0 };
     let at = |v: f64| start + (v / least).ln() / span * (WIDTH - RIGHT - start);
-    let scale = Scale::new(&comparison.entries, |e| e.error);
-    let mut svg =
-        open(comparison, &format!("mean lobe error against {}", axis.title().to_lowercase().replace("gpu", "GPU")), y);
-    scale.draw(&mut svg, &comparison.entries, has_blanks.then_some("not measured"));
+    let scale = Scale::new(&comparison.entries, error);
+    let against = axis.title().to_lowercase().replace("gpu", "GPU");
+    let mut svg = open(comparison, &format!("{} against {against}", measure.title()), y);
+    let oracles: Vec<&Entry> =
+        comparison.entries.iter().filter(|e| e.kind == Kind::Oracle && measure == Measure::Lobe).collect();
+    scale.draw(&mut svg, &oracles, has_blanks.then_some("not measured"));
     for tick in ticks(least, most) {
         let x = at(tick);
         let _ = write!(
@@ -77,17 +114,17 @@ pub fn cost(comparison: &Comparison, axis: Axis, y: f64) -> String {
     let title = axis.title();
     let _ = write!(svg, "<text x=\"{middle}\" y=\"{}\" text-anchor=\"middle\">{title}</text>", HEIGHT - 12.0);
     let mut placed: Vec<(f64, f64, &Entry)> =
-        points.iter().map(|e| (value(e).map_or(LEFT + 10.0, at), scale.y(e.error), *e)).collect();
+        points.iter().map(|e| (value(e).map_or(LEFT + 10.0, at), scale.y(error(e)), *e)).collect();
     placed.sort_by(|a, b| a.1.total_cmp(&b.1));
     let mut labels = Labels::new([LEFT, TOP, WIDTH, HEIGHT - BOTTOM], placed.iter().map(|p| [p.0, p.1]));
-    for oracle in comparison.entries.iter().filter(|e| e.kind == Kind::Oracle) {
+    for oracle in oracles {
         let y = scale.y(oracle.error);
         labels.avoid([LEFT, y - 1.0, WIDTH - RIGHT, y + 1.0]);
         labels.avoid([LEFT, y, LEFT + 45.0, y + 18.0]);
     }
     for (x, y, entry) in placed {
         let cost = value(entry).map_or("not measured".to_owned(), |n| amount(axis, n));
-        begin(&mut svg, entry, &format!("error {:.2}, {cost} {}", entry.error, axis.place()));
+        begin(&mut svg, entry, &format!("error {:.2}, {cost} {}", error(entry), axis.place()));
         let class = class(entry);
         if entry.chosen {
             let _ = write!(svg, "<circle class=\"ring\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"8\"/>");
@@ -210,7 +247,7 @@ impl Scale {
         HEIGHT - BOTTOM - error / self.top * (HEIGHT - BOTTOM - TOP)
     }
 
-    fn draw(&self, svg: &mut String, entries: &[Entry], blanks: Option<&str>) {
+    fn draw(&self, svg: &mut String, oracles: &[&Entry], blanks: Option<&str>) {
         let step = if self.top > 0.4 { 0.1 } else { 0.05 };
         for i in 0..=(self.top / step + 1e-9) as u32 {
             let error = f64::from(i) * step;
@@ -228,8 +265,8 @@ impl Scale {
             let y = HEIGHT - BOTTOM + 15.0;
             let _ = write!(svg, "<text class=\"soft\" x=\"{LEFT}\" y=\"{y:.1}\">{text}</text>");
         }
-        for entry in entries.iter().filter(|e| e.kind == Kind::Oracle) {
-            let y = self.y(entry.error);
+        for oracle in oracles {
+            let y = self.y(oracle.error);
             let _ = write!(
                 svg,
                 "<path class=\"oracle\" d=\"M{LEFT} {y:.1}H{:.1}\"/><text class=\"soft\" x=\"{LEFT}\" y=\"{:.1}\" \

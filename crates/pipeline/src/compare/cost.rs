@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::ours::Ours;
 use crate::metric::Peer;
-use crate::render::{Bumps, Material, Texture};
+use crate::render::Texture;
 
 /// Cost of shading a fragment of a metal with normal and metallic-roughness maps under one directional light and an
 /// environment.
@@ -107,10 +107,9 @@ impl Axis {
 impl Cost {
     /// Returns the cost of one of our bakes.
     pub fn of_bake(ours: &Ours) -> Self {
-        let read = textures(&ours.material);
         let shading = shading(if ours.material.anisotropy.is_some() { "anisotropic" } else { "isotropic" });
         Self {
-            gpu_bytes: Some(read.iter().map(|texture| blocks(texture) * BLOCK).sum()),
+            gpu_bytes: Some(ours.material.textures().map(|texture| blocks(texture) * BLOCK).sum()),
             file_bytes: Some(ours.file_bytes),
             bake_seconds: Some(ours.seconds),
             fetches: shading.map(|s| s.fetches),
@@ -141,15 +140,6 @@ impl Cost {
             bake_seconds: None,
         }
     }
-}
-
-fn textures(material: &Material) -> Vec<&Texture> {
-    let normals = match &material.bumps {
-        Bumps::Normals { texture, .. } | Bumps::Offsets { texture, .. } => Some(texture),
-        Bumps::Flat => None,
-    };
-    let anisotropy = material.anisotropy.as_ref().and_then(|a| a.texture.as_ref());
-    [normals, material.roughness.as_ref(), anisotropy].into_iter().flatten().collect()
 }
 
 fn levels(texture: &Texture) -> impl Iterator<Item = (u64, u64)> {

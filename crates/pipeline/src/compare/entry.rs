@@ -30,6 +30,9 @@ pub struct Entry {
     pub error: f64,
     /// Mean lobe error of each level from 0 on.
     pub level_errors: Vec<f64>,
+    /// Relative L1 of pictures; `None` if none were drawn. None are drawn of the best lobe, since the search for the
+    /// lobe of each texel of a picture would take hours.
+    pub picture_error: Option<f64>,
     /// Its cost.
     #[serde(flatten)]
     pub cost: Cost,
@@ -37,12 +40,15 @@ pub struct Entry {
 
 /// All entries of a material.
 #[derive(Clone, Debug, Serialize)]
+#[serde(rename_all = "camelCase")]
 pub struct Comparison {
     /// Its name.
     pub material: String,
     /// What `--model auto` chose and what that is worth, in a few sentences; absent if that is not known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub verdict: Option<String>,
+    /// Expected relative L1 of a perfect picture; `None` if no pictures were drawn.
+    pub picture_noise: Option<f64>,
     /// Our models, then peers, then the oracle.
     pub entries: Vec<Entry>,
 }

@@ -38,6 +38,9 @@ pub struct CompareOptions {
     pub max_error: f32,
     /// The quality of the bake that is marked.
     pub quality: Effort,
+    /// Width in pixels of the pictures that are judged, at most [`MAX_PICTURE_WIDTH`](super::MAX_PICTURE_WIDTH); 0 for
+    /// no pictures.
+    pub picture_width: u32,
     /// Largest number of texels of an input image.
     pub max_texels: u64,
 }
@@ -85,7 +88,7 @@ pub struct FailedInput {
 ///
 /// # Errors
 /// [`FailedInput`] for the first input that cannot be read or baked, or whose charts cannot be written.
-pub fn compare_files(options: &CompareOptions, progress: &dyn Fn(f32, &str)) -> Result<Charts, FailedInput> {
+pub fn compare_files(options: &CompareOptions, progress: &(dyn Fn(f32, &str) + Sync)) -> Result<Charts, FailedInput> {
     let mut guard = Guard::default();
     let mut materials = Vec::new();
     for (i, path) in options.inputs.iter().enumerate() {
@@ -103,7 +106,7 @@ fn compare_input(
     options: &CompareOptions,
     path: &Path,
     guard: &mut Guard,
-    progress: &dyn Fn(f32, &str),
+    progress: &(dyn Fn(f32, &str) + Sync),
 ) -> Result<Vec<Comparison>, CompareError> {
     let input = Input::read(path, options.height_scale)?;
     let mut comparisons = input
@@ -140,7 +143,7 @@ fn write(output: &Path, guard: &mut Guard, comparisons: Vec<Comparison>) -> Resu
 fn compare_document(
     options: &CompareOptions,
     source: &Source<'_>,
-    progress: &dyn Fn(f32, &str),
+    progress: &(dyn Fn(f32, &str) + Sync),
 ) -> Result<Vec<Comparison>, CompareError> {
     let root: Value = source.document.json().value("").map_err(BakeError::from)?.unwrap_or_default();
     let materials = materials(&root).into_iter().collect::<Result<Vec<_>, _>>().map_err(BakeError::from)?;
@@ -168,7 +171,7 @@ fn compare_document(
 fn compare_material(
     options: &CompareOptions,
     source: &Source<'_>,
-    advance: &dyn Fn(f32, &str),
+    advance: &(dyn Fn(f32, &str) + Sync),
 ) -> Result<Option<Comparison>, CompareError> {
     let settings = Settings::default()
         .with_gltf(Form::Strict)
@@ -207,7 +210,10 @@ fn compare_material(
         advance(ours.len() as f32 / (2 * OURS) as f32, &name);
     }
     let scored = |share: f32| advance(0.5 + 0.5 * share, &name);
-    let comparison = ours.try_into().ok().and_then(|ours| compare(&name, &truth, ours, options.texels, &scored));
+    let comparison = ours
+        .try_into()
+        .ok()
+        .and_then(|ours| compare(&name, &truth, ours, options.texels, options.picture_width, &scored));
     Ok(comparison.map(|comparison| {
         let verdict = layer.and_then(|layer| verdict(&comparison.entries, &layer, options.max_error));
         Comparison { verdict, ..comparison }

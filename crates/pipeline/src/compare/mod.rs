@@ -11,6 +11,7 @@ mod files;
 mod labels;
 mod ours;
 mod page;
+mod pictures;
 mod report;
 mod table;
 #[cfg(test)]
@@ -21,14 +22,17 @@ mod verdict;
 use crate::lobe::{Family, SquaredAlpha};
 use crate::math::symmetric::Symmetric2;
 use crate::metric::{Lobe, Peer, Surface, mean_errors, oracle, sample_texels};
-use crate::render::{Bumps, Material, Texture};
+use crate::render::{Advance, Bumps, Material, Texture};
 
+pub use chart::Measure;
 pub use chart::file as chart;
 pub use cost::{Axis, Cost};
 pub use entry::{Comparison, Entry, Kind};
 pub use files::{Charts, CompareError, CompareOptions, FailedInput, compare_files};
 pub use ours::Ours;
 pub use page::page;
+pub use pictures::MAX_PICTURE_WIDTH;
+use pictures::picture_errors;
 pub use report::{COMPARE_FORMAT, ComparisonReport};
 pub use table::csv;
 
@@ -42,7 +46,11 @@ const LAST_LEVEL: usize = 7;
 /// First level of the mean error, if the map has that many levels, as in docs/accuracy.md.
 const MEAN_FROM: usize = 2;
 
-/// Scores our models and the peers at `texels` sampled texels of each level up to 7.
+/// The share of the work that is scoring of texels if pictures are drawn, as the bar of progress shows it.
+const SCORING: f32 = 0.6;
+
+/// Scores our models and the peers at `texels` sampled texels of each level up to 7, and on pictures that are
+/// `picture_width` pixels wide. A width of 0 draws none.
 ///
 /// The first of `ours` has plain mips. `truth` is the material with unencoded normals. `advance` receives the finished
 /// share of the work. Returns `None` for a material without a normal map.
@@ -51,7 +59,8 @@ pub fn compare(
     truth: &Material,
     ours: [Ours; OURS],
     texels: usize,
-    advance: &dyn Fn(f32),
+    picture_width: u32,
+    advance: Advance<'_>,
 ) -> Option<Comparison> {
     let surface = surface(truth)?;
     let grid = normals(&ours[0].material)?;
@@ -73,8 +82,11 @@ pub fn compare(
             errors[ENTRIES - 1] = oracle(reference, &lobes).1;
             errors
         }));
-        advance((level + 1) as f32 / levels as f32);
+        let scoring = if picture_width > 0 { SCORING } else { 1.0 };
+        advance(scoring * (level + 1) as f32 / levels as f32);
     }
+    let drawn = |share: f32| advance(SCORING + (1.0 - SCORING) * share);
+    let pictures = if picture_width > 0 { picture_errors(truth, &surface, &ours, picture_width, &drawn) } else { None };
     let plain = Cost::of_bake(&ours[0]);
     let ours = ours.iter().map(|o| (o.name.clone(), Kind::Ours, o.chosen, Cost::of_bake(o)));
     let peers = Peer::ALL.iter().map(|peer| {
@@ -86,9 +98,12 @@ pub fn compare(
         let level_errors: Vec<f64> = by_level.iter().map(|errors| errors[i]).collect();
         let averaged = level_errors.get(MEAN_FROM..).filter(|rest| !rest.is_empty()).unwrap_or(&level_errors);
         let error = averaged.iter().sum::<f64>() / averaged.len().max(1) as f64;
-        Entry { name, kind, chosen, error, level_errors, cost }
+        let picture_error = pictures.as_ref().and_then(|pictures| pictures.errors.get(i).copied());
+        Entry { name, kind, chosen, error, level_errors, picture_error, cost }
     });
-    Some(Comparison { material: name.to_owned(), verdict: None, entries: entries.collect() })
+    let entries = entries.collect();
+    let picture_noise = pictures.map(|pictures| pictures.noise);
+    Some(Comparison { material: name.to_owned(), verdict: None, picture_noise, entries })
 }
 
 fn normals(material: &Material) -> Option<&Texture> {

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::chart;
+use super::chart::{self, Measure};
 use super::units::amount;
 use super::{Axis, Comparison};
 use crate::text::xml_escaped;
@@ -22,20 +22,22 @@ pub fn page(comparisons: &[Comparison], version: &str) -> String {
     let mut html = format!(
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/>\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\
-         <title>Lobe error against cost</title><style>{STYLE}{}",
+         <title>Error against cost</title><style>{STYLE}{}",
         chart::STYLE
     );
     for i in 0..Axis::ALL.len() {
         let _ = write!(html, "body:has(#axis{i}:checked) .axis:not(.axis{i}){{display:none}}");
     }
-    html += "</style></head><body><h1>Lobe error against cost</h1><ul class=\"verdicts\">";
+    html += "</style></head><body><h1>Error against cost</h1><ul class=\"verdicts\">";
     for Comparison { material, verdict, .. } in comparisons {
         let verdict = verdict.as_deref().unwrap_or("not known.");
         let _ = write!(html, "<li><b>{}</b>: {}</li>", xml_escaped(material), xml_escaped(verdict));
     }
     html += "</ul><p>Lobe error: the share of reflected half-vectors in the wrong place, 0 to 1. Circles are bakes of Roughcast, \
         decoded as engines decode them. Squares are other tools' formulas on exact moments, with our encoded normals. \
-        The dashed line is the best single lobe. The ring marks the choice of <code>--model auto</code>. Bake times \
+        The dashed line is the best single lobe. Picture error: the relative L1 of the radiance of a sphere at two \
+        distances against a supersampled picture, 0 being equal; it has no best lobe, since none is searched for each \
+        pixel. The ring marks the choice of <code>--model auto</code>. Bake times \
         vary from run to run.</p>\
         <fieldset><legend>Cost</legend>";
     for (i, axis) in Axis::ALL.iter().enumerate() {
@@ -50,10 +52,17 @@ pub fn page(comparisons: &[Comparison], version: &str) -> String {
     for comparison in comparisons {
         let _ = write!(html, "<h2>{}</h2>", xml_escaped(&comparison.material));
         for (i, axis) in Axis::ALL.into_iter().enumerate() {
-            let svg = chart::cost(comparison, axis, 0.0);
-            let _ = write!(html, "<div class=\"scroll axis axis{i}\" tabindex=\"0\">{svg}</div>");
+            let svgs: String = Measure::of(comparison).iter().map(|m| chart::cost(comparison, axis, *m, 0.0)).collect();
+            let _ = write!(html, "<div class=\"scroll axis axis{i}\" tabindex=\"0\">{svgs}</div>");
         }
         let _ = write!(html, "<div class=\"scroll\" tabindex=\"0\">{}</div>", chart::levels(comparison, 0.0));
+        if let Some(noise) = comparison.picture_noise {
+            let _ = write!(
+                html,
+                "<p>Pictures without any error would have a picture error of {noise:.3}, which is the noise of the \
+                 truth.</p>"
+            );
+        }
         html += &table(comparison);
     }
     let _ = writeln!(html, "<p>roughcast {}</p></body></html>", xml_escaped(version));
@@ -62,7 +71,7 @@ pub fn page(comparisons: &[Comparison], version: &str) -> String {
 
 fn table(comparison: &Comparison) -> String {
     let mut html = "<div class=\"scroll\" tabindex=\"0\"><table><thead><tr><th>model</th><th>kind</th><th>chosen</th>\
-        <th>error</th>"
+        <th>lobe error</th><th>picture error</th>"
         .to_owned();
     Axis::ALL.iter().for_each(|axis| {
         let _ = write!(html, "<th>{}</th>", axis.title());
@@ -76,7 +85,8 @@ fn table(comparison: &Comparison) -> String {
         html += if entry.chosen { "<tr class=\"chosen\">" } else { "<tr>" };
         let kind = format!("{:?}", entry.kind).to_lowercase();
         let chosen = if entry.chosen { "chosen" } else { "" };
-        let facts = [entry.name.clone(), kind, chosen.to_owned(), format!("{:.3}", entry.error)];
+        let picture_error = entry.picture_error.map_or(String::new(), |error| format!("{error:.3}"));
+        let facts = [entry.name.clone(), kind, chosen.to_owned(), format!("{:.3}", entry.error), picture_error];
         let costs = Axis::ALL.map(|axis| axis.value(&entry.cost).map_or(String::new(), |n| amount(axis, n)));
         let errors = entry.level_errors.iter().map(|e| format!("{e:.3}"));
         for cell in facts.into_iter().chain(costs).chain(errors) {

@@ -5,8 +5,19 @@ use std::io;
 use super::{Axis, Comparison, Entry};
 
 /// The columns of [`row`] behind the name of the material.
-const HEADINGS: [&str; 10] =
-    ["material", "name", "kind", "chosen", "error", "gpu_bytes", "file_bytes", "bake_seconds", "fetches", "operations"];
+const HEADINGS: [&str; 11] = [
+    "material",
+    "name",
+    "kind",
+    "chosen",
+    "error",
+    "picture_error",
+    "gpu_bytes",
+    "file_bytes",
+    "bake_seconds",
+    "fetches",
+    "operations",
+];
 
 /// Writes one row for each entry of each material, below a heading. Cells without a value are empty.
 ///
@@ -29,11 +40,12 @@ pub fn csv(comparisons: &[Comparison]) -> io::Result<String> {
     String::from_utf8(bytes).map_err(io::Error::other)
 }
 
-/// Returns the cells of an entry: name, kind, whether chosen, error and costs.
+/// Returns the cells of an entry: name, kind, whether chosen, errors and costs.
 pub fn row(entry: &Entry) -> Vec<String> {
     let chosen = if entry.chosen { "chosen" } else { "" };
     let kind = format!("{:?}", entry.kind).to_lowercase();
     let mut cells = vec![entry.name.clone(), kind, chosen.to_owned(), format!("{:.6}", entry.error)];
+    cells.push(entry.picture_error.map_or(String::new(), |error| format!("{error:.6}")));
     let cost = |axis: Axis| {
         axis.value(&entry.cost).map_or(String::new(), |n| match axis {
             Axis::BakeSeconds => format!("{n:.3}"),

@@ -17,12 +17,14 @@ fn comparison(material: &str) -> Comparison {
         chosen: i == 2,
         error: 0.02 * f64::from(i),
         level_errors: vec![0.0, 0.01 * f64::from(i)],
+        picture_error: (kind != Kind::Oracle).then_some(0.03 * f64::from(i)),
         cost: Cost { gpu_bytes: (kind != Kind::Oracle).then_some(u64::from(1 + i) << 10), ..Cost::default() },
     };
     let kinds = (0..17).map(|i| (i, if i < 6 { Kind::Ours } else { Kind::Peer })).chain([(17, Kind::Oracle)]);
     Comparison {
         material: material.to_owned(),
         verdict: None,
+        picture_noise: Some(0.02),
         entries: kinds.map(|(i, kind)| entry(i, kind)).collect(),
     }
 }
@@ -33,7 +35,7 @@ fn writes_one_row_for_each_entry_with_quoted_names() {
     assert_eq!(text.lines().count(), 19);
     assert!(text.lines().skip(1).all(|line| line.starts_with("\"a,\"\"b\"\"\",model ")), "{text}");
     let columns = |line: &str| line.replace("\"a,\"\"b\"\"\"", "").matches(',').count();
-    assert!(text.lines().all(|line| columns(line) == 11), "{text}");
+    assert!(text.lines().all(|line| columns(line) == 12), "{text}");
 }
 
 #[test]
@@ -51,9 +53,10 @@ fn labels_every_entry_and_escapes_hostile_names() {
     let svg = chart(&comparison("<script>&\u{1}"));
     assert!(svg.contains("&lt;script&gt;&amp;\u{fffd}") && !svg.contains("<script"));
     for i in 0..17 {
-        assert_eq!(svg.matches(&format!(">model {i}<")).count() + svg.matches(&format!(">model {i} (c")).count(), 2);
+        assert_eq!(svg.matches(&format!(">model {i}<")).count() + svg.matches(&format!(">model {i} (c")).count(), 3);
     }
-    assert_eq!(svg.matches("class=\"ring\"").count(), 1);
+    // The chosen entry is marked in the charts of both errors.
+    assert_eq!(svg.matches("class=\"ring\"").count(), 2);
 }
 
 #[test]
@@ -84,7 +87,7 @@ fn the_page_begins_with_the_verdict() {
     assert_eq!(
         within,
         "Isotropic lobes at half size are the cheapest choice within 0.1 at every level: mean error 0.04, 3.1 kB on \
-         the GPU. Plain mips: 0.14. Best possible lobe: 0.34."
+         the GPU. Plain mips: 0.14. Best possible lobe: 0.34. Picture error: 0.06, with plain mips 0.21."
     );
     let miss = json!([{ "level": 3, "error": 0.3, "oracle": 0.2, "reason": "twoPeaked" }]);
     let missed = verdict(&comparison.entries, &layer(miss), 0.1).unwrap();
@@ -98,8 +101,20 @@ fn the_page_begins_with_the_verdict() {
 }
 
 #[test]
+fn a_comparison_without_pictures_has_no_chart_of_them() {
+    let mut comparison = comparison("m");
+    let page_with = page(&[comparison.clone()], "0");
+    comparison.picture_noise = None;
+    comparison.entries.iter_mut().for_each(|entry| entry.picture_error = None);
+    let title = "m: picture error against size on the GPU";
+    assert!(page_with.contains(title) && page_with.contains("a picture error of 0.020"));
+    assert!(!page(&[comparison.clone()], "0").contains(title));
+    assert!(!chart(&comparison).contains(title));
+}
+
+#[test]
 fn draws_a_chart_without_entries() {
-    let svg = chart(&Comparison { material: String::new(), verdict: None, entries: Vec::new() });
+    let svg = chart(&Comparison { material: String::new(), verdict: None, picture_noise: None, entries: Vec::new() });
     assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
 }
 

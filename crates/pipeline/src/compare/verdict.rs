@@ -29,7 +29,11 @@ pub fn verdict(entries: &[Entry], layer: &LayerReport, max_error: f32) -> Option
     let oracle = error(&|e| e.kind == Kind::Oracle);
     let others = [("Plain mips", plain), ("Best possible lobe", oracle)];
     let others = others.iter().filter_map(|(name, e)| Some(format!(" {name}: {:.2}.", (*e)?))).collect::<String>();
-    Some(format!("{first}: mean error {:.2}{cost}.{others}", chosen.error))
+    let plain_pictures = entries.iter().find(|e| e.name == "plain mips").and_then(|e| e.picture_error);
+    let pictures = chosen.picture_error.zip(plain_pictures);
+    let pictures = pictures
+        .map_or(String::new(), |(ours, plain)| format!(" Picture error: {ours:.2}, with plain mips {plain:.2}."));
+    Some(format!("{first}: mean error {:.2}{cost}.{others}{pictures}", chosen.error))
 }
 
 /// Returns the size of the chosen textures in words.

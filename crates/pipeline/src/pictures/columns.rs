@@ -13,6 +13,8 @@ use crate::settings::{Form, Model, Profile, Settings};
 pub struct Columns {
     /// Its name, fit for a file name.
     pub name: String,
+    /// The asset and the material, as people name them.
+    pub title: String,
     /// Plain normal mips in half floats. Level 0 is the reference.
     pub plain: Material,
     /// The portable profile.
@@ -23,7 +25,7 @@ pub struct Columns {
 
 /// A column that is drawn with filtered textures.
 pub struct Column<'a> {
-    /// Its heading.
+    /// Its name, as in file names.
     pub name: &'static str,
     /// What is drawn.
     pub material: &'a Material,
@@ -38,26 +40,41 @@ impl Columns {
     }
 }
 
-/// Bakes `source` with `settings` and reads back every material that has bumps on its base layer.
+/// Returns the name of a column as people read it.
+pub fn title_of(column: &str) -> &'static str {
+    match column {
+        "plain" => "plain mips",
+        "portable" => "portable bake",
+        "pyramid" => "pyramid bake",
+        _ => "supersampled (truth)",
+    }
+}
+
+/// Bakes `source` with `settings` and reads back every material that has bumps on its base layer. `advance` receives
+/// the finished share of the bakes.
 ///
 /// # Errors
 /// [`ReadBackError::NoBumps`] if no material has bumps, and the errors of the bake.
-pub fn columns(source: &Source<'_>, settings: &Settings) -> Result<Vec<Columns>, PictureError> {
+pub fn columns(source: &Source<'_>, settings: &Settings, advance: &dyn Fn(f32)) -> Result<Vec<Columns>, PictureError> {
     let strict = settings.with_gltf(Form::Strict).with_glb(false).with_provenance(false);
     let of_profile = |profile| strict.with_profile(profile);
     let plain = of_profile(Profile::Portable).with_model(Model::None).with_target(Target::Float);
-    let plain = read(source, &plain)?;
-    let baked = |profile: Profile, wanted: bool| {
-        if wanted { read(source, &of_profile(profile)) } else { Ok(Vec::new()) }
+    let (has_portable, has_pyramid) = (settings.profile.is_portable(), settings.profile.has_pyramid());
+    let bakes = 1 + u8::from(has_portable) + u8::from(has_pyramid);
+    let part = |bake: u8| move |share: f32| advance((f32::from(bake) + share) / f32::from(bakes));
+    let plain = read(source, &plain, &part(0))?;
+    let baked = |profile: Profile, wanted: bool, advance: &dyn Fn(f32)| {
+        if wanted { read(source, &of_profile(profile), advance) } else { Ok(Vec::new()) }
     };
-    let mut portable = baked(Profile::Portable, settings.profile.is_portable())?.into_iter();
-    let mut pyramid = baked(Profile::Pyramid, settings.profile.has_pyramid())?.into_iter();
+    let mut portable = baked(Profile::Portable, has_portable, &part(1))?.into_iter();
+    let mut pyramid = baked(Profile::Pyramid, has_pyramid, &part(bakes - 1))?.into_iter();
     let mut taken = BTreeSet::new();
     // Every bake keeps the order of the materials.
     let columns: Vec<Columns> = plain
         .into_iter()
         .map(|(name, plain)| Columns {
             name: file_name(source.stem, &name, &mut taken),
+            title: if source.stem.is_empty() { name } else { format!("{}: {name}", source.stem) },
             plain,
             portable: portable.next().map(|(_, material)| material),
             pyramid: pyramid.next().map(|(_, material)| material),
@@ -67,6 +84,10 @@ pub fn columns(source: &Source<'_>, settings: &Settings) -> Result<Vec<Columns>,
 }
 
 /// Bakes `source` and reads back names and materials, in the order of the document.
-fn read(source: &Source<'_>, settings: &Settings) -> Result<Vec<(String, Material)>, PictureError> {
-    Ok(read_back(source, &bake_asset(source, settings, &|_| {})?, settings.max_texels)?)
+fn read(
+    source: &Source<'_>,
+    settings: &Settings,
+    advance: &dyn Fn(f32),
+) -> Result<Vec<(String, Material)>, PictureError> {
+    Ok(read_back(source, &bake_asset(source, settings, advance)?, settings.max_texels)?)
 }

@@ -2,15 +2,16 @@
 
 use std::path::PathBuf;
 
-use super::columns::{Column, Columns, columns};
+use super::columns::{Column, Columns, columns, title_of};
 use super::error::PictureError;
 use super::folder::{Folder, Shown};
-use super::report::{ColumnReport, PicturesReport, RowReport, SheetReport};
+use super::gallery::page;
+use super::report::{ColumnReport, PicturesReport, RENDER_FORMAT, RowReport, SheetReport};
 use crate::lobe::Family;
-use crate::readback::Input;
+use crate::readback::{Input, MapKind};
 use crate::render::{
-    Advance, Difference, EnvironmentFilter, Filter, Reflection, SceneName, Shader, Tone, filtered, highlight,
-    relative_l1, supersampled,
+    Advance, Crop, Difference, EnvironmentFilter, Filter, Picture, Reflection, SceneName, Shader, Tone, filtered,
+    highlight, relative_l1, supersampled,
 };
 use crate::settings::Settings;
 
@@ -67,8 +68,11 @@ impl PictureOptions {
     }
 }
 
-/// Draws every material of the input in every scene, and writes the pictures. `progress` receives the finished share of
-/// the work and the name of the material, from any thread.
+/// The share of the work that is bakes, as the bar of progress shows it.
+const BAKES: f32 = 0.25;
+
+/// Draws every material of the input in every scene, and writes the pictures and the page that shows them all.
+/// `progress` receives the finished share of the work and the name of the material, from any thread.
 ///
 /// # Errors
 /// [`PictureError`] for the first file that cannot be read, baked or written.
@@ -80,77 +84,128 @@ pub fn draw_pictures(
     let input = path.map_or_else(Input::waves, |path| Input::read(path, options.height_scale))?;
     let mut folder = Folder::new(&options.output, options.has_exr, input.guard(path));
     let scenes = options.scenes();
+    let settings = options.bake_settings();
     let mut sheets = Vec::new();
+    let mut baked: Option<(SceneName, Vec<Columns>)> = None;
     for (index, &scene) in scenes.iter().enumerate() {
+        let progress = |share: f32, name: &str| progress((index as f32 + share) / scenes.len() as f32, name);
         if scene == SceneName::Highlight {
             sheets.push(draw_highlight(options.width, &mut folder)?);
             continue;
         }
-        let settings = options.bake_settings();
-        let materials = input.with_source(scene, options.roughness, |source| columns(source, &settings))?;
+        let reusable = baked.take().filter(|(earlier, _)| are_baked_alike(&input, options.roughness, *earlier, scene));
+        let start = if reusable.is_some() { 0.0 } else { BAKES };
+        let materials = match reusable {
+            Some((_, materials)) => materials,
+            None => input.with_source(scene, options.roughness, |source| {
+                columns(source, &settings, &|share| progress(start * share, "bakes"))
+            })?,
+        };
         for (done, columns) in materials.iter().enumerate() {
             let advance = |share: f32| {
-                let share_of_scene = (done as f32 + share) / materials.len() as f32;
-                progress((index as f32 + share_of_scene) / scenes.len() as f32, &columns.name);
+                let drawn = (done as f32 + share) / materials.len() as f32;
+                progress(start + (1.0 - start) * drawn, &columns.name);
             };
             sheets.push(draw_material(options, scene, columns, &mut folder, &advance)?);
         }
+        baked = Some((scene, materials));
     }
-    Ok(PicturesReport::new(sheets))
+    let gallery = folder.write_text("index.html", page(&sheets, env!("CARGO_PKG_VERSION")))?;
+    Ok(PicturesReport { format_version: RENDER_FORMAT, gallery, sheets })
+}
+
+/// Returns whether the materials of `input` are the same in two scenes.
+fn are_baked_alike(input: &Input, roughness: Option<f32>, a: SceneName, b: SceneName) -> bool {
+    let is_as_rough = roughness.is_some() || a.roughness() == b.roughness();
+    match input {
+        Input::Asset { .. } => true,
+        Input::Map { kind: MapKind::Waves, .. } => is_as_rough && a.wave_height() == b.wave_height(),
+        Input::Map { .. } => is_as_rough,
+    }
 }
 
 /// Draws the paper's figure 14, which shows no material.
 fn draw_highlight(width: u32, folder: &mut Folder<'_>) -> Result<SheetReport, PictureError> {
+    const TITLE: &str = "Highlights of Phong and Blinn-Phong";
+    let tone = Tone { exposure: 1.0 };
     let [phong, blinn_phong] = highlight(width);
-    let shown = |name, picture, label: &str| Shown {
-        name,
-        picture,
-        labels: vec![label.to_owned()],
-        tone: Tone { exposure: 1.0 },
-    };
-    let panels =
-        vec![shown("phong", phong, "Phong, outline of Blinn-Phong"), shown("blinn-phong", blinn_phong, "Blinn-Phong")];
-    let path = folder.write(SceneName::Highlight.name(), &[(None, panels)])?;
-    Ok(SheetReport { path, material: None, scene: SceneName::Highlight, rows: Vec::new() })
+    let mut panels = Vec::new();
+    for (name, picture, heading) in
+        [("phong", phong, "Phong, outline of Blinn-Phong"), ("blinn-phong", blinn_phong, "Blinn-Phong")]
+    {
+        folder.write_picture(&format!("{}.{name}", SceneName::Highlight.name()), &picture, &tone)?;
+        panels.push(Shown { heading: heading.to_owned(), picture, crop: None, labels: Vec::new(), tone });
+    }
+    let path = folder.write_sheet(SceneName::Highlight.name(), TITLE, "", &[panels])?;
+    Ok(SheetReport { path, title: TITLE.to_owned(), material: None, scene: SceneName::Highlight, rows: Vec::new() })
 }
 
 /// Draws one material in one scene.
 fn draw_material(
     options: &PictureOptions,
-    scene_name: SceneName,
+    scene: SceneName,
     columns: &Columns,
     folder: &mut Folder<'_>,
     advance: Advance<'_>,
 ) -> Result<SheetReport, PictureError> {
-    let distances = if options.distances.is_empty() { scene_name.distances() } else { options.distances.as_slice() };
+    let distances = if options.distances.is_empty() { scene.distances() } else { options.distances.as_slice() };
+    let stem = format!("{}.{}", columns.name, scene.name());
     let mut rows = Vec::new();
-    let mut shown = Vec::new();
+    let mut sheet = Vec::new();
     for (done, &distance) in distances.iter().enumerate() {
-        let Some(scene) = scene_name.scene(options.width, distance) else { continue };
-        let shader = options.shader(scene.f0);
-        // Filtered columns take little time beside the supersampled column.
         let advance = |share: f32| advance((done as f32 + share) / distances.len() as f32);
-        let truth = supersampled(&scene, &columns.plain, &shader, options.samples, &advance);
-        let tone = Tone::expose_for(&truth.picture, scene.key);
-        let mut row = RowReport {
-            distance,
-            columns: Vec::new(),
-            // The halves of the samples differ by twice the expected error of their mean.
-            noise: relative_l1(&truth.half, &truth.picture),
-        };
-        let mut panels = Vec::new();
-        for Column { name, material } in columns.filtered() {
-            let picture = filtered(&scene, material, &shader, options.filter, &|_| {});
-            let difference = Difference::between(&picture, &truth.picture, &tone);
-            let label = format!("L1 {:.3}  SSIM {:.3}", difference.relative_l1, difference.ssim);
-            panels.push(Shown { name, picture, labels: vec![name.to_owned(), label], tone });
-            row.columns.push(ColumnReport { name, difference });
+        if let Some((row, panels)) = draw_row(options, scene, distance, columns, (folder, &stem), &advance)? {
+            rows.push(row);
+            sheet.push(panels);
         }
-        let labels = vec!["supersampled".to_owned(), format!("noise {:.3}", row.noise)];
-        panels.push(Shown { name: "supersampled", picture: truth.picture, labels, tone });
-        rows.push(row);
-        shown.push((Some(distance), panels));
     }
-    let path = folder.write(&format!("{}.{}", columns.name, scene_name.name()), &shown)?;
-    Ok(SheetReport { path, material: Some(columns.name.clone()), scene: scene_name, rows })
+    let title = format!("{}, {}", columns.title, scene.name());
+    let subtitle = "Below each picture its framed region, enlarged 4 times. Error: relative L1 of radiance.";
+    let path = folder.write_sheet(&stem, &title, subtitle, &sheet)?;
+    Ok(SheetReport { path, title, material: Some(columns.name.clone()), scene, rows })
+}
+
+/// Draws a material at one distance. Returns `None` if the scene shows no material.
+fn draw_row(
+    options: &PictureOptions,
+    scene: SceneName,
+    distance: f64,
+    columns: &Columns,
+    (folder, stem): (&mut Folder<'_>, &str),
+    advance: Advance<'_>,
+) -> Result<Option<(RowReport, Vec<Shown>)>, PictureError> {
+    let Some(scene) = scene.scene(options.width, distance) else { return Ok(None) };
+    let shader = options.shader(scene.f0);
+    // Filtered columns take little time beside the supersampled column.
+    let truth = supersampled(&scene, &columns.plain, &shader, options.samples, advance);
+    let tone = Tone::expose_for(&truth.picture, scene.key);
+    // The halves of the samples differ by twice the expected error of their mean.
+    let noise = relative_l1(&truth.half, &truth.picture);
+    let truth = truth.picture;
+    let pictures: Vec<(&'static str, Picture)> = columns
+        .filtered()
+        .map(|Column { name, material }| (name, filtered(&scene, material, &shader, options.filter, &|_| {})))
+        .collect();
+    let crop = Crop::most_different(&pictures.iter().map(|(_, picture)| picture).collect::<Vec<_>>(), &truth, &tone);
+    let shown = |name: &str, picture: Picture, labels: Vec<String>| {
+        let heading = format!("{}, distance {distance}", title_of(name));
+        Shown { heading, picture, crop: Some(crop), labels, tone }
+    };
+    let stem = format!("{stem}.d{distance}");
+    let mut reports = Vec::new();
+    let mut panels = Vec::new();
+    for (name, picture) in pictures {
+        let path = folder.write_picture(&format!("{stem}.{name}"), &picture, &tone)?;
+        let difference = Difference::between(&picture, &truth, &tone);
+        let labels = vec![
+            format!("error {:.3} (lower is better)", difference.relative_l1),
+            format!("SSIM {:.3} (higher is better)", difference.ssim),
+        ];
+        reports.push(ColumnReport { name, path, difference });
+        panels.push(shown(name, picture, labels));
+    }
+    let supersampled = folder.write_picture(&format!("{stem}.supersampled"), &truth, &tone)?;
+    let size = truth.size;
+    panels.push(shown("supersampled", truth, vec![format!("noise {noise:.3}")]));
+    Ok(Some((RowReport { distance, columns: reports, supersampled, noise, size, crop }, panels)))
 }

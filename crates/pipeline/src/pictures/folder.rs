@@ -1,4 +1,4 @@
-//! Pictures as files: a sheet, and each picture alone.
+//! Pictures as files: a sheet, each picture alone, and the gallery.
 
 use std::path::Path;
 
@@ -8,14 +8,16 @@ use crate::codec::uastc::Effort;
 use crate::image::{Image, Samples};
 use crate::inspect::encode_exr;
 use crate::output::Guard;
-use crate::render::{Panel, Picture, Sheet, Tone};
+use crate::render::{Crop, Panel, Picture, Sheet, Tone};
 
 /// A picture and its presentation.
 pub struct Shown {
-    /// The name, as in file names.
-    pub name: &'static str,
+    /// The line above the picture.
+    pub heading: String,
     /// The picture.
     pub picture: Picture,
+    /// The region that is shown enlarged.
+    pub crop: Option<Crop>,
     /// The lines below the picture.
     pub labels: Vec<String>,
     /// The tone mapping.
@@ -23,12 +25,14 @@ pub struct Shown {
 }
 
 impl Shown {
-    fn panel(&self, distance: Option<f64>) -> Panel<'_> {
-        let mut labels = self.labels.clone();
-        if let (Some(distance), Some(first)) = (distance, labels.first_mut()) {
-            *first += &format!(", distance {distance}");
+    fn panel(&self) -> Panel<'_> {
+        Panel {
+            picture: &self.picture,
+            tone: self.tone,
+            heading: self.heading.clone(),
+            crop: self.crop,
+            labels: self.labels.clone(),
         }
-        Panel { picture: &self.picture, tone: self.tone, labels }
     }
 }
 
@@ -46,29 +50,35 @@ impl<'a> Folder<'a> {
         Self { output, has_exr, guard }
     }
 
-    /// Writes a sheet of rows, each with its distance where there are several, and every picture. Returns the sheet's
-    /// path.
-    pub fn write(&mut self, stem: &str, rows: &[(Option<f64>, Vec<Shown>)]) -> Result<String, PictureError> {
-        for (distance, row) in rows {
-            let distance = distance.map_or(String::new(), |d| format!(".d{d}"));
-            for Shown { name, picture, tone, .. } in row {
-                let stem = format!("{stem}{distance}.{name}");
-                self.write_sheet(&stem, Sheet::from_picture(picture, tone))?;
-                if self.has_exr {
-                    let path = self.output.join(format!("{stem}.exr"));
-                    let [width, height] = picture.size;
-                    let samples = Samples::F32(picture.pixels.iter().flatten().copied().collect());
-                    let encoded = encode_exr(Image { width, height, channels: 3, samples });
-                    self.write_file(&path, encoded)?;
-                }
-            }
+    /// Writes `picture` to a file of its own. Returns its path.
+    pub fn write_picture(&mut self, stem: &str, picture: &Picture, tone: &Tone) -> Result<String, PictureError> {
+        if self.has_exr {
+            let path = self.output.join(format!("{stem}.exr"));
+            let [width, height] = picture.size;
+            let samples = Samples::F32(picture.pixels.iter().flatten().copied().collect());
+            self.write_file(&path, encode_exr(Image { width, height, channels: 3, samples }))?;
         }
-        let sheet: Vec<Vec<Panel<'_>>> =
-            rows.iter().map(|(distance, row)| row.iter().map(|shown| shown.panel(*distance)).collect()).collect();
-        self.write_sheet(stem, Sheet::from_rows(&sheet))
+        self.write_png(stem, Sheet::from_picture(picture, tone))
     }
 
-    fn write_sheet(&mut self, stem: &str, sheet: Option<Sheet>) -> Result<String, PictureError> {
+    /// Writes a sheet of rows of pictures. Returns its path.
+    pub fn write_sheet(
+        &mut self,
+        stem: &str,
+        title: &str,
+        subtitle: &str,
+        rows: &[Vec<Shown>],
+    ) -> Result<String, PictureError> {
+        let rows: Vec<Vec<Panel<'_>>> = rows.iter().map(|row| row.iter().map(Shown::panel).collect()).collect();
+        self.write_png(stem, Sheet::from_rows(title, subtitle, &rows))
+    }
+
+    /// Writes `text` to the file `name`.
+    pub fn write_text(&mut self, name: &str, text: String) -> Result<String, PictureError> {
+        self.write_file(&self.output.join(name), Ok(text.into_bytes()))
+    }
+
+    fn write_png(&mut self, stem: &str, sheet: Option<Sheet>) -> Result<String, PictureError> {
         let path = self.output.join(format!("{stem}.png"));
         let encoded = match sheet {
             Some(sheet) => encode_png(&sheet.rgba, sheet.width, sheet.height, Effort::Best),

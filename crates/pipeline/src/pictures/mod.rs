@@ -5,6 +5,7 @@ mod columns;
 mod draw;
 mod error;
 mod folder;
+mod gallery;
 mod report;
 
 pub use draw::{PictureOptions, draw_pictures};

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::render::{Difference, SceneName};
+use crate::render::{Crop, Difference, SceneName};
 
 /// The format version of the JSON.
 pub const RENDER_FORMAT: u32 = 1;
@@ -13,15 +13,10 @@ pub const RENDER_FORMAT: u32 = 1;
 pub struct PicturesReport {
     /// The format version, [`RENDER_FORMAT`].
     pub format_version: u32,
+    /// The page that shows all pictures.
+    pub gallery: String,
     /// The sheets, in the order of the scenes and of the materials.
     pub sheets: Vec<SheetReport>,
-}
-
-impl PicturesReport {
-    /// Returns the report of `sheets`.
-    pub fn new(sheets: Vec<SheetReport>) -> Self {
-        Self { format_version: RENDER_FORMAT, sheets }
-    }
 }
 
 /// The report of a sheet.
@@ -30,6 +25,8 @@ impl PicturesReport {
 pub struct SheetReport {
     /// The file.
     pub path: String,
+    /// What the sheet shows: asset, material and scene.
+    pub title: String,
     /// The name of the material, as in file names; absent for the highlight, which shows none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub material: Option<String>,
@@ -47,8 +44,14 @@ pub struct RowReport {
     pub distance: f64,
     /// The columns beside the supersampled column.
     pub columns: Vec<ColumnReport>,
+    /// The file of the supersampled picture.
+    pub supersampled: String,
     /// Expected relative L1 of the supersampled column against a column with infinitely many samples.
     pub noise: f64,
+    /// Columns and rows of each picture.
+    pub size: [u32; 2],
+    /// The region that is shown enlarged, in which the columns differ most from the supersampled column.
+    pub crop: Crop,
 }
 
 /// The report of a picture.
@@ -56,6 +59,8 @@ pub struct RowReport {
 pub struct ColumnReport {
     /// The column: `plain`, `portable` or `pyramid`.
     pub name: &'static str,
+    /// The file.
+    pub path: String,
     /// Its difference from the supersampled column.
     #[serde(flatten)]
     pub difference: Difference,

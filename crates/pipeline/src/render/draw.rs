@@ -5,7 +5,8 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use rayon::prelude::*;
 
 use super::environment::Radiance;
-use super::material::Material;
+use super::facets::Facets;
+use super::material::{Material, Point};
 use super::sampler::{Filter, Texture};
 use super::scene::Scene;
 use super::shade::Shader;
@@ -28,6 +29,8 @@ pub type Advance<'a> = &'a (dyn Fn(f32) + Sync);
 
 /// Coverage samples along each side of a pixel.
 const EDGE_SAMPLES: u32 = 4;
+/// Pixels whose corners and middle do not see the surface have this part of the samples.
+const EMPTY_PIXEL: u32 = 16;
 
 /// Draws `material` as an engine does: one shaded sample per pixel with filtered textures, and edges smoothed by
 /// coverage.
@@ -54,8 +57,8 @@ pub fn filtered(scene: &Scene, material: &Material, shader: &Shader, filter: Fil
         let ray = scene.camera.ray(x, y);
         if let (true, Some(hit)) = (covered > 0.0, scene.shape.hit(scene.camera.eye, ray)) {
             let footprint = hit.footprint(&scene.camera, x, y);
-            let read = |texture: &Texture| texture.sample(hit.uv, &footprint, filter);
-            let Shaded { light, .. } = shaded(scene, material, shader, &hit, ray, &read, None);
+            let point = material.point(&|texture: &Texture| texture.sample(hit.uv, &footprint, filter));
+            let Shaded { light, .. } = shaded(scene, &point, shader, &hit, ray, None);
             add(&mut sum, light, covered / count);
         }
         (sum, covered / count)
@@ -64,7 +67,7 @@ pub fn filtered(scene: &Scene, material: &Material, shader: &Shader, filter: Fil
 
 /// Draws `material` with `samples` unfiltered samples per pixel. Each sample shades the nearest texel of level 0 and
 /// sends one ray into the surroundings. Also returns the picture of the odd samples alone, for an estimate of the
-/// noise.
+/// noise. Pixels that show the surroundings alone have fewer samples, since nothing is measured there.
 ///
 /// [`View::visible_area`](super::View::visible_area) is the weight of a sample.
 pub fn supersampled(
@@ -74,21 +77,27 @@ pub fn supersampled(
     samples: u32,
     advance: Advance<'_>,
 ) -> Supersampled {
+    let [width, height] = scene.camera.size;
+    let facets = Facets::new(material, u64::from(width) * u64::from(height) * u64::from(samples));
+    let sees = |x: f64, y: f64| scene.shape.hit(scene.camera.eye, scene.camera.ray(x, y)).is_some();
     let both = by_pixel_pair(scene, advance, &|x, y| {
-        let rotation = rotation(x as u32, y as u32);
+        let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
+        let middle = scene.shape.hit(scene.camera.eye, scene.camera.ray(x + 0.5, y + 0.5));
+        let is_empty = middle.is_none() && !corners.iter().any(|[right, down]| sees(x + right, y + down));
+        let samples = if is_empty { (samples / EMPTY_PIXEL).max(2) } else { samples };
+        let sequence = Quasirandom::new(x as u32, y as u32);
         // Light and area of the surface in the even and the odd samples, and the background of each.
         let (mut surface, mut areas) = ([[0.0; 3]; 2], [0.0; 2]);
         let (mut behind, mut covered) = ([[0.0; 3]; 2], [0.0; 2]);
         for i in 0..samples {
-            let [px, py, radial, azimuth] = quasirandom_point(i, rotation);
+            let [px, py, radial, azimuth] = sequence.point(i);
             let half = (i % 2) as usize;
             let ray = scene.camera.ray(x + px, y + py);
-            match scene.shape.hit(scene.camera.eye, ray) {
+            match scene.shape.hit_beside(scene.camera.eye, ray, middle.as_ref()) {
                 None => add(&mut behind[half], scene.background(ray), 1.0),
                 Some(hit) => {
-                    let read = |texture: &Texture| texture.nearest(hit.uv);
-                    let Shaded { light, area } =
-                        shaded(scene, material, shader, &hit, ray, &read, Some([radial, azimuth]));
+                    let point = facets.at(hit.uv);
+                    let Shaded { light, area } = shaded(scene, &point, shader, &hit, ray, Some([radial, azimuth]));
                     add(&mut surface[half], light, area);
                     areas[half] += area;
                     covered[half] += 1.0;
@@ -128,17 +137,8 @@ struct Shaded {
     area: f64,
 }
 
-fn shaded(
-    scene: &Scene,
-    material: &Material,
-    shader: &Shader,
-    hit: &Hit,
-    ray: Vector,
-    read: &dyn Fn(&Texture) -> [f64; 4],
-    facet: Option<[f64; 2]>,
-) -> Shaded {
-    let point = material.point(read);
-    let view = shader.view(&point, hit.to_tangent(ray).map(|c| -c));
+fn shaded(scene: &Scene, point: &Point, shader: &Shader, hit: &Hit, ray: Vector, facet: Option<[f64; 2]>) -> Shaded {
+    let view = shader.view(point, hit.to_tangent(ray).map(|c| -c));
     let to_world = |d: Vector| hit.to_world(d);
     let mut sum = match facet {
         None => view.from_environment(&scene.environment, &to_world),
@@ -186,25 +186,33 @@ fn by_pixel_pair(scene: &Scene, advance: Advance<'_>, pixel: Pixel<'_, (Radiance
     rows(scene, advance, pixel).into_iter().map(|(a, b, c)| ([narrow(a), narrow(b)], c as f32)).collect()
 }
 
-/// Returns point `i` of a quasirandom sequence in the four-dimensional unit cube, shifted by `rotation` (M. Roberts,
-/// "The unreasonable effectiveness of quasirandom sequences", 2018: the root of x^5 = x + 1).
-fn quasirandom_point(i: u32, rotation: [f64; 4]) -> [f64; 4] {
-    const ROOT: f64 = 1.167_303_978_261_418_7;
-    let mut step = 1.0;
-    rotation.map(|start| {
-        step /= ROOT;
-        (start + f64::from(i + 1) * step).fract()
-    })
+/// A quasirandom sequence in the four-dimensional unit cube (M. Roberts, "The unreasonable effectiveness of quasirandom
+/// sequences", 2018), shifted for each pixel, so that the pattern of the sequence is not visible (R. Cranley, T.
+/// Patterson, 1976). Numbers are in units of 2^-64, so that they wrap around by themselves.
+struct Quasirandom {
+    start: [u64; 4],
 }
 
-/// Returns a shift for each pixel, so that the pattern of the sequence is not visible (R. Cranley, T. Patterson, 1976).
-/// The finaliser of MurmurHash3 makes its bits.
-fn rotation(x: u32, y: u32) -> [f64; 4] {
-    [1, 2, 3, 4].map(|salt: u32| {
-        let mut bits = x.wrapping_mul(0x9e37_79b9) ^ y.wrapping_mul(0x85eb_ca6b).rotate_left(13) ^ (salt << 27);
-        for multiplier in [0x85eb_ca6b, 0xc2b2_ae35] {
-            bits = (bits ^ (bits >> 15)).wrapping_mul(multiplier);
-        }
-        f64::from(bits ^ (bits >> 16)) / 4_294_967_296.0
-    })
+impl Quasirandom {
+    /// The powers -1 to -4 of 1.16730..., the root of x^5 = x + 1.
+    const STEPS: [u64; 4] =
+        [0xdb4f_0b91_75ae_2165, 0xbbe0_5633_03a4_615f, 0xa0f2_ec75_a1fe_1575, 0x89e1_8285_7d9e_d688];
+
+    /// Returns the sequence of a pixel. The finaliser of MurmurHash3 makes the bits of its shift.
+    fn new(x: u32, y: u32) -> Self {
+        let start = [1, 2, 3, 4].map(|salt: u32| {
+            let mut bits = x.wrapping_mul(0x9e37_79b9) ^ y.wrapping_mul(0x85eb_ca6b).rotate_left(13) ^ (salt << 27);
+            for multiplier in [0x85eb_ca6b, 0xc2b2_ae35] {
+                bits = (bits ^ (bits >> 15)).wrapping_mul(multiplier);
+            }
+            u64::from(bits ^ (bits >> 16)) << 32
+        });
+        Self { start }
+    }
+
+    /// Returns point `i`.
+    fn point(&self, i: u32) -> [f64; 4] {
+        let at = |axis: usize| self.start[axis].wrapping_add(Self::STEPS[axis].wrapping_mul(u64::from(i) + 1));
+        [0, 1, 2, 3].map(|axis| (at(axis) >> 11) as f64 / (1u64 << 53) as f64)
+    }
 }

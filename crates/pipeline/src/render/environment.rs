@@ -40,18 +40,24 @@ impl Surroundings {
                 grey(0.03 + 0.94 * smooth_step(0.5 + 0.5 * edge))
             }
             Self::Studio => {
-                let (east, up) = (libm::atan2(d[1], d[0]), libm::asin(d[2].clamp(-1.0, 1.0)));
+                let lamp = smooth_step((d[2] - 0.94) / 0.03);
+                let wall = 0.10 + 0.08 * smooth_step(0.5 + 4.0 * d[2]);
+                let room = |light: f64| [wall + light, wall + 0.97 * light, 1.1 * wall + 0.92 * light];
+                // Most directions are below or above the windows, whose angles of elevation are 0.08 to 0.82. Such
+                // directions need no angles.
+                if !(0.0799..=0.7312).contains(&d[2]) {
+                    return room(2.5 * lamp);
+                }
+                let (east, up) = (libm::atan2(d[1], d[0]), libm::asin(d[2]));
                 let window = |at: f64, half_width: f64| {
-                    let across = (east - at + PI).rem_euclid(TAU) - PI;
+                    let beside = east - at;
+                    let across = if beside < -PI { beside + TAU } else { beside };
                     let inside = |x: f64, half: f64| smooth_step((half - x.abs()) / 0.04 + 0.5);
                     // A bar down and a bar across make four panes.
                     let panes = 1.0 - inside(across, 0.03).max(inside(up - 0.45, 0.03));
                     inside(across, half_width) * inside(up - 0.45, 0.35) * panes
                 };
-                let lamp = smooth_step((d[2] - 0.94) / 0.03);
-                let wall = 0.10 + 0.08 * smooth_step(0.5 + 4.0 * d[2]);
-                let light = 3.0 * (window(-0.4, 0.45) + 0.6 * window(2.4, 0.3)) + 2.5 * lamp;
-                [wall + light, wall + 0.97 * light, 1.1 * wall + 0.92 * light]
+                room(3.0 * (window(-0.4, 0.45) + 0.6 * window(2.4, 0.3)) + 2.5 * lamp)
             }
             Self::Even(percent) => grey(f64::from(percent) / 100.0),
         }

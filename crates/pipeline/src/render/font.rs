@@ -1,17 +1,20 @@
-//! Labels on pictures, in the font Hack.
+//! Text on pictures, in the font Hack.
 
 use ab_glyph::{Font, FontRef, ScaleFont, point};
 use epaint_default_fonts::HACK_REGULAR;
 
-/// Height of a line in pixels, from the highest to the lowest letter. Letters are 7.8 pixels wide.
-pub const LINE: u32 = 15;
+/// Height of a line of labels in pixels, from the highest to the lowest letter. Letters are 7.8 pixels wide.
+pub const LABEL: u32 = 15;
+/// Height of a title in pixels. Letters are 11.4 pixels wide.
+pub const TITLE: u32 = 22;
 
-/// Calls `ink` with each pixel of `text` that has ink, and the share of the pixel that the ink covers. The text begins
-/// at the origin and ends before the letter that would need more than `width` pixels.
-pub fn draw(text: &str, width: u32, mut ink: impl FnMut(u32, u32, f32)) {
+/// Calls `ink` with each pixel of `text` that has ink, and the share of the pixel that the ink covers. Letters are
+/// `height` pixels high. The text begins at the origin and ends before the letter that would need more than `width`
+/// pixels.
+pub fn draw(text: &str, height: u32, width: u32, mut ink: impl FnMut(u32, u32, f32)) {
     // The font is a constant that can be read, as the tests of sheets show.
     let Ok(font) = FontRef::try_from_slice(HACK_REGULAR) else { return };
-    let font = font.as_scaled(LINE as f32);
+    let font = font.as_scaled(height as f32);
     let mut left = 0.0;
     for letter in text.chars() {
         let mut glyph = font.scaled_glyph(letter);

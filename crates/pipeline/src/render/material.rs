@@ -59,6 +59,8 @@ pub enum LostBumps {
     Factor(RangedTexture, f64),
     /// The pyramid profile's lambda_1, and the correction factor.
     Lambda1(RangedTexture, f64),
+    /// The whole lobe, in place of roughness and anisotropy: squared alphas uu, uv, vv in red, green and blue.
+    Lobes(Texture),
 }
 
 /// `KHR_materials_anisotropy`.
@@ -98,7 +100,7 @@ pub struct Point {
 
 impl Material {
     /// Returns normal and lobe at a point. `read` samples a texture: filtered, or a single texel.
-    pub fn point(&self, read: &dyn Fn(&Texture) -> [f64; 4]) -> Point {
+    pub fn point(&self, read: &impl Fn(&Texture) -> [f64; 4]) -> Point {
         let normal = match &self.bumps {
             Bumps::Flat => [0.0, 0.0, 1.0],
             Bumps::Normals { texture, scale, has_z } => {
@@ -112,9 +114,13 @@ impl Material {
                 normal_from_offset(Offset { u: u as f32, v: v as f32 }).map(f64::from)
             }
         };
+        if let LostBumps::Lobes(texture) = &self.lost {
+            let [uu, uv, vv, _] = read(texture);
+            return Point { normal: normalised(normal), squared_alpha: [uu, uv, vv] };
+        }
         // A' = A + 2 c K comes after filtering, since the sampler averages D and lambda_1.
         let lost = match &self.lost {
-            LostBumps::RoughenedTextures => Symmetric2::ZERO,
+            LostBumps::RoughenedTextures | LostBumps::Lobes(_) => Symmetric2::ZERO,
             LostBumps::Factor(ranged, c) => {
                 let [d1, d2, d3] = ranged.value(read(&ranged.texture)).map(|d| d as f32);
                 (2.0 * *c as f32) * Factor { d1, d2, d3 }.covariance()
@@ -129,7 +135,22 @@ impl Material {
         Point { normal: normalised(normal), squared_alpha: [a.uu, a.uv, a.vv].map(f64::from) }
     }
 
-    fn base_lobe(&self, read: &dyn Fn(&Texture) -> [f64; 4]) -> Symmetric2 {
+    /// Returns the textures that a shader reads.
+    pub fn textures(&self) -> impl Iterator<Item = &Texture> {
+        let bumps = match &self.bumps {
+            Bumps::Normals { texture, .. } | Bumps::Offsets { texture, .. } => Some(texture),
+            Bumps::Flat => None,
+        };
+        let lost = match &self.lost {
+            LostBumps::Factor(ranged, _) | LostBumps::Lambda1(ranged, _) => Some(&ranged.texture),
+            LostBumps::Lobes(texture) => Some(texture),
+            LostBumps::RoughenedTextures => None,
+        };
+        let anisotropy = self.anisotropy.as_ref().and_then(|a| a.texture.as_ref());
+        [bumps, self.roughness.as_ref(), anisotropy, lost].into_iter().flatten()
+    }
+
+    fn base_lobe(&self, read: &impl Fn(&Texture) -> [f64; 4]) -> Symmetric2 {
         let roughness = self.roughness.as_ref().map_or(1.0, |t| read(t)[1]) * self.roughness_factor;
         let roughness = Roughness(roughness.clamp(0.0, 1.0) as f32);
         let (direction, strength) = match &self.anisotropy {

@@ -6,9 +6,11 @@
 //! [`SceneName::Pattern`] (10 and 11) and [`highlight`] (14). This module takes texels, never files.
 
 mod camera;
+mod crop;
 mod difference;
 mod draw;
 mod environment;
+mod facets;
 mod font;
 mod highlight;
 mod material;
@@ -23,6 +25,7 @@ mod tone;
 mod waves;
 
 pub use camera::Camera;
+pub use crop::{Crop, MAGNIFICATION};
 pub use difference::{Difference, relative_l1};
 pub use draw::{Advance, Picture, Supersampled, filtered, supersampled};
 pub use environment::{Environment, Radiance, Surroundings};

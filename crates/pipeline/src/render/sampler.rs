@@ -60,8 +60,8 @@ impl Texture {
     /// Returns the texel of level 0 at `uv`.
     pub fn nearest(&self, uv: [f64; 2]) -> [f64; 4] {
         let level = &self.levels[0];
-        let point = [uv[0] * f64::from(level.width), uv[1] * f64::from(level.height)];
-        texel(level, point[0].floor(), point[1].floor()).map(f64::from)
+        let [x, y] = texel_of(uv, (level.width, level.height));
+        level.texels[y * level.width as usize + x].map(f64::from)
     }
 
     /// Returns columns and rows of `level`. Levels beyond the last have the size of the last.
@@ -126,8 +126,19 @@ struct Taps {
 }
 
 fn texel(level: &Level<Texel>, x: f64, y: f64) -> Texel {
-    let wrapped = |at: f64, size: u32| (at.rem_euclid(f64::from(size)) as u32).min(size - 1) as usize;
     level.texels[wrapped(y, level.height) * level.width as usize + wrapped(x, level.width)]
+}
+
+/// Returns the column and the row of the texel at `uv` of a repeating level of `size` texels.
+pub(super) fn texel_of(uv: [f64; 2], (width, height): (u32, u32)) -> [usize; 2] {
+    [wrapped((uv[0] * f64::from(width)).floor(), width), wrapped((uv[1] * f64::from(height)).floor(), height)]
+}
+
+/// Returns the index of the integer `at` on an axis of `size` texels that repeats. `rem_euclid` of floats would be a call
+/// of `fmod`, which divides bit by bit.
+fn wrapped(at: f64, size: u32) -> usize {
+    let length = f64::from(size);
+    (at - (at / length).floor() * length).clamp(0.0, length - 1.0) as usize
 }
 
 fn bilinear(level: &Level<Texel>, uv: [f64; 2]) -> [f64; 4] {

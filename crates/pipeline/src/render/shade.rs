@@ -78,6 +78,8 @@ pub struct View<'a> {
     view: Vector,
     /// n.v
     facing: f64,
+    /// Lambda of the direction to the eye: how much of the surface other bumps hide.
+    hidden: f64,
 }
 
 /// The distribution that a facet was sampled from, which gives its weight.
@@ -98,11 +100,16 @@ impl Shader {
             _ => Family::Beckmann,
         };
         let missing = (MIN_FACING - dot(point.normal, view)).max(0.0);
-        let normal = normalised([0, 1, 2].map(|i| point.normal[i] + missing * view[i]));
+        let normal = match missing {
+            0.0 => point.normal,
+            _ => normalised([0, 1, 2].map(|i| point.normal[i] + missing * view[i])),
+        };
         let lobe = Lobe::new(family, normal, point.squared_alpha);
         let [uu, uv, vv] = lobe.squared_alpha().map(|a| (0.5 * a) as f32);
         let facing = dot(normal, view).max(1e-6);
-        View { shader: self, lobe, k: Symmetric2::new(uu, uv, vv), axes: frame(normal), view, facing }
+        let k = Symmetric2::new(uu, uv, vv);
+        let view = View { shader: self, lobe, k, axes: frame(normal), view, facing, hidden: 0.0 };
+        View { hidden: view.lambda(view.view, facing), ..view }
     }
 }
 
@@ -152,7 +159,7 @@ impl View<'_> {
 
     /// Returns the radiance that the point reflects from the surroundings, filtered by the lobe. `to_world` rotates
     /// directions from the tangent frame into the world.
-    pub fn from_environment(&self, environment: &Environment, to_world: &dyn Fn(Vector) -> Vector) -> Radiance {
+    pub fn from_environment(&self, environment: &Environment, to_world: &impl Fn(Vector) -> Vector) -> Radiance {
         let scales = match self.shader.reflection {
             Reflection::Ggx => GGX_SCALES.as_slice(),
             _ => &[1.0],
@@ -178,7 +185,7 @@ impl View<'_> {
         &self,
         k: Symmetric2,
         environment: &Environment,
-        to_world: &dyn Fn(Vector) -> Vector,
+        to_world: &impl Fn(Vector) -> Vector,
     ) -> Radiance {
         let [x, y] = [dot(self.view, self.axes[0]), dot(self.view, self.axes[1])];
         let length = (x * x + y * y).sqrt();
@@ -219,11 +226,11 @@ impl View<'_> {
         [u, v]: [f64; 2],
         deviation: f64,
         environment: &Environment,
-        to_world: &dyn Fn(Vector) -> Vector,
+        to_world: &impl Fn(Vector) -> Vector,
     ) -> Radiance {
         let facet = normalised(combine([u, v, 1.0], self.axes));
         let deviation = 2.0 * libm::atan(0.5 * deviation);
-        self.reflect(facet, &|d| environment.filtered(to_world(d), deviation), Weight::AllFacets)
+        self.reflect(facet, |d| environment.filtered(to_world(d), deviation), Weight::AllFacets)
     }
 
     /// Returns the unfiltered radiance that one facet reflects from the surroundings. The point `at` of the unit square
@@ -233,12 +240,12 @@ impl View<'_> {
         &self,
         at: [f64; 2],
         environment: &Environment,
-        to_world: &dyn Fn(Vector) -> Vector,
+        to_world: &impl Fn(Vector) -> Vector,
     ) -> Radiance {
         let radiance = |d: Vector| environment.radiance(to_world(d));
         match self.shader.reflection {
-            Reflection::Ggx => self.reflect(self.sample_visible_facet(at), &radiance, Weight::VisibleFacets),
-            _ => self.reflect(self.lobe.sample(at), &radiance, Weight::AllFacets),
+            Reflection::Ggx => self.reflect(self.sample_visible_facet(at), radiance, Weight::VisibleFacets),
+            _ => self.reflect(self.lobe.sample(at), radiance, Weight::AllFacets),
         }
     }
 
@@ -264,7 +271,7 @@ impl View<'_> {
     }
 
     /// Returns the radiance that `facet` reflects to the eye, weighted for the distribution that it was sampled from.
-    fn reflect(&self, facet: Vector, radiance: &dyn Fn(Vector) -> Radiance, weight: Weight) -> Radiance {
+    fn reflect(&self, facet: Vector, radiance: impl Fn(Vector) -> Radiance, weight: Weight) -> Radiance {
         let seen = dot(self.view, facet);
         let light = [0, 1, 2].map(|i| 2.0 * seen * facet[i] - self.view[i]);
         let lit = dot(light, self.axes[2]);
@@ -278,7 +285,7 @@ impl View<'_> {
                     / (self.facing * dot(facet, self.axes[2]))
             }
             (_, Weight::VisibleFacets) => {
-                let visible = 1.0 / (1.0 + self.lambda(self.view, self.facing));
+                let visible = 1.0 / (1.0 + self.hidden);
                 self.fresnel(facet) * self.masking_shadowing(light, lit) / visible
             }
         };
@@ -293,7 +300,7 @@ impl View<'_> {
 
     /// Returns Smith's height-correlated G = 1 / (1 + Lambda(v) + Lambda(l)) (Heitz, eq. 99).
     fn masking_shadowing(&self, light: Vector, lit: f64) -> f64 {
-        1.0 / (1.0 + self.lambda(self.view, self.facing) + self.lambda(light, lit))
+        1.0 / (1.0 + self.hidden + self.lambda(light, lit))
     }
 
     /// Returns Lambda: Heitz, eq. 72, for GGX, and for Beckmann the rational fit next to it, with a = 1 / (alpha tan).

@@ -1,5 +1,7 @@
-//! Contact sheets: pictures in rows and columns, each with a line of text below it.
+//! Contact sheets: pictures in rows and columns below a title, each with its heading, an enlarged region and lines of
+//! text.
 
+use super::crop::{Crop, MAGNIFICATION};
 use super::draw::Picture;
 use super::font;
 use super::tone::Tone;
@@ -10,6 +12,10 @@ pub struct Panel<'a> {
     pub picture: &'a Picture,
     /// Its tone mapping.
     pub tone: Tone,
+    /// The line of text above the picture.
+    pub heading: String,
+    /// The region that is framed, and shown enlarged below the picture.
+    pub crop: Option<Crop>,
     /// Lines of text below the picture.
     pub labels: Vec<String>,
 }
@@ -25,73 +31,124 @@ pub struct Sheet {
     pub rgba: Vec<u8>,
 }
 
-/// Pixels between lines, and between panels.
-const LEADING: u32 = 4;
-/// Pixels between panels.
-const GAP: u32 = 6;
-const PAPER: u8 = 250;
-const INK: u8 = 40;
+/// Height of a line of labels with the space to the next line.
+const LINE: u32 = font::LABEL + 4;
+/// Pixels between panels, and around them.
+const GAP: u32 = 8;
+const PAPER: [u8; 3] = [250; 3];
+const INK: [u8; 3] = [40; 3];
+/// The frame of an enlarged region, which is told from every grey.
+const FRAME: [u8; 3] = [255, 176, 0];
 
 impl Sheet {
     /// Makes a blank sheet. Returns `None` if it would have no pixels, or more than a file can address.
     fn new(width: u32, height: u32) -> Option<Self> {
         let bytes = width.checked_mul(height)?.checked_mul(4).filter(|b| *b > 0)?;
-        let mut rgba = vec![PAPER; bytes as usize];
-        rgba.iter_mut().skip(3).step_by(4).for_each(|a| *a = 255);
+        let mut rgba = vec![255; bytes as usize];
+        rgba.chunks_exact_mut(4).for_each(|pixel| pixel[..3].copy_from_slice(&PAPER));
         Some(Self { width, height, rgba })
     }
 
     /// Makes a sheet of one picture without a label. Returns `None` if the picture has no pixels.
     pub fn from_picture(picture: &Picture, tone: &Tone) -> Option<Self> {
         let mut sheet = Self::new(picture.size[0], picture.size[1])?;
-        sheet.place(picture, tone, 0, 0);
+        sheet.place(picture, tone, [0, 0]);
         Some(sheet)
     }
 
-    /// Makes a sheet of `rows` of panels of equal size. Returns `None` if there are no panels.
-    pub fn from_rows(rows: &[Vec<Panel<'_>>]) -> Option<Self> {
+    /// Makes a sheet of `rows` of panels of equal size below a title and a line of text. Returns `None` if there are no
+    /// panels, or more pixels than a file can address.
+    pub fn from_rows(title: &str, subtitle: &str, rows: &[Vec<Panel<'_>>]) -> Option<Self> {
+        let panels = || rows.iter().flatten();
         let columns = rows.iter().map(Vec::len).max()? as u32;
         let [width, height] = rows.first()?.first()?.picture.size;
-        let lines = rows.iter().flatten().map(|panel| panel.labels.len()).max()? as u32;
-        let line = font::LINE + LEADING;
-        let row_height = height + lines * line + GAP;
+        let lines = panels().map(|panel| panel.labels.len()).max()? as u32;
+        let enlarged = panels().filter_map(|panel| panel.crop).map(|crop| crop.height * MAGNIFICATION + GAP / 2).max();
+        let header = GAP + font::TITLE + GAP / 2 + LINE;
+        let row_height = GAP + LINE + height + enlarged.unwrap_or(0) + GAP / 2 + lines * LINE;
         let mut sheet = Self::new(
-            columns.checked_mul(width + GAP)?.saturating_sub(GAP),
-            row_height.checked_mul(rows.len() as u32)?,
+            columns.checked_mul(width.checked_add(GAP)?)?.checked_add(GAP)?,
+            row_height.checked_mul(rows.len() as u32)?.checked_add(header + GAP)?,
         )?;
-        for (y, row) in (0..).map(|r| r * row_height).zip(rows) {
-            for (x, panel) in (0..).map(|c| c * (width + GAP)).zip(row) {
-                sheet.place(panel.picture, &panel.tone, x, y);
-                for (below, label) in (0..).zip(&panel.labels) {
-                    sheet.write(label, x, y + height + LEADING + below * line, width);
-                }
+        let text_width = sheet.width.saturating_sub(2 * GAP);
+        sheet.write(title, font::TITLE, [GAP, GAP], text_width);
+        sheet.write(subtitle, font::LABEL, [GAP, GAP + font::TITLE + GAP / 2], text_width);
+        for (row, panels) in (0..).zip(rows) {
+            for (column, panel) in (0..).zip(panels) {
+                sheet.draw(panel, [GAP + column * (width + GAP), header + row * row_height + GAP]);
             }
         }
         Some(sheet)
     }
 
-    fn place(&mut self, picture: &Picture, tone: &Tone, left: u32, top: u32) {
+    fn draw(&mut self, panel: &Panel<'_>, [left, top]: [u32; 2]) {
+        let [width, height] = panel.picture.size;
+        self.write(&panel.heading, font::LABEL, [left, top], width);
+        let mut below = top + LINE;
+        self.place(panel.picture, &panel.tone, [left, below]);
+        if let Some(crop) = panel.crop {
+            self.frame(&crop, [left, below]);
+        }
+        below += height + GAP / 2;
+        if let Some(crop) = panel.crop {
+            self.enlarge(panel, &crop, [left, below]);
+            below += crop.height * MAGNIFICATION + GAP / 2;
+        }
+        for (line, label) in (0..).zip(&panel.labels) {
+            self.write(label, font::LABEL, [left, below + line * LINE], width);
+        }
+    }
+
+    fn place(&mut self, picture: &Picture, tone: &Tone, [left, top]: [u32; 2]) {
         let width = picture.size[0];
         for (i, pixel) in (0..).zip(&picture.pixels) {
-            let shown = tone.displayed(*pixel).map(|c| (c * 255.0).round() as u8);
-            self.set(left + i % width, top + i / width, shown);
+            self.set([left + i % width, top + i / width], shown(*pixel, tone));
+        }
+    }
+
+    /// Draws the frame of `crop` on the picture at (`left`, `top`), just outside of the region where there is space.
+    fn frame(&mut self, crop: &Crop, [left, top]: [u32; 2]) {
+        let [first_x, first_y] = [left + crop.left.saturating_sub(1), top + crop.top.saturating_sub(1)];
+        let [last_x, last_y] = [left + crop.left + crop.width, top + crop.top + crop.height];
+        for x in first_x..=last_x {
+            [first_y, last_y].iter().for_each(|y| self.set([x, *y], FRAME));
+        }
+        for y in first_y..=last_y {
+            [first_x, last_x].iter().for_each(|x| self.set([*x, y], FRAME));
+        }
+    }
+
+    /// Draws the pixels of `crop` as squares.
+    fn enlarge(&mut self, panel: &Panel<'_>, crop: &Crop, [left, top]: [u32; 2]) {
+        for y in 0..crop.height * MAGNIFICATION {
+            for x in 0..crop.width * MAGNIFICATION {
+                let [column, row] = [crop.left + x / MAGNIFICATION, crop.top + y / MAGNIFICATION];
+                let at = row as usize * panel.picture.size[0] as usize + column as usize;
+                if let Some(pixel) = panel.picture.pixels.get(at) {
+                    self.set([left + x, top + y], shown(*pixel, &panel.tone));
+                }
+            }
         }
     }
 
     /// Writes as much of `text` as fits into `width` pixels.
-    fn write(&mut self, text: &str, left: u32, top: u32, width: u32) {
-        font::draw(text, width, |x, y, coverage| {
-            let shade = f32::from(PAPER) + coverage * (f32::from(INK) - f32::from(PAPER));
-            self.set(left + x, top + y, [shade.round() as u8; 3]);
+    fn write(&mut self, text: &str, height: u32, [left, top]: [u32; 2], width: u32) {
+        font::draw(text, height, width, |x, y, coverage| {
+            let shade = f32::from(PAPER[0]) + coverage * (f32::from(INK[0]) - f32::from(PAPER[0]));
+            self.set([left + x, top + y], [shade.round() as u8; 3]);
         });
     }
 
-    fn set(&mut self, x: u32, y: u32, [r, g, b]: [u8; 3]) {
+    fn set(&mut self, [x, y]: [u32; 2], rgb: [u8; 3]) {
         if x < self.width && y < self.height {
             let at = (y as usize * self.width as usize + x as usize) * 4;
             if let Some(pixel) = self.rgba.get_mut(at..at + 3) {
-                pixel.copy_from_slice(&[r, g, b]);
+                pixel.copy_from_slice(&rgb);
             }
         }
     }
+}
+
+fn shown(pixel: [f32; 3], tone: &Tone) -> [u8; 3] {
+    tone.displayed(pixel).map(|c| (c * 255.0).round() as u8)
 }

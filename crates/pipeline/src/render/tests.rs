@@ -168,19 +168,27 @@ fn waves_have_their_documented_slope() {
 fn sheets_have_their_panels_and_labels() {
     let picture = Picture { size: [40, 10], pixels: vec![[0.0; 3]; 400], coverage: vec![1.0; 400] };
     let tone = Tone { exposure: 1.0 };
-    let panel = || Panel { picture: &picture, tone, labels: vec!["A1".to_owned()] };
-    let sheet = Sheet::from_rows(&[vec![panel(), panel()], vec![panel()]]).expect("a sheet");
-    assert_eq!((sheet.width, sheet.height), (86, 70));
+    let crop = Some(Crop { left: 20, top: 4, width: 10, height: 2 });
+    let labels = || vec!["A1".to_owned()];
+    let panel = |crop| Panel { picture: &picture, tone, heading: "H".to_owned(), crop, labels: labels() };
+    let sheet = Sheet::from_rows("T", "s", &[vec![panel(None), panel(crop)], vec![panel(crop)]]).expect("a sheet");
+    // A header of 53 pixels, then two rows of heading (19), picture (10), region (2 x 4) and label (19), with gaps.
+    assert_eq!((sheet.width, sheet.height), (104, 205));
     let at = |x: u32, y: u32| sheet.rgba[((y * sheet.width + x) * 4) as usize];
-    assert_eq!((at(0, 0), at(39, 9), at(40, 0), at(46, 35), at(0, 35)), (0, 0, 250, 250, 0));
-    // A letter is about 8 pixels wide: the label has ink in two letters, and none behind them or above its line.
+    // The first picture, the gap behind it, and the second picture.
+    assert_eq!((at(8, 80), at(47, 89), at(48, 80), at(56, 80)), (0, 0, 250, 0));
+    // Only the second picture has a frame, and below it the region in black.
+    assert_eq!((at(8 + 19, 80 + 4), at(56 + 19, 80 + 4), at(56 + 30, 80 + 5)), (0, 255, 255));
+    assert_eq!((at(8, 95), at(56, 94), at(56 + 39, 101)), (250, 0, 0));
+    // A letter of a label is about 8 pixels wide: the label has ink in two letters, and none behind them.
     let has_ink = |x: std::ops::Range<u32>, y: std::ops::Range<u32>| {
         x.flat_map(|x| y.clone().map(move |y| (x, y))).any(|(x, y)| at(x, y) < 150)
     };
-    assert!(has_ink(0..8, 14..29) && has_ink(8..16, 14..29));
-    assert!(!has_ink(16..40, 14..29) && !has_ink(0..40, 10..14));
-    assert_eq!(Sheet::from_rows(&[]), None);
-    assert_eq!(Sheet::from_rows(&[Vec::new()]), None);
+    let label = 94..109;
+    assert!(has_ink(8..20, 8..30) && has_ink(8..16, 34..49) && has_ink(8..16, 61..76));
+    assert!(has_ink(8..16, label.clone()) && has_ink(16..24, label.clone()) && !has_ink(24..48, label));
+    assert_eq!(Sheet::from_rows("T", "", &[]), None);
+    assert_eq!(Sheet::from_rows("T", "", &[Vec::new()]), None);
 }
 
 #[test]

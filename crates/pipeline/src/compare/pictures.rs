@@ -1,0 +1,104 @@
+//! Picture errors: how far pictures of each model are from a supersampled picture.
+//!
+//! The lobe error judges texels one by one, and every level alike. A picture also has lights, surroundings, filtering
+//! between texels and levels, and the eye's choice of levels.
+
+use rayon::prelude::*;
+
+use super::{Ours, normals};
+use crate::lobe::Family;
+use crate::metric::{FootprintMoments, Peer, Surface};
+use crate::mip::{Level, build};
+use crate::render::{
+    Advance, EnvironmentFilter, Filter, LostBumps, Material, Reflection, SceneName, Shader, Texel, Texture, filtered,
+    relative_l1, supersampled,
+};
+
+/// The scene of the pictures, which shows a surface at all angles.
+const SCENE: SceneName = SceneName::Sphere;
+/// Samples per pixel of the supersampled picture. Its noise is part of the report.
+const SAMPLES: u32 = 512;
+/// The longest side of the peers' textures. At the distances of the scene, pictures up to [`MAX_PICTURE_WIDTH`] do not
+/// show finer levels, whatever the size of the map.
+const FINEST: u32 = 512;
+
+/// The widest picture, in pixels.
+pub const MAX_PICTURE_WIDTH: u32 = 512;
+
+/// The picture errors of a material.
+pub struct PictureErrors {
+    /// Relative L1 of each of our models, then of each peer: the mean over distances.
+    pub errors: Vec<f64>,
+    /// Expected relative L1 of a perfect picture, since the supersampled picture has finitely many samples.
+    pub noise: f64,
+}
+
+/// Draws spheres `width` pixels wide with each of `ours` and each peer, at the distances of `render`, and compares them
+/// with `truth`, whose level 0 is `surface`. `advance` receives the finished share of the work.
+pub fn picture_errors(
+    truth: &Material,
+    surface: &Surface,
+    ours: &[Ours],
+    width: u32,
+    advance: Advance<'_>,
+) -> Option<PictureErrors> {
+    let size = normals(truth)?.size(0);
+    let (finest, tail) = moments(surface, (size.0.min(FINEST), size.1.min(FINEST)));
+    let mut peer = Material { roughness: None, anisotropy: None, ..ours.first()?.material.clone() };
+    let mut sums = vec![0.0; ours.len() + Peer::ALL.len()];
+    let mut noise = 0.0;
+    let distances = SCENE.distances();
+    for (done, distance) in distances.iter().enumerate() {
+        let scene = SCENE.scene(width, *distance)?;
+        let shader = Shader { reflection: Reflection::Ggx, filter: EnvironmentFilter::Ellipse, f0: scene.f0 };
+        let advance = |share: f32| advance((done as f32 + share) / distances.len() as f32);
+        let truth = supersampled(&scene, truth, &shader, SAMPLES, &advance);
+        noise += relative_l1(&truth.half, &truth.picture) / distances.len() as f64;
+        let mut add = |entry: usize, material: &Material| {
+            let picture = filtered(&scene, material, &shader, Filter::Anisotropic, &|_| {});
+            sums[entry] += relative_l1(&picture, &truth.picture) / distances.len() as f64;
+        };
+        ours.iter().enumerate().for_each(|(i, ours)| add(i, &ours.material));
+        for (i, formula) in Peer::ALL.into_iter().enumerate() {
+            peer.lost = LostBumps::Lobes(Texture::new(
+                lobes(&finest, formula),
+                tail.iter().map(|level| lobes(level, formula)).collect(),
+            ));
+            add(ours.len() + i, &peer);
+        }
+    }
+    Some(PictureErrors { errors: sums, noise })
+}
+
+/// Mean normal, mean slopes, E\[f_u^2\], E\[f_u f_v\], E\[f_v^2\], and the mean base lobe.
+type Moments = [f32; 11];
+
+/// Returns the moments of `surface` for the texels of a level of `size` texels, and of all coarser levels.
+fn moments(surface: &Surface, size: (u32, u32)) -> (Level<Moments>, Vec<Level<Moments>>) {
+    let moments = |x: u32, y: u32| -> Moments {
+        let FootprintMoments { mean_normal: [x, y, z], mean: [u, v], second: [uu, uv, vv], base: [a, b, c], .. } =
+            surface.footprint(size, (x, y)).moments();
+        [x, y, z, u, v, uu, uv, vv, a, b, c].map(|m| m as f32)
+    };
+    let texels = (0..size.1).into_par_iter().flat_map_iter(|y| (0..size.0).map(move |x| moments(x, y))).collect();
+    let finest = Level { width: size.0, height: size.1, texels };
+    let tail = build(&finest);
+    (finest, tail)
+}
+
+/// Returns the squared alphas that `peer` makes of the texels of a level.
+fn lobes(level: &Level<Moments>, peer: Peer) -> Level<Texel> {
+    let lobe = |moments: &Moments| {
+        let [x, y, z, u, v, uu, uv, vv, a, b, c] = moments.map(f64::from);
+        let moments = FootprintMoments {
+            mean_normal: [x, y, z],
+            mean: [u, v],
+            second: [uu, uv, vv],
+            covariance: [(uu - u * u).max(0.0), uv - u * v, (vv - v * v).max(0.0)],
+            base: [a, b, c],
+        };
+        let [uu, uv, vv] = peer.lobe(Family::Ggx, &moments).squared_alpha().map(|a| a as f32);
+        [uu, uv, vv, 1.0]
+    };
+    Level { width: level.width, height: level.height, texels: level.texels.par_iter().map(lobe).collect() }
+}
