@@ -1,5 +1,5 @@
 // Times a bake by the native tool and by WebAssembly: `node bench.js [model.glb] [--runs 3]`. Needs $ROUGHCAST or a
-// built tool, the WebAssembly module, and Chromium.
+// built tool, the WebAssembly modules, and Chromium.
 //
 // Without a model, bakes a material of 2048 x 2048 texels: a normal map of scratches and noise, and an ORM texture.
 // Prints medians in seconds. `cpu` is the time on processors, which other programs of the machine change less.
@@ -16,6 +16,11 @@ import { serve } from '../plugins/three/server.js';
 import { binary, noBinary, noModule, npm, run } from './test/common.js';
 
 const SIZE = 2048;
+
+/** Numbers of threads of WebAssembly. */
+const THREADS = [1, 2];
+const title = (threads) => (threads === 1 ? 'one thread' : `${threads} threads`);
+
 const { values, positionals } = parseArgs({
   options: { runs: { type: 'string', default: '3' } },
   allowPositionals: true,
@@ -69,14 +74,14 @@ function shell(command, environment = {}) {
 }
 
 /** Bakes in the worker that the page has. Returns the seconds. */
-function bakeInWorker() {
+function bakeInWorker(threads) {
   const { model, worker } = globalThis;
   return new Promise((resolve, reject) => {
     worker.onmessage = ({ data }) => {
       if (data.baked) resolve(data.baked.seconds);
       if (data.error) reject(new Error(data.error));
     };
-    worker.postMessage({ document: model, name: 'model', settings: {} });
+    worker.postMessage({ document: model, name: 'model', settings: {}, threads });
   });
 }
 
@@ -86,10 +91,12 @@ async function processorSeconds(session) {
   return processInfo.reduce((sum, { cpuTime }) => sum + cpuTime, 0);
 }
 
-/** Returns the bakes in the worker of the page: seconds on the clock, and of Chromium's processes. */
-async function inChromium(file, runs) {
+/**
+ * Returns the bakes in the worker of the page by numbers of threads: seconds on the clock, and of Chromium's processes.
+ */
+async function inChromium(file, runs, numbers) {
   run(process.execPath, [path.join(npm, 'make-page.js'), '--out', path.join(work, 'page')]);
-  const server = await serve({ page: path.join(work, 'page') });
+  const server = await serve({ page: path.join(work, 'page') }, { isIsolated: true });
   const browser = await chromium.launch({
     executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
     args: ['--no-sandbox'],
@@ -104,11 +111,13 @@ async function inChromium(file, runs) {
       globalThis.worker = new Worker(`${base}/worker.js`, { type: 'module' });
     }, `${server.url}/page`);
     const session = await browser.newBrowserCDPSession();
-    const times = [];
+    const times = numbers.map(() => []);
     for (let i = 0; i < runs; i++) {
-      const before = await processorSeconds(session);
-      const wall = await page.evaluate(bakeInWorker);
-      times.push({ wall, cpu: (await processorSeconds(session)) - before });
+      for (const [index, threads] of numbers.entries()) {
+        const before = await processorSeconds(session);
+        const wall = await page.evaluate(bakeInWorker, threads);
+        times[index].push({ wall, cpu: (await processorSeconds(session)) - before });
+      }
     }
     return times;
   } finally {
@@ -125,18 +134,23 @@ try {
   const commands = {
     'native, one thread': [`'${binary}' bake '${file}' --threads 1 --no-config`],
     'native, all threads': [`'${binary}' bake '${file}' --no-config`],
-    'WebAssembly, Node': [`'${process.execPath}' '${tool}' bake '${file}' --no-config`, { ROUGHCAST_BACKEND: 'wasm' }],
   };
+  for (const threads of THREADS) {
+    const command = `'${process.execPath}' '${tool}' bake '${file}' --no-config --threads ${threads}`;
+    commands[`WebAssembly, Node, ${title(threads)}`] = [command, { ROUGHCAST_BACKEND: 'wasm' }];
+  }
   const times = Object.fromEntries(Object.keys(commands).map((name) => [name, []]));
   // Turn by turn, so that other programs slow all of them down.
   for (let i = 0; i < Number(values.runs); i++) {
     for (const [name, [command, environment]] of Object.entries(commands))
       times[name].push(shell(command, environment));
   }
-  times['WebAssembly, Chromium'] = await inChromium(file, Number(values.runs));
+  for (const [index, runs] of (await inChromium(file, Number(values.runs), THREADS)).entries()) {
+    times[`WebAssembly, Chromium, ${title(THREADS[index])}`] = runs;
+  }
   for (const [name, runs] of Object.entries(times)) {
     const [wall, cpu] = ['wall', 'cpu'].map((key) => median(runs.map((time) => time[key])).toFixed(2));
-    process.stdout.write(`${name.padEnd(22)} ${wall} s, cpu ${cpu} s\n`);
+    process.stdout.write(`${name.padEnd(36)} ${wall} s, cpu ${cpu} s\n`);
   }
 } finally {
   rmSync(work, { recursive: true, force: true });

@@ -46,8 +46,15 @@ const LIBRARY = [
   'message.js',
   'names.js',
   'settings.js',
+  'thread.browser.js',
+  'thread.js',
+  'threads.js',
   'wasm.js',
+  'worker.browser.js',
 ];
+
+/** The WebAssembly modules. */
+const MODULES = ['roughcast.wasm', 'roughcast.threads.wasm'];
 
 /** Modules of the viewer that the page shares. */
 const VIEWER = ['subject.js', 'supersample.js', 'surroundings.js'];
@@ -66,12 +73,12 @@ cpSync(path.join(npm, 'page'), out, { recursive: true });
 for (const name of THREE) copy(path.join(npm, 'node_modules/three', name), path.join(out, 'three', name));
 for (const name of VIEWER) copy(path.join(repository, 'plugins/three/page', name), path.join(out, 'viewer', name));
 
-copy(path.join(npm, 'roughcast/roughcast.wasm'), path.join(out, 'roughcast/roughcast.wasm'));
+for (const name of MODULES) copy(path.join(npm, 'roughcast', name), path.join(out, 'roughcast', name));
 for (const name of LIBRARY) {
   const text = readFileSync(path.join(npm, 'roughcast/lib', name), 'utf8');
   mkdirSync(path.join(out, 'roughcast/lib'), { recursive: true });
   // Browsers know no `imports` of package.json, and import maps do not hold in workers.
-  writeFileSync(path.join(out, 'roughcast/lib', name), text.replace("'#backend'", "'./backend.browser.js'"));
+  writeFileSync(path.join(out, 'roughcast/lib', name), text.replace(/'#(backend|worker)'/, "'./$1.browser.js'"));
 }
 
 const io = new NodeIO().registerExtensions(ALL_EXTENSIONS);

@@ -127,6 +127,11 @@ export interface BakeOptions {
   /** The files that the document names, by their paths relative to it. */
   files?: Record<string, Uint8Array> | ((path: string) => Uint8Array | null | Promise<Uint8Array | null>);
   settings?: Settings;
+  /**
+   * Number of threads, from 0 to 64; 0, the default, is one for each processor. WebAssembly in browsers has one thread
+   * unless the page is cross-origin isolated. The bytes do not depend on it.
+   */
+  threads?: number;
   /** Takes the share of the work that is done, in [0, 1]. */
   onProgress?: (share: number) => void;
   backend?: Backend;
@@ -170,6 +175,8 @@ export interface BakeMapOptions {
   /** The roughness of the base lobe in [0, 1]; multiplies `roughness`. */
   roughnessFactor?: number;
   settings?: Settings;
+  /** Number of threads, as of `bake`. */
+  threads?: number;
   backend?: Backend;
 }
 

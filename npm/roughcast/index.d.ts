@@ -7,6 +7,8 @@ export * from './bake.js';
 /** Options of the transform. Its textures are KTX2 only, since glTF-Transform knows one image for each texture. */
 export interface TransformOptions extends Omit<Settings, 'gltf' | 'glb'> {
   backend?: Backend;
+  /** Number of threads, as of `bake`. */
+  threads?: number;
   onProgress?: (share: number) => void;
   /** Takes the report. Notes that ask for action are warnings in the document's log, too. */
   onReport?: (report: Report) => void;

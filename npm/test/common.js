@@ -20,9 +20,8 @@ export const binary = [
 
 /** Reasons to skip a test, or false. */
 export const noBinary = binary ? false : 'needs the tool: cargo build --release, or $ROUGHCAST';
-export const noModule = existsSync(path.join(npm, 'roughcast/roughcast.wasm'))
-  ? false
-  : 'needs the WebAssembly module: bash npm/wasm/build.sh';
+const modules = ['roughcast.wasm', 'roughcast.threads.wasm'].map((name) => path.join(npm, 'roughcast', name));
+export const noModule = modules.every(existsSync) ? false : 'needs the WebAssembly modules: bash npm/wasm/build.sh';
 
 /** Returns a temporary folder, which is removed after the test. */
 export function temporary(t) {

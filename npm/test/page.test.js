@@ -18,6 +18,7 @@ const ARGUMENTS = ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-s
 
 let folder;
 let server;
+let isolated;
 let browser;
 
 before(async () => {
@@ -26,20 +27,22 @@ before(async () => {
   folder = mkdtempSync(path.join(os.tmpdir(), 'roughcast-page-'));
   run(process.execPath, [path.join(npm, 'make-page.js'), '--out', path.join(folder, 'page')]);
   server = await serve({ page: path.join(folder, 'page') });
+  isolated = await serve({ page: path.join(folder, 'page') }, { isIsolated: true });
   browser = await chromium.launch({ executablePath, args: ARGUMENTS });
 });
 after(async () => {
   await browser?.close();
   await server?.close();
+  await isolated?.close();
   if (folder) rmSync(folder, { recursive: true, force: true });
 });
 
 /** Opens the page and collects its problems and the hosts that it asks. */
-async function open(settings = {}) {
+async function open(settings = {}, { url } = server) {
   const context = await browser.newContext({ viewport: { width: 900, height: 800 }, ...settings });
   const page = await context.newPage();
   page.setDefaultTimeout(120_000);
-  Object.assign(page, { problems: [], hosts: new Set() });
+  Object.assign(page, { problems: [], hosts: new Set(), files: new Set() });
   page.on('pageerror', (error) => page.problems.push(String(error)));
   page.on('console', (message) => {
     // Software rendering warns about reads of pixels, which the screenshots are.
@@ -47,16 +50,20 @@ async function open(settings = {}) {
     if (['error', 'warning'].includes(message.type()) && !isOfDriver) page.problems.push(message.text());
   });
   page.on('request', (request) => {
-    const { protocol, host } = new URL(request.url());
+    const { protocol, host, pathname } = new URL(request.url());
+    page.files.add(path.basename(pathname));
     if (!['blob:', 'data:'].includes(protocol)) page.hosts.add(host);
   });
-  await page.goto(`${server.url}/page/index.html`);
+  await page.goto(`${url}/page/index.html`);
   return page;
 }
 
 const finished = (page, state = 'done') => page.waitForFunction((s) => document.body.dataset.state === s, state);
 const status = (page) => page.locator('#status').textContent();
 const choose = (page, name, value) => page.locator(`[name=${name}]`).selectOption(value);
+
+/** Returns the modules that the page has fetched. */
+const modulesOf = (page) => [...page.files].filter((name) => /^roughcast.*\.wasm$/.test(name));
 
 /** Opens a file through the button. */
 const openFile = (page, name, buffer) =>
@@ -71,6 +78,7 @@ async function download(page) {
 test('bakes a sample, shows the truth, and offers the file that Node bakes', options, async () => {
   const page = await open();
   await finished(page);
+  assert.deepEqual(modulesOf(page), ['roughcast.wasm']);
   assert.match(await status(page), /kB before, .* baked, with \d+ KTX2 textures/);
   await page.screenshot({ path: path.join(SHOTS, 'before-baked.png'), fullPage: true });
 
@@ -90,6 +98,23 @@ test('bakes a sample, shows the truth, and offers the file that Node bakes', opt
   assert.ok(bytes.equals(document.bytes), 'the bytes of the page are those of Node');
   assert.deepEqual(page.problems, []);
   assert.deepEqual([...page.hosts], [new URL(server.url).host], 'nothing leaves the machine');
+});
+
+test('bakes with threads on an isolated page, to the same bytes', options, async () => {
+  const page = await open({}, isolated);
+  await finished(page);
+  assert.equal(await page.evaluate(() => crossOriginIsolated), true);
+  const processors = await page.evaluate(() => navigator.hardwareConcurrency);
+  assert.deepEqual(modulesOf(page), [processors > 1 ? 'roughcast.threads.wasm' : 'roughcast.wasm']);
+  const sample = readFileSync(path.join(folder, 'page/samples/brushed.glb'));
+  const settings = { engine: 'three', quality: 'fast', gltf: 'strict' };
+  const { document } = await bake(sample, { name: 'brushed', settings, backend: 'wasm', threads: 1 });
+  assert.ok((await download(page)).bytes.equals(document.bytes));
+  // A new bake ends the one that runs, with its threads.
+  for (const engine of ['babylon', 'filament']) await choose(page, 'engine', engine);
+  await finished(page);
+  await page.screenshot({ path: path.join(SHOTS, 'isolated.png') });
+  assert.deepEqual(page.problems, []);
 });
 
 test('takes a file, a dropped file, and says why another is refused', options, async () => {

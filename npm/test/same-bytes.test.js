@@ -1,4 +1,4 @@
-// The native tool and WebAssembly write the same bytes.
+// The native tool and WebAssembly write the same bytes, with any number of threads.
 import assert from 'node:assert/strict';
 import { readFileSync, readdirSync } from 'node:fs';
 import path from 'node:path';
@@ -17,10 +17,13 @@ const documents = readdirSync(fixtures).flatMap((name) =>
 );
 
 /** Bakes a document of the fixtures. */
-function bakeFile(file, settings, backend) {
+function bakeFile(file, settings, backend, threads) {
   const beside = (name) => readFileSync(path.join(path.dirname(file), name));
-  return bake(readFileSync(file), { name: path.parse(file).name, files: beside, settings, backend });
+  return bake(readFileSync(file), { name: path.parse(file).name, files: beside, settings, backend, threads });
 }
+
+/** Numbers of threads: the module of one thread, and the module of several with a number that divides no size. */
+const THREADS = [1, 3];
 
 /** Returns the first difference of two buffers as text; undefined if there is none. */
 function difference(a, b) {
@@ -53,7 +56,8 @@ for (const settings of [
   test(`documents with ${JSON.stringify(settings)}`, options, async (t) => {
     for (const file of documents) {
       await t.test(path.basename(file), async () => {
-        assertSame(await bakeFile(file, settings, 'native'), await bakeFile(file, settings, 'wasm'));
+        const native = await bakeFile(file, settings, 'native');
+        for (const threads of THREADS) assertSame(native, await bakeFile(file, settings, 'wasm', threads));
       });
     }
   });
@@ -68,8 +72,10 @@ for (const [name, mapOptions] of [
 ]) {
   test(`the map ${name}`, options, async () => {
     const image = readFileSync(path.join(fixtures, name));
-    const bakeWith = (backend) => bakeMap(image, { ...mapOptions, name: path.basename(name), backend });
-    assertSame(await bakeWith('native'), await bakeWith('wasm'));
+    const bakeWith = (backend, threads) =>
+      bakeMap(image, { ...mapOptions, name: path.basename(name), backend, threads });
+    const native = await bakeWith('native');
+    for (const threads of THREADS) assertSame(native, await bakeWith('wasm', threads));
   });
 }
 
@@ -81,6 +87,33 @@ test('a roughness map is read beside the map', options, async () => {
   const [native, wasm] = [await bakeWith('native'), await bakeWith('wasm')];
   assert.ok(wasm.files.length > 1);
   assertSame(native, wasm);
+});
+
+test('any number of threads, also without a number', options, async () => {
+  const file = path.join(fixtures, 'waves/waves.glb');
+  const settings = { profile: 'both', quality: 'best', rdo: 1 };
+  const native = await bakeFile(file, settings, 'native', 1);
+  for (const threads of [undefined, 0, 2, 5, 17]) {
+    assertSame(native, await bakeFile(file, settings, 'wasm', threads));
+    if (threads !== 5) continue;
+    // Bakes at the same time do not share a memory.
+    const several = await Promise.all([1, 2, 2].map((count) => bakeFile(file, settings, 'wasm', count)));
+    for (const one of several) assertSame(native, one);
+  }
+  for (const threads of [-1, 1.5, 65, '2', NaN]) {
+    await assert.rejects(bakeFile(file, {}, 'wasm', threads), /threads: expected a whole number from 0 to 64/);
+  }
+});
+
+test('progress rises to 1, and threads report what is wrong', options, async () => {
+  const shares = [];
+  const onProgress = (share) => shares.push(share);
+  const glb = readFileSync(path.join(fixtures, 'waves/waves.glb'));
+  await bake(glb, { backend: 'wasm', threads: 2, onProgress });
+  assert.deepEqual(shares, shares.toSorted());
+  assert.equal(shares.at(-1), 1);
+  const unfinished = bakeFile(documents[0], { maxError: 2 }, 'wasm', 4);
+  await assert.rejects(unfinished, /max-error/);
 });
 
 test('both name the missing files and the wrong setting', options, async () => {

@@ -1,6 +1,6 @@
 // Tests that Vite's build and its server give pages baked assets.
 import assert from 'node:assert/strict';
-import { cp, mkdtemp, readFile, readdir, realpath, rm, writeFile } from 'node:fs/promises';
+import { cp, mkdir, mkdtemp, readFile, readdir, realpath, rm, writeFile } from 'node:fs/promises';
 import os from 'node:os';
 import path from 'node:path';
 import { after, before, test } from 'node:test';
@@ -10,6 +10,7 @@ import { fileURLToPath } from 'node:url';
 import { bake } from 'roughcast';
 import { roughcast } from 'roughcast/vite';
 import { build, createServer } from 'vite';
+import { noModule } from './common.js';
 
 const FIXTURE = fileURLToPath(new URL('../../fixtures/tiny', import.meta.url));
 const SETTINGS = { engine: 'three' };
@@ -47,6 +48,21 @@ test('a build emits the baked asset', async () => {
   const [asset] = assets.filter((name) => name.endsWith('.glb'));
   assert.deepEqual(await readFile(path.join(root, 'dist/assets', asset)), expected);
   assert.ok(warnings.some((text) => text.includes('tiny.gltf') && text.includes('--max-error')), warnings.join('\n'));
+});
+
+test('a build of a page that bakes emits both modules and the worker', { skip: noModule }, async () => {
+  const page = path.join(root, 'page');
+  await mkdir(page);
+  await writeFile(path.join(page, 'index.html'), '<script type="module" src="/main.js"></script>');
+  await writeFile(path.join(page, 'main.js'), "import { bake } from 'roughcast/bake'; await bake(new Uint8Array(3));");
+  const alias = { 'roughcast/bake': fileURLToPath(new URL('../roughcast/lib/bake.js', import.meta.url)) };
+  const { warnings, ...config } = configuration();
+  await build({ ...config, root: page, resolve: { alias }, plugins: [], build: { target: 'esnext' } });
+  const assets = await readdir(path.join(page, 'dist/assets'));
+  for (const pattern of [/^roughcast-.*\.wasm$/, /^roughcast\.threads-.*\.wasm$/, /^thread\.browser-.*\.js$/]) {
+    assert.equal(assets.filter((name) => pattern.test(name)).length, 1, `${pattern}: ${assets}`);
+  }
+  assert.deepEqual(warnings, []);
 });
 
 test('the server sends the baked asset, and bakes again when a texture is saved', async () => {

@@ -25,6 +25,7 @@ export async function bytes(glb: Uint8Array): Promise<Uint8Array> {
   });
   const errors: number[] | undefined = report.layers[0]?.choice?.candidates[0]?.errors;
   console.log(files.length, copies.join(), errors);
+  await bake(glb, { threads: 2 });
   await bake(glb, { files: async (path) => (path === 'a.png' ? new Uint8Array(1) : null), backend: 'wasm' });
   // @ts-expect-error: not bytes
   await bake('helmet.glb');

@@ -21,17 +21,25 @@ const TYPES = {
   '.webp': 'image/webp',
 };
 
+/** What makes a page cross-origin isolated. Workers need the second one, too. */
+const ISOLATION = new Map([
+  ['cross-origin-opener-policy', 'same-origin'],
+  ['cross-origin-embedder-policy', 'require-corp'],
+]);
+
 /**
  * Serves folders by the first part of the path: { three: '/a/folder' } is /three/. A link that leads out of its folder
- * is not found. Pages that listen to /events get an event from each `reportBake`.
+ * is not found. Pages that listen to /events get an event from each `reportBake`. With `isIsolated` pages are cross-origin
+ * isolated, so that their workers can share memory.
  *
  * @returns {Promise<{url: string, reportBake: () => void, close: () => Promise<void>}>}
  */
-export async function serve(folders) {
+export async function serve(folders, { isIsolated = false } = {}) {
   const roots = new Map();
   for (const [name, folder] of Object.entries(folders)) roots.set(name, await realpath(folder));
   const listeners = new Set();
   const server = http.createServer((request, response) => {
+    if (isIsolated) response.setHeaders(ISOLATION);
     answer(roots, listeners, request, response).catch(() => fail(response, 500));
   });
   await new Promise((resolve, reject) => {

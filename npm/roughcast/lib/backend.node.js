@@ -1,11 +1,16 @@
 // The backends of Node: the native tool if its package is installed, else WebAssembly.
 import { readFile } from 'node:fs/promises';
+import os from 'node:os';
 import process from 'node:process';
 import { wasmBackend } from './backend.wasm.js';
 import { findBinary } from './binary.js';
 import { nativeBackend } from './native.js';
 
-let loaded;
+const wasm = wasmBackend({
+  load: async (file) => WebAssembly.compile(await readFile(new URL(`../${file}`, import.meta.url))),
+  canShare: true,
+  processors: os.availableParallelism(),
+});
 
 /**
  * Returns a backend.
@@ -13,22 +18,15 @@ let loaded;
  * @param {'native' | 'wasm'} [kind] default: $ROUGHCAST_BACKEND, else the native tool if there is one
  */
 export async function backend(kind = process.env.ROUGHCAST_BACKEND) {
-  if (kind === 'wasm') return wasm();
+  if (kind === 'wasm') return wasm;
   if (kind && kind !== 'native') throw new Error(`expected the backend native or wasm, found ${kind}`);
   const { path, why } = findBinary();
   if (path) return nativeBackend(path);
   if (kind === 'native') throw new Error(`expected the native tool, found none: ${why}`);
-  return wasm();
+  return wasm;
 }
 
 /** Returns the names of the files that a document refers to. */
-export async function listFiles(document) {
-  return (await wasm()).listFiles(document);
-}
-
-function wasm() {
-  loaded ??= readFile(new URL('../roughcast.wasm', import.meta.url))
-    .then((bytes) => WebAssembly.compile(bytes))
-    .then(wasmBackend);
-  return loaded;
+export async function listFiles(document, threads) {
+  return wasm.listFiles(document, threads);
 }

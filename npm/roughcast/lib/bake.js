@@ -4,9 +4,10 @@ import { isGlb, stem } from './names.js';
 import { tomlSettings } from './settings.js';
 
 /** Bakes the materials of a glTF document; bake.d.ts describes the arguments and the result. */
-export async function bake(document, { name = 'model', files = {}, settings = {}, onProgress, backend: kind } = {}) {
+export async function bake(document, options = {}) {
+  const { name = 'model', files = {}, settings = {}, threads, onProgress, backend: kind } = options;
   const { bakeDocument } = await backend(kind);
-  const { names } = await listFiles(document);
+  const { names } = await listFiles(document, threads);
   const beside = [];
   for (const path of names) {
     const bytes = typeof files === 'function' ? await files(path) : files[path];
@@ -14,7 +15,7 @@ export async function bake(document, { name = 'model', files = {}, settings = {}
     if (bytes) beside.push({ path, bytes: asBytes(bytes, path) });
   }
   const input = { path: `${name}.${isGlb(document) ? 'glb' : 'gltf'}`, bytes: asBytes(document, name) };
-  const baked = await bakeDocument({ name, input, beside, settings: tomlSettings(settings), onProgress });
+  const baked = await bakeDocument({ name, input, beside, settings: tomlSettings(settings), threads, onProgress });
   baked.files.sort((a, b) => (a.path < b.path ? -1 : 1));
   // The command line counts copied files in its other members, and this function does not copy files.
   const { layers, textures } = baked.report;
@@ -23,11 +24,12 @@ export async function bake(document, { name = 'model', files = {}, settings = {}
 
 /** Bakes a standalone normal or height map; bake.d.ts describes the arguments and the result. */
 export async function bakeMap(image, options = {}) {
-  const { name = 'map.png', output = `${stem(name)}.ktx2`, roughness, settings, backend: kind, ...rest } = options;
+  const { name = 'map.png', output = `${stem(name)}.ktx2`, roughness, settings, threads, backend: kind, ...rest } =
+    options;
   const { bakeImage } = await backend(kind);
   const files = [{ path: name, bytes: asBytes(image, name) }];
   if (roughness) files.push({ path: roughness.name ?? 'roughness.png', bytes: asBytes(roughness.image, 'roughness') });
-  return bakeImage({ output, files, options: rest, settings: tomlSettings(settings) });
+  return bakeImage({ output, files, options: rest, settings: tomlSettings(settings), threads });
 }
 
 /** Checks that `bytes` is a Uint8Array. */

@@ -15,20 +15,26 @@ export function encodeRequest(header, files) {
   return [length, text, ...files.map((file) => file.bytes)];
 }
 
+/** Returns the UTF-8 text at an address. */
+export function textAt(memory, address, length) {
+  // Browsers do not decode memory that threads share, so that the bytes are copied.
+  return new TextDecoder().decode(new Uint8Array(memory, address, length).slice());
+}
+
 /**
  * Reads a response. Its bytes are copied.
  *
- * @param {ArrayBuffer} memory
+ * @param {ArrayBuffer | SharedArrayBuffer} memory
  * @param {number} address of the length, which the message follows
  */
 export function decodeResponse(memory, address) {
   const view = new DataView(memory);
   const headerLength = view.getUint32(address + 4, true);
-  const { files, ...header } = JSON.parse(new TextDecoder().decode(new Uint8Array(memory, address + 8, headerLength)));
+  const { files, ...header } = JSON.parse(textAt(memory, address + 8, headerLength));
   let at = address + 8 + headerLength;
   const read = files.map(({ path, length }) => {
     at += length;
-    return { path, bytes: new Uint8Array(memory.slice(at - length, at)) };
+    return { path, bytes: new Uint8Array(memory, at - length, length).slice() };
   });
   return { header, files: read };
 }

@@ -11,12 +11,12 @@ const execute = promisify(execFile);
 /** Returns the functions of a backend for the tool at `binary`. */
 export function nativeBackend(binary) {
   return {
-    bakeDocument: ({ input, beside, settings, onProgress }) =>
+    bakeDocument: ({ input, beside, settings, threads = 0, onProgress }) =>
       inFolder(async (folder) => {
         const [source, output] = [path.join(folder, 'in'), path.join(folder, 'out')];
         await writeFiles(source, [input, ...beside]);
         const report = path.join(folder, 'report.json');
-        const options = [...flags(settings), '--no-config', '--quiet', '--report', report];
+        const options = [...flags({ threads, ...settings }), '--no-config', '--quiet', '--report', report];
         await run(binary, ['bake', path.join(source, input.path), '-o', output, ...options], folder);
         onProgress?.(1);
         const { output: document, layers, textures } = JSON.parse(await readFile(report)).assets[0];
@@ -31,7 +31,7 @@ export function nativeBackend(binary) {
         };
       }),
 
-    bakeImage: ({ output, files, options, settings }) =>
+    bakeImage: ({ output, files, options, settings, threads = 0 }) =>
       inFolder(async (folder) => {
         const source = path.join(folder, 'in');
         await writeFiles(source, files);
@@ -40,7 +40,7 @@ export function nativeBackend(binary) {
         const { height, greenDown, ...values } = options;
         const switches = [height && '--height', greenDown && '--green-down'].filter(Boolean);
         if (roughness) switches.push('--roughness', roughness);
-        const all = [...switches, ...flags(values), ...flags(settings), '--json'];
+        const all = [...switches, ...flags(values), ...flags({ threads, ...settings }), '--json'];
         const report = JSON.parse(await run(binary, ['map', image, '-o', target, ...all], folder));
         const baked = [];
         for (const texture of report.textures) {

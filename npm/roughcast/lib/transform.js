@@ -6,7 +6,7 @@ import { addExtensions, copier } from './copy.js';
 import { RoughnessPyramid } from './roughness-pyramid.js';
 
 /** Returns a transform that bakes the materials of a document; index.d.ts describes its options. */
-export function roughcast({ backend, onProgress, onReport, ...settings } = {}) {
+export function roughcast({ backend, threads, onProgress, onReport, ...settings } = {}) {
   // The name is what the log of glTF-Transform shows.
   return Object.defineProperty(transform, 'name', { value: 'roughcast' });
 
@@ -23,7 +23,8 @@ export function roughcast({ backend, onProgress, onReport, ...settings } = {}) {
     ]);
     const source = await io.writeBinary(partToBake(document, needsMeshes(settings)));
     // glTF-Transform knows one image for each texture, which is the KTX2: a fallback beside it would be lost.
-    const result = await bake(source, { settings: { ...settings, gltf: 'strict', glb: true }, backend, onProgress });
+    const strict = { ...settings, gltf: 'strict', glb: true };
+    const result = await bake(source, { settings: strict, backend, threads, onProgress });
     replaceMaterials(document, await io.readBinary(result.document.bytes), result.report, settings);
     log(document.getLogger(), result.report);
     onReport?.(result.report);

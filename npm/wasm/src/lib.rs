@@ -4,11 +4,15 @@
 //!
 //! An instance answers one call and is dropped with its memory: a module's memory never shrinks, and a panic leaves an
 //! instance in an unknown state. Nothing is freed here for that reason.
+//!
+//! The crate is built twice: for a memory of one thread, and with `atomics` for a memory that the threads of a bake share.
 
 mod bake;
 mod command;
 mod map;
 mod message;
+#[cfg(all(target_arch = "wasm32", target_feature = "atomics"))]
+mod threads;
 
 use std::mem::ManuallyDrop;
 
@@ -32,24 +36,29 @@ pub extern "C" fn allocate(length: usize) -> *mut u8 {
     ManuallyDrop::new(vec![0_u8; length]).as_mut_ptr()
 }
 
-/// Answers the request at `request`. Returns the address of the response: its length in four bytes, little endian, and
-/// the message.
+/// Answers the request at `request` with `threads` threads. Returns the address of the response: its length in four
+/// bytes, little endian, and the message. A module without shared memory has one thread, whatever `threads` is.
 ///
 /// # Safety
 /// `request` is what [`allocate`] returned for `length`, and no call has taken it yet.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn call(request: *mut u8, length: usize) -> *const u8 {
+pub unsafe extern "C" fn call(request: *mut u8, length: usize, threads: usize) -> *const u8 {
     report_panics();
     // SAFETY: `allocate` made this memory as a vector of `length` bytes and gave it away; the caller promises both.
     let request = unsafe { Vec::from_raw_parts(request, length, length) };
+    #[cfg(all(target_arch = "wasm32", target_feature = "atomics"))]
+    // Without a pool, rayon works on the calling thread, as in the other module.
+    let _pool = (threads > 1).then(|| threads::pool(threads));
+    #[cfg(not(all(target_arch = "wasm32", target_feature = "atomics")))]
+    let _ = threads;
     let response = answer(&request, &progress);
     ManuallyDrop::new(response).as_ptr()
 }
 
-/// Reports progress to JavaScript, and does the work that the thread pool has deferred: the only thread of the pool is
-/// this one, and freeing of memory is deferred.
+/// Reports progress to JavaScript. In a pool without other threads, also does the work that the pool has deferred, such
+/// as freeing memory.
 fn progress(share: f32) {
-    while rayon::yield_now() == Some(rayon::Yield::Executed) {}
+    while rayon::current_num_threads() == 1 && rayon::yield_now() == Some(rayon::Yield::Executed) {}
     #[cfg(target_arch = "wasm32")]
     host::progress(share);
     #[cfg(not(target_arch = "wasm32"))]

@@ -17,7 +17,7 @@ export async function bakeCommand(args, stdout, stderr) {
   const outcomes = [];
   for (const asset of assets) {
     if (!values['no-config']) warnOfConfig(asset.file, stderr);
-    const outcome = await bakeAsset(asset, place(asset), settings);
+    const outcome = await bakeAsset(asset, place(asset), settings, values.threads);
     outcomes.push(outcome);
     if (outcome.error) stderr.write(`error: ${asset.file}: ${outcome.error}\n`);
     else if (!values.quiet && !values.json) stdout.write(summary(outcome, values.verbose));
@@ -39,7 +39,7 @@ function placeOf(output, assets, settings) {
   return () => output;
 }
 
-async function bakeAsset({ file }, place, settings) {
+async function bakeAsset({ file }, place, settings, threads) {
   const started = performance.now();
   const outcome = { input: file, status: 'failed' };
   try {
@@ -52,7 +52,7 @@ async function bakeAsset({ file }, place, settings) {
       read += bytes?.byteLength ?? 0;
       return bytes;
     };
-    const baked = await bake(document, { name: stem(place), files, settings, backend: 'wasm' });
+    const baked = await bake(document, { name: stem(place), files, settings, threads, backend: 'wasm' });
     const output = path.join(path.dirname(place), baked.document.path);
     const copies = await Promise.all(
       baked.copies.map(async (name) => ({ path: name, bytes: await readFile(path.join(folder, name)) })),

@@ -32,6 +32,7 @@ export async function mapCommand(args, stdout) {
     roughness: roughness && { image: roughness, name: path.basename(values.roughness) },
     ...mapOptions(values),
     settings,
+    threads: values.threads,
     backend: 'wasm',
   });
   const sources = new Set(await Promise.all(images.map((file) => realpath(file))));

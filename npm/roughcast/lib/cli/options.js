@@ -39,10 +39,11 @@ export const DOCUMENT = {
   trim: flag,
 };
 
-/** Where outputs go, and what is printed. */
+/** Where outputs go, with how many threads, and what is printed. */
 export const OUTPUT = {
   output: { type: 'string', short: 'o' },
   json: flag,
+  threads: text,
   quiet: { type: 'boolean', short: 'q' },
   verbose: { type: 'boolean', short: 'v' },
 };
@@ -71,6 +72,7 @@ export function parse(args, own) {
   if (withoutProvenance) settings.provenance = false;
   if (settings['main-direction']) settings['main-direction'] = settings['main-direction'].split(',').map(Number);
   for (const name of NUMBERS.filter((name) => name in settings)) settings[name] = number(name, settings[name]);
+  if (values.threads) values.threads = number('threads', values.threads);
   return { inputs: positionals, settings, values };
 }
 

@@ -1,0 +1,4 @@
+// A worker of browsers.
+import { work } from './thread.js';
+
+addEventListener('message', ({ data }) => work(data, (reply, transfer) => postMessage(reply, { transfer })));
