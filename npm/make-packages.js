@@ -1,7 +1,7 @@
 // Packs the npm packages: `node make-packages.js --binary TOOL [--platform linux-x64] [--out out]`.
 //
 // Makes the package of one platform from the built tool, and the main package from roughcast/ with its WebAssembly
-// module. Writes `roughcast-<version>.tgz` and `roughcast-<platform>-<version>.tgz`, and prints their paths.
+// modules and the viewer. Writes `roughcast-<version>.tgz` and `roughcast-<platform>-<version>.tgz`, and prints their paths.
 import { execFileSync } from 'node:child_process';
 import { chmodSync, cpSync, existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import os from 'node:os';
@@ -9,6 +9,7 @@ import path from 'node:path';
 import process from 'node:process';
 import { fileURLToPath } from 'node:url';
 import { parseArgs } from 'node:util';
+import { makeViewer } from './make-viewer.js';
 
 const npm = path.dirname(fileURLToPath(import.meta.url));
 const LICENCES = ['LICENSE-APACHE', 'LICENSE-MIT'];
@@ -29,7 +30,7 @@ const work = mkdtempSync(path.join(os.tmpdir(), 'roughcast-pack-'));
 try {
   checkArguments();
   mkdirSync(values.out, { recursive: true });
-  for (const folder of [platformFolder(), mainFolder()]) {
+  for (const folder of [platformFolder(), await mainFolder()]) {
     const packed = execFileSync('npm', ['pack', '--json', '--pack-destination', values.out], {
       cwd: folder,
       encoding: 'utf8',
@@ -54,8 +55,9 @@ function checkArguments() {
   if (!PLATFORMS.includes(platform)) {
     throw new Error(`--platform ${platform}: expected one of ${PLATFORMS.join(', ')}`);
   }
-  if (!existsSync(path.join(npm, 'roughcast/roughcast.wasm'))) {
-    throw new Error('expected roughcast/roughcast.wasm, found none; bash wasm/build.sh');
+  for (const name of ['roughcast.wasm', 'roughcast.threads.wasm']) {
+    if (existsSync(path.join(npm, 'roughcast', name))) continue;
+    throw new Error(`expected roughcast/${name}, found none; bash wasm/build.sh`);
   }
 }
 
@@ -89,10 +91,11 @@ function platformFolder() {
 }
 
 /** Makes the folder of the main package, which depends on the packages of all platforms as options. */
-function mainFolder() {
+async function mainFolder() {
   const folder = path.join(work, 'roughcast');
   cpSync(path.join(npm, 'roughcast'), folder, { recursive: true });
   cpSync(path.join(npm, 'README.md'), path.join(folder, 'README.md'));
+  await makeViewer(path.join(folder, 'viewer'));
   const platforms = PLATFORMS.map((platform) => [`@roughcast/${platform}`, main.version]);
   writePackage(folder, { ...main, optionalDependencies: Object.fromEntries(platforms) });
   return folder;

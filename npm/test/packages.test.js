@@ -1,37 +1,11 @@
 // The packed packages, installed in an empty folder, as a newcomer has them.
 import assert from 'node:assert/strict';
-import { cpSync, existsSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
-import os from 'node:os';
+import { cpSync, existsSync, mkdirSync, readFileSync, readdirSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import process from 'node:process';
-import test, { after, before } from 'node:test';
-import { binary, fixtures, noBinary, noModule, npm, run, temporary } from './common.js';
-
-const options = { skip: noBinary || noModule };
-let platform;
-let main;
-let packed;
-
-before(() => {
-  if (options.skip) return;
-  packed = mkdtempSync(path.join(os.tmpdir(), 'roughcast-packed-'));
-  const made = run(process.execPath, [path.join(npm, 'make-packages.js'), '--binary', binary, '--out', packed]);
-  [platform, main] = made.trim().split('\n');
-});
-after(() => packed && rmSync(packed, { recursive: true, force: true }));
-
-/** Makes a folder with a GLB and installs packages in it, without a network. */
-function project(t, packages) {
-  const folder = temporary(t);
-  cpSync(path.join(fixtures, 'waves/waves.glb'), path.join(folder, 'model.glb'));
-  writeFileSync(path.join(folder, 'package.json'), '{ "private": true, "type": "module" }');
-  run('npm', ['install', '--offline', '--omit=optional', '--no-audit', '--no-fund', ...packages], { cwd: folder });
-  return folder;
-}
-
-/** The environment of a user: nothing that names the repository's tool. */
-const { ROUGHCAST, ROUGHCAST_BINARY, ROUGHCAST_BACKEND, ...environment } = process.env;
-const npx = (folder, ...args) => run('npx', ['--offline', 'roughcast', ...args], { cwd: folder, env: environment });
+import test from 'node:test';
+import { fixtures, npm, run, temporary } from './common.js';
+import { environment, npx, options, packages, project } from './packed.js';
 
 /** Returns the JSON of a .glb. */
 function jsonOf(file) {
@@ -40,6 +14,15 @@ function jsonOf(file) {
   return JSON.parse(bytes.toString('utf8', 20, 20 + bytes.readUInt32LE(12)));
 }
 
+/** Files of the main package that are not in the repository. */
+const WITHOUT_SOURCE = [
+  'roughcast.threads.wasm',
+  'roughcast.wasm',
+  'viewer/page/index.html',
+  'viewer/page/main.js',
+  'viewer/three/LICENSE',
+];
+
 test('the packages hold what they need and nothing else', options, () => {
   const list = (file) =>
     run('tar', ['-tzf', file])
@@ -47,9 +30,9 @@ test('the packages hold what they need and nothing else', options, () => {
       .split('\n')
       .map((name) => name.replace('package/', ''));
   const licences = ['LICENSE-APACHE', 'LICENSE-MIT', 'README.md', 'package.json'];
-  assert.deepEqual(list(platform).sort(), [...licences, 'bin/roughcast'].sort());
-  const names = list(main);
-  for (const name of [...licences, 'bin/roughcast.js', 'index.d.ts', 'lib/index.js', 'roughcast.wasm']) {
+  assert.deepEqual(list(packages.platform).sort(), [...licences, 'bin/roughcast'].sort());
+  const names = list(packages.main);
+  for (const name of [...licences, 'bin/roughcast.js', 'index.d.ts', 'lib/index.js', ...WITHOUT_SOURCE]) {
     assert.ok(names.includes(name), name);
   }
   assert.deepEqual(
@@ -59,8 +42,8 @@ test('the packages hold what they need and nothing else', options, () => {
 });
 
 test('the command line bakes natively and by WebAssembly, to the same bytes', options, (t) => {
-  const native = project(t, [platform, main]);
-  const wasm = project(t, [main]);
+  const native = project(t, [packages.platform, packages.main]);
+  const wasm = project(t, [packages.main]);
   assert.ok(existsSync(path.join(native, 'node_modules/@roughcast')));
   assert.ok(!existsSync(path.join(wasm, 'node_modules/@roughcast')));
   assert.doesNotMatch(npx(native, '--version'), /WebAssembly/);
@@ -73,21 +56,22 @@ test('the command line bakes natively and by WebAssembly, to the same bytes', op
 });
 
 test('one command bakes in an empty folder, and its time is printed', options, (t) => {
-  for (const packages of [[main, platform], [main]]) {
+  const { main, platform } = packages;
+  for (const installed of [[main, platform], [main]]) {
     const folder = temporary(t);
     cpSync(path.join(fixtures, 'waves/waves.glb'), path.join(folder, 'model.glb'));
-    const named = packages.flatMap((name) => ['--package', name]);
+    const named = installed.flatMap((name) => ['--package', name]);
     const command = ['--yes', '--offline', ...named, 'roughcast', 'bake', 'model.glb', '-o', 'baked.glb', '--glb'];
     const started = performance.now();
     run('npx', command, { cwd: folder, env: environment });
     const seconds = (performance.now() - started) / 1e3;
-    t.diagnostic(`${packages.length === 2 ? 'native' : 'WebAssembly'}: ${seconds.toFixed(1)} s`);
+    t.diagnostic(`${installed.length === 2 ? 'native' : 'WebAssembly'}: ${seconds.toFixed(1)} s`);
     assert.ok(existsSync(path.join(folder, 'baked.glb')));
   }
 });
 
 test('WebAssembly bakes folders, names files, and refuses what it cannot do', options, (t) => {
-  const folder = project(t, [main]);
+  const folder = project(t, [packages.main]);
   mkdirSync(path.join(folder, 'assets/deep'), { recursive: true });
   cpSync(path.join(fixtures, 'heights'), path.join(folder, 'assets'), { recursive: true });
   cpSync(path.join(folder, 'model.glb'), path.join(folder, 'assets/deep/model.glb'));
@@ -139,8 +123,9 @@ test('the library transforms a GLB with both backends', options, (t) => {
     await document.transform(roughcast({ profile: 'both' }));
     await io.write('out.glb', document);
   `;
-  const [one, two] = [[platform, main], [main]].map((packages) => {
-    const folder = project(t, packages);
+  const { main, platform } = packages;
+  const [one, two] = [[platform, main], [main]].map((installed) => {
+    const folder = project(t, installed);
     modules(folder);
     writeFileSync(path.join(folder, 'script.js'), script);
     run(process.execPath, ['script.js'], { cwd: folder, env: environment });
