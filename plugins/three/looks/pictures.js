@@ -11,26 +11,32 @@ const STEP = 0.15;
 
 const renderer = new THREE.WebGLRenderer();
 renderer.setClearAlpha(0);
-const stage = new Stage(renderer);
+export const stage = new Stage(renderer);
 
-const read = (target) => {
+/** Returns the pixels of a target: RGBA in floats. */
+export const read = (target) => {
   const { width, height } = target;
   const pixels = new Float32Array(4 * width * height);
   renderer.readRenderTargetPixels(target, 0, 0, width, height, pixels);
   return pixels;
 };
 
-/** Draws variants from one camera. */
-function draw(names, size, view) {
+/** Draws a variant with one sample per pixel. */
+export function pictureOf(name, size) {
   const target = new THREE.WebGLRenderTarget(size, size, { type: THREE.FloatType });
+  stage.draw(name, target);
+  const pixels = read(target);
+  target.dispose();
+  return pixels;
+}
+
+/** Draws variants from one camera, under one light in a room. */
+function draw(names, size, view) {
+  stage.environment('room');
+  stage.light(LIGHT);
   stage.resize(size, size);
   stage.look(view);
-  const drawn = names.map((name) => {
-    stage.draw(name, target);
-    return read(target);
-  });
-  target.dispose();
-  return drawn;
+  return names.map((name) => pictureOf(name, size));
 }
 
 /** Draws every variant and the truth from one camera. Edges of the subject, which alias, are black in all pictures. */
@@ -46,28 +52,13 @@ function pictures(size, samples, view, names = DRAWN) {
 }
 
 /** Loads variants, from URLs by name. */
-window.load = async (urls) => {
-  await stage.load(urls);
-  stage.light(LIGHT);
-};
+window.load = (urls) => stage.load(urls);
 
 /** Returns the errors of all variants, or of `names`, at a distance: [[relative L1, SSIM], ...]. */
 window.errors = ({ kind, distance, size, samples, names }) => {
   stage.show(kind);
   const { drawn, truth } = pictures(size, samples, { ...CAMERA, distance }, names);
   return drawn.map((picture) => [relativeL1(picture, truth), ssim(picture, truth, size)]);
-};
-
-/** Returns the mean relative L1 of each variant over lights from `lights`, in degrees. */
-window.underLights = ({ kind, distance, size, samples, lights }) => {
-  stage.show(kind);
-  const errors = lights.map((from) => {
-    stage.light({ ...LIGHT, ...from });
-    const { drawn, truth } = pictures(size, samples, { ...CAMERA, distance });
-    return drawn.map((picture) => relativeL1(picture, truth));
-  });
-  stage.light(LIGHT);
-  return DRAWN.map((_, i) => errors.reduce((sum, of) => sum + of[i], 0) / lights.length);
 };
 
 /** Returns the relative L1 between two variants. */
@@ -108,4 +99,3 @@ window.sheet = ({ kind, distance, size, samples }) => {
   });
   return canvas.toDataURL();
 };
-window.ready = true;

@@ -1,24 +1,18 @@
 // usage: npm run looks [-- <folder for pictures>]
-// Prints the tables of docs/engines.md.
+// Prints the tables of docs/engines.md on distances, flicker and cost.
 import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import os from 'node:os';
 import path from 'node:path';
 import { DISTANCES, KINDS, NAMES, costs, forEach, materials } from './run.js';
 
 const VIEW = { size: 128, samples: 256 };
-/** Directions of the light, from all around. */
-const LIGHTS = [25, 40, 60].flatMap((elevation) =>
-  Array.from({ length: 12 }, (_, i) => ({ azimuth: 30 * i, elevation })),
-);
-const UNDER_LIGHTS = { kind: 'plane', size: 128, samples: 64, lights: LIGHTS };
-const FAR = [5, 13, 34];
 const SEQUENCE = { size: 96, samples: 64, frames: 12, distance: 12 };
 
 const [pictures] = process.argv.slice(2);
 if (pictures) mkdirSync(pictures, { recursive: true });
 const folder = mkdtempSync(path.join(os.tmpdir(), 'roughcast-looks-'));
 const row = (cells) => console.log(`| ${cells.join(' | ')} |`);
-const [flickers, underLights] = [[], []];
+const flickers = [];
 try {
   row(['material', 'subject', 'variant', ...DISTANCES, 'mean', 'closer']);
   row(Array(5 + DISTANCES.length).fill('---'));
@@ -44,19 +38,7 @@ try {
         writeFileSync(path.join(pictures, `${name}-${kind}-${distance}.png`), Buffer.from(url.split(',')[1], 'base64'));
       }
     }
-    const errors = [];
-    for (const distance of FAR)
-      errors.push(await page.evaluate((o) => window.underLights(o), { ...UNDER_LIGHTS, distance }));
-    const means = NAMES.map((_, i) => errors.reduce((sum, of) => sum + of[i], 0) / FAR.length);
-    underLights.push([
-      name,
-      ...means.map((mean, i) => (i === 0 ? mean.toFixed(2) : `${mean.toFixed(2)} (${(means[0] / mean).toFixed(1)}x)`)),
-    ]);
   });
-  console.log();
-  row(['plane of', ...NAMES]);
-  row(Array(1 + NAMES.length).fill('---'));
-  underLights.forEach(row);
   console.log();
   row(['material', 'subject', ...NAMES]);
   row(Array(2 + NAMES.length).fill('---'));

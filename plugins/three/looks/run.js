@@ -1,5 +1,5 @@
 // Bakes materials, draws them and measures the error of each variant.
-import { copyFileSync, existsSync, mkdirSync, writeFileSync } from 'node:fs';
+import { copyFileSync, existsSync, mkdirSync, readdirSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { launch, open } from '../browser.js';
 import { serve } from '../server.js';
@@ -74,14 +74,16 @@ function wrapped(folder, name, map, roughness) {
   return folder;
 }
 
-/** Calls `use` with a page that has loaded the variants of each material. */
-export async function forEach(folder, chosen, use) {
-  for (const [name, source] of chosen) {
-    mkdirSync(path.join(folder, name));
-    for (const [variant, options] of Object.entries(BAKES)) {
-      roughcast('bake', source, '-o', path.join(folder, name, variant), ...options, '--gltf', 'strict', '--quiet');
-    }
-  }
+/** Returns name and folder of the materials in a folder: each is <name>/<name>.gltf. */
+export function found(folder) {
+  return readdirSync(folder)
+    .sort()
+    .map((name) => [name, path.join(folder, name)])
+    .filter(([name, source]) => existsSync(path.join(source, `${name}.gltf`)));
+}
+
+/** Calls `use` with a page that has loaded the variants of each material: the original, and `bakes` by their options. */
+export async function forEach(folder, chosen, use, bakes = BAKES) {
   const folders = Object.fromEntries(['looks', 'page', 'plugin'].map((name) => [name, path.join(example, name)]));
   const sources = Object.fromEntries(chosen.map(([name, source]) => [`source-${name}`, source]));
   const server = await serve({
@@ -92,12 +94,16 @@ export async function forEach(folder, chosen, use) {
   });
   const browser = await launch();
   try {
-    for (const [name] of chosen) {
+    for (const [name, source] of chosen) {
+      mkdirSync(path.join(folder, name), { recursive: true });
+      for (const [variant, options] of Object.entries(bakes)) {
+        roughcast('bake', source, '-o', path.join(folder, name, variant), ...options, '--gltf', 'strict', '--quiet');
+      }
       const page = await open(browser, `${server.url}/looks/looks.html`);
       await page.waitForFunction('window.ready');
-      const baked = Object.keys(BAKES).map((variant) => [variant, `/baked/${name}/${variant}/${name}.gltf`]);
+      const baked = Object.keys(bakes).map((variant) => [variant, `/baked/${name}/${variant}/${name}.gltf`]);
       const urls = { original: `/source-${name}/${name}.gltf`, ...Object.fromEntries(baked) };
-      urls.reflected = urls.anisotropic;
+      if (urls.anisotropic) urls.reflected = urls.anisotropic;
       await page.evaluate((u) => window.load(u), urls);
       await use(name, page);
       await page.context().close();

@@ -4,7 +4,7 @@ import { texturesOf } from './bytes.js';
 import { debuggable } from './debug.js';
 import { Loader } from './loader.js';
 import { surroundings } from './surroundings.js';
-import { subject } from './subject.js';
+import { bumpy, subject } from './subject.js';
 import { Accumulator, unfiltered } from './supersample.js';
 import { VARIANTS } from './variants.js';
 
@@ -58,10 +58,15 @@ export class Stage {
     return VARIANTS.filter((name) => this.#assets.has(name === 'supersampled' ? 'original' : name));
   }
 
-  /** Shows the asset, or a plane or a sphere with its material. */
-  show(kind) {
+  /** Returns the width of the original's normal map in texels. */
+  get texels() {
+    return bumpy(this.#assets.get('original')).normalMap.image.width;
+  }
+
+  /** Shows the asset, or a plane or a sphere with its material, and with `repeats` of the maps if given. */
+  show(kind, repeats) {
     for (const object of this.#subjects.values()) object.removeFromParent();
-    this.#subjects = new Map([...this.#assets].map(([name, scene]) => [name, subject(scene, kind)]));
+    this.#subjects = new Map([...this.#assets].map(([name, scene]) => [name, subject(scene, kind, repeats)]));
     const original = this.#subjects.get('original');
     if (original) this.#subjects.set('supersampled', unfiltered(original));
     for (const object of this.#subjects.values()) {

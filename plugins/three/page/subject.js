@@ -21,13 +21,13 @@ const GEOMETRIES = {
 };
 
 /** Makes a plane or a sphere with a material. Maps that do not repeat are shown once. */
-function sample(kind, material) {
+function sample(kind, material, repeats) {
   const isClamped = material.normalMap?.wrapS === THREE.ClampToEdgeWrapping;
-  return new THREE.Mesh(withTangents(GEOMETRIES[kind](), isClamped ? 1 : REPEATS[kind]), tangential(material));
+  return new THREE.Mesh(withTangents(GEOMETRIES[kind](), isClamped ? 1 : repeats), tangential(material));
 }
 
 /** Returns the first material with bumps, else the first material. */
-function bumpy(scene) {
+export function bumpy(scene) {
   const materials = [];
   scene.traverse((object) => object.isMesh && materials.push(object.material));
   return materials.find((material) => material.normalMap) ?? materials[0];
@@ -36,10 +36,11 @@ function bumpy(scene) {
 /**
  * @param {THREE.Object3D} scene What a loader returned.
  * @param {'asset' | 'plane' | 'sphere'} kind
+ * @param {number} [repeats] Repeats of the maps on a plane or around a sphere.
  * @returns {THREE.Object3D} centred, about 2 units large
  */
-export function subject(scene, kind) {
-  const object = kind === 'asset' ? scene.clone() : sample(kind, bumpy(scene));
+export function subject(scene, kind, repeats = REPEATS[kind]) {
+  const object = kind === 'asset' ? scene.clone() : sample(kind, bumpy(scene), repeats);
   const box = new THREE.Box3().setFromObject(object);
   const size = box.getSize(new THREE.Vector3()).length() || 1;
   const group = new THREE.Group().add(object);

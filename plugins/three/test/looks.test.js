@@ -4,7 +4,11 @@ import test from 'node:test';
 import { missing as browserMissing } from '../browser.js';
 import { flicker, relativeL1, ssim } from '../looks/errors.js';
 import { DISTANCES, forEach, materials } from '../looks/run.js';
+import { errorOf, share, tables } from '../looks/table.js';
 import { missing, temporary } from './roughcast.js';
+
+/** Names of the variants in the page. */
+const NAMED = ['original', 'portable', 'reflected', 'pyramid'];
 
 test('bakes are closer to the truth than plain mips are', { skip: missing || browserMissing }, async (t) => {
   const folder = temporary(t);
@@ -38,16 +42,19 @@ test('bakes are closer to the truth than plain mips are', { skip: missing || bro
     assert.ok(total(sphere, 0) > 1.3 * total(sphere, 1), `${sphere}`);
     // The grooves have one direction. Whether an isotropic lobe gains under a single light depends on where it stands.
     const lights = Array.from({ length: 12 }, (_, i) => ({ azimuth: 30 * i, elevation: i % 2 === 0 ? 55 : 25 }));
-    for (const [kind, distance] of [
-      ['plane', 13],
-      ['plane', 34],
-      ['sphere', 13],
-      ['sphere', 34],
+    for (const [kind, level] of [
+      ['plane', 2.5],
+      ['plane', 5.5],
+      ['sphere', 2.5],
+      ['sphere', 5.5],
     ]) {
-      const options = { kind, distance, size: 64, samples: 64, lights };
-      const under = await page.evaluate((o) => window.underLights(o), options);
-      const worst = Math.max(...under.slice(1));
-      assert.ok(under[0] > 1.3 * worst, `${kind} at ${distance}, under lights from all around: ${under}`);
+      const view = { kind, level, size: 32, samples: 144, lights };
+      const truth = `data:;base64,${await page.evaluate((o) => window.truths(o), view)}`;
+      const gains = await page.evaluate((o) => window.gains(o), { view, names: NAMED, truth });
+      const [plain, portable, ...shaded] = NAMED.map((name) => gains[name].both);
+      const told = `${kind} at level ${level}, under lights from all around: ${plain}, ${portable}, ${shaded}`;
+      assert.ok(plain > 1.1 * portable && plain > 1.5 * Math.max(...shaded), told);
+      assert.ok(gains.original.suns > gains.pyramid.suns && gains.original.environment > gains.pyramid.environment);
     }
     const [plain, , reflected, pyramid] = await page.evaluate((o) => window.flicker(o), {
       kind: 'plane',
@@ -77,4 +84,29 @@ test('computes errors of hand-made pictures', () => {
   // A constant error is no flicker.
   assert.equal(flicker([grey([1, 1]), grey([1, 1])], [grey([2, 2]), grey([2, 2])]), 0);
   assert.ok(flicker([grey([1, 2]), grey([2, 1])], [grey([1, 1]), grey([1, 1])]) > 0.001);
+});
+
+test('computes shares of the reachable gain', () => {
+  assert.equal(share(0.5, 0.3, 0.1), 0.5);
+  assert.equal(share(0.5, 0.4, 0.499), null, 'where nothing can be gained, there is no share');
+  const view = (error) => ({ both: error, suns: 2 * error, environment: error / 2 });
+  const names = [
+    'portable',
+    'portable best',
+    'portable float',
+    'pyramid',
+    'pyramid best',
+    'pyramid float',
+    'reflected',
+  ];
+  const variants = [...names, 'portable float best', 'pyramid float best'].map((name) => [name, view(0.2)]);
+  const errors = [0.3, 0.5].map((plain) => ({ ...Object.fromEntries(variants), original: view(plain) }));
+  const result = { name: 'cloth', isWhole: true, errors };
+  assert.equal(errorOf(result, 'original'), 0.4);
+  assert.equal(
+    errorOf(result, 'original', 'suns', (i) => i === 1),
+    1,
+  );
+  const rows = tables([result]).split('\n');
+  assert.equal(rows[2], '| cloth | 0.400 | 0.200 | 2.00x | 2.00x | 100 % | 0.200 | 2.00x | 2.00x | 100 % |');
 });
