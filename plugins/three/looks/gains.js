@@ -37,7 +37,9 @@ const NAMES = ['original', ...Object.keys(BAKES), 'reflected'].filter((name) => 
 /** Changes of these files make new truths. */
 const PROGRAMS = [
   path.join(example, 'looks/lights.js'),
-  ...['stage.js', 'subject.js', 'supersample.js', 'surroundings.js'].map((name) => path.join(example, 'page', name)),
+  ...['debug.js', 'stage.js', 'subject.js', 'supersample.js', 'surroundings.js'].map((name) =>
+    path.join(example, 'page', name),
+  ),
   path.join(example, 'package-lock.json'),
 ];
 

@@ -1,6 +1,7 @@
 // Runs in the browser: draws variants and the truth under an environment and under many lights, and measures errors.
 //
 // Light adds up, so that one picture of the environment and one of each light give the picture of every pair.
+import { switches } from '/page/debug.js';
 import { relativeL1 } from '/looks/errors.js';
 import { pictureOf, read, stage } from '/looks/pictures.js';
 
@@ -42,11 +43,13 @@ window.truths = (view) => {
   prepare(view);
   const { size } = view;
   const draws = view.samples / FINER ** 2;
+  switches.finer.value = FINER;
   const pictures = under(view.lights, () => {
     stage.accumulator.reset(FINER * size, FINER * size);
     stage.accumulate(draws);
     return reduced(read(stage.accumulator.target), size).map((value) => value / draws);
   });
+  switches.finer.value = 1;
   return new Uint8Array(Float32Array.from(pictures.flatMap((picture) => [...picture])).buffer).toBase64();
 };
 

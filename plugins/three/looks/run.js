@@ -82,7 +82,7 @@ export function found(folder) {
     .filter(([name, source]) => existsSync(path.join(source, `${name}.gltf`)));
 }
 
-/** Calls `use` with a page that has loaded the variants of each material: the original, and `bakes` by their options. */
+/** Calls `use` with a page that has loaded the variants of each material: the original and `bakes`. */
 export async function forEach(folder, chosen, use, bakes = BAKES) {
   const folders = Object.fromEntries(['looks', 'page', 'plugin'].map((name) => [name, path.join(example, name)]));
   const sources = Object.fromEntries(chosen.map(([name, source]) => [`source-${name}`, source]));

@@ -1,10 +1,14 @@
 // A switch in every material for what is shown, and from which level.
+import { ShaderChunk } from 'three';
 
 /** Quantities that a pixel can show. */
 export const VIEWS = ['shaded', 'normal', 'alpha', 'anisotropy'];
 
-/** Shared by all materials: `view` is an index into VIEWS, `level` a mip level, or -1 for what the sampler chooses. */
-export const switches = { view: { value: 0 }, level: { value: -1 } };
+/**
+ * Shared by all materials: `view` is an index into VIEWS, `level` a mip level, or -1 for what the sampler chooses.
+ * `finer` is how many times smaller than pixels the samples are that are drawn.
+ */
+export const switches = { view: { value: 0 }, level: { value: -1 }, finer: { value: 1 } };
 
 const SAMPLING = /* glsl */ `
 uniform int debugView;
@@ -14,7 +18,14 @@ vec4 debugTexture( sampler2D map, vec2 uv ) {
 }
 #undef texture2D
 #define texture2D debugTexture
+uniform float debugFiner;
 `;
+
+/** three.js roughens materials by the curvature of the mesh within a pixel: here within a pixel of the final picture. */
+const LOBE = ShaderChunk.lights_physical_fragment.replace(
+  'float geometryRoughness = ',
+  'float geometryRoughness = debugFiner * ',
+);
 
 const OUTPUT = /* glsl */ `
 #include <opaque_fragment>
@@ -44,8 +55,15 @@ export function debuggable(material) {
   material.isDebuggable = true;
   material.onBeforeCompile = function (program, renderer) {
     onBeforeCompile.call(this, program, renderer);
-    Object.assign(program.uniforms, { debugView: switches.view, debugLevel: switches.level });
-    program.fragmentShader = SAMPLING + program.fragmentShader.replace('#include <opaque_fragment>', OUTPUT);
+    Object.assign(program.uniforms, {
+      debugView: switches.view,
+      debugLevel: switches.level,
+      debugFiner: switches.finer,
+    });
+    const fragment = program.fragmentShader
+      .replace('#include <opaque_fragment>', OUTPUT)
+      .replace('#include <lights_physical_fragment>', LOBE);
+    program.fragmentShader = SAMPLING + fragment;
   };
   material.customProgramCacheKey = () => `debug ${key}`;
   material.needsUpdate = true;
