@@ -16,6 +16,7 @@ mod plan_merge;
 mod render;
 mod terminal;
 mod threads;
+mod view;
 mod watch;
 mod work;
 
@@ -53,6 +54,7 @@ enum Command {
     Inspect(inspect::Args),
     Compare(compare::Args),
     Render(render::Args),
+    View(view::Args),
     Completions(completions::Args),
     Man(man::Args),
 }
@@ -90,6 +92,7 @@ fn run_command(cli: Cli, out: &mut dyn Write, err: &mut dyn Write) -> io::Result
         Command::Inspect(args) => inspect::run(&args, out, err),
         Command::Compare(args) => compare::run(&args, out, err),
         Command::Render(args) => render::run(&args, out, err),
+        Command::View(args) => view::run(&args, err),
         Command::Completions(args) => completions::run(&args, Cli::command(), out),
         Command::Man(args) => man::run(&args, Cli::command(), out, err),
     }

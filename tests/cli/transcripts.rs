@@ -47,7 +47,8 @@ fn help() {
 
 #[test]
 fn help_of_each_command() {
-    for command in ["bake", "init", "map", "watch", "check", "compare", "plan", "render", "completions", "man"] {
+    for command in ["bake", "init", "map", "watch", "check", "compare", "plan", "render", "view", "completions", "man"]
+    {
         transcript(&format!("help_{command}"), &[&format!("roughcast {command} --help")]);
     }
     transcript("help_plan_merge", &["roughcast plan merge --help"]);
@@ -129,6 +130,7 @@ fn errors() {
             "roughcast render brushed/brushed.bin -o out",
             "roughcast render heights/heights.png -o out",
             "roughcast render brushed/brushed.gltf -o brushed/brushed.bin --scene highlight --width 8",
+            "roughcast view brushed out --original brushed/brushed.gltf",
         ],
     );
 }
