@@ -1,7 +1,8 @@
 // Packs the npm packages: `node make-packages.js --binary TOOL [--platform linux-x64] [--out out]`.
 //
 // Makes the package of one platform from the built tool, and the main package from roughcast/ with its WebAssembly
-// modules and the viewer. Writes `roughcast-<version>.tgz` and `roughcast-<platform>-<version>.tgz`, and prints their paths.
+// modules and the viewer. Writes `roughcast-<version>.tgz` and `roughcast-<platform>-<version>.tgz`, and prints their
+// paths.
 import { execFileSync } from 'node:child_process';
 import { chmodSync, cpSync, existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import os from 'node:os';

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds the WebAssembly modules: `bash npm/wasm/build.sh` writes npm/roughcast/roughcast.wasm, which has one thread, and
-# npm/roughcast/roughcast.threads.wasm, whose memory threads share.
+# Builds the WebAssembly modules: `bash npm/wasm/build.sh` writes npm/roughcast/roughcast.wasm, which has one thread,
+# and npm/roughcast/roughcast.threads.wasm, whose memory threads share.
 #
 # No toolchain has a standard library for shared memory, so the library is built too. Its sources are Debian's package
 # rust-web-src, with rustc-web and cargo-web, or rustup's component rust-src. zstd is C and needs a clang for
@@ -23,7 +23,8 @@ sysroot=$(rustc --print sysroot 2>/dev/null || true)
 # The encoder's kernels keep tables on the stack: the default of 1 MiB is too little. lib/wasm.js has this number, too.
 flags="-C link-arg=-zstack-size=8388608"
 
-if [ -d "$sysroot/lib/rustlib/src/rust/library" ] && rustup target list --installed 2>/dev/null | grep -qx wasm32-unknown-unknown; then
+if [ -d "$sysroot/lib/rustlib/src/rust/library" ] &&
+    rustup target list --installed 2>/dev/null | grep -qx wasm32-unknown-unknown; then
     cargo=cargo
 elif [ -x /usr/bin/cargo ] && [ -d /usr/lib/rustlib/src/rust/library ]; then
     cargo=/usr/bin/cargo
@@ -56,7 +57,8 @@ build() {
 }
 
 build roughcast.wasm +simd128 ""
-# JavaScript makes the memory, of the sizes in lib/threads.js, and gives each thread its stack and its thread-local memory.
+# JavaScript makes the memory, of the sizes in lib/threads.js, and gives each thread its stack and its thread-local
+# memory.
 build roughcast.threads.wasm +simd128,+atomics,+bulk-memory,+mutable-globals "-matomics -mbulk-memory" \
     --shared-memory --import-memory --max-memory=4294967296 --initial-memory=16777216 \
     --export=__stack_pointer --export=__wasm_init_tls --export=__tls_size --export=__tls_align

@@ -29,8 +29,8 @@ const ISOLATION = new Map([
 
 /**
  * Serves folders by the first part of the path: { three: '/a/folder' } is /three/. A link that leads out of its folder
- * is not found. Pages that listen to /events get an event from each `reportBake`. With `isIsolated` pages are cross-origin
- * isolated, so that their workers can share memory.
+ * is not found. Pages that listen to /events get an event from each `reportBake`. With `isIsolated`, pages are
+ * cross-origin isolated, so that their workers can share memory.
  *
  * @returns {Promise<{url: string, reportBake: () => void, close: () => Promise<void>}>}
  */

@@ -1,5 +1,5 @@
-// Calls of the WebAssembly module on the calling thread. Each call has an instance of its own: the memory of an instance
-// never shrinks, and a panic leaves an instance in an unknown state.
+// Calls of the WebAssembly module on the calling thread. Each call has an instance of its own: the memory of an
+// instance never shrinks, and a panic leaves an instance in an unknown state.
 import { decodeResponse, encodeRequest, textAt } from './message.js';
 
 /**

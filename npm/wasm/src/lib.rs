@@ -5,7 +5,8 @@
 //! An instance answers one call and is dropped with its memory: a module's memory never shrinks, and a panic leaves an
 //! instance in an unknown state. Nothing is freed here for that reason.
 //!
-//! The crate is built twice: for a memory of one thread, and with `atomics` for a memory that the threads of a bake share.
+//! The crate is built twice: for a memory of one thread, and with `atomics` for a memory that the threads of a bake
+//! share.
 
 mod bake;
 mod command;
