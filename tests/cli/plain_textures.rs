@@ -114,7 +114,7 @@ fn every_image_is_written_once_for_each_meaning() {
     assert_eq!(surface, index("/materials/1/occlusionTexture"));
     let pngs = files(&folder.join("out")).into_iter().filter(|(name, _)| name.ends_with(".png")).count();
     assert_eq!(pngs, 0);
-    done(folder, "check out --source leaves --deep --allow RC1510 -q");
+    done(folder, "check out --source leaves --deep --allow RC1510");
 }
 
 #[test]
@@ -162,7 +162,7 @@ fn fallbacks_have_the_alpha_of_their_texture() {
     let path = folder.join("out").join(root["images"][image]["uri"].as_str().expect("a file"));
     let [found, source] = [path, folder.join("leaves/leaf.png")].map(|path| image::open(path).expect("a picture"));
     assert_eq!(found.to_rgba8(), source.to_rgba8());
-    done(folder, "check out --source leaves --deep --allow RC1510 -q");
+    done(folder, "check out --source leaves --deep --allow RC1510");
 }
 
 #[test]
@@ -174,7 +174,7 @@ fn textures_fit_the_largest_size_in_whole_blocks() {
         for (content, width, height) in found {
             assert_eq!((width, height), expected, "{content} within {size}");
         }
-        done(folder, "check out --source leaves --deep --allow RC1510 -q");
+        done(folder, "check out --source leaves --deep --allow RC1510");
     }
     let recorded = json_of(&done(folder, "inspect out/leaves.roughcast/leaf.colour.ktx2 --json")).to_string();
     assert!(recorded.contains("\"maxSize\":4") && recorded.contains("\"textures\":\"all\""), "{recorded}");
@@ -187,7 +187,7 @@ fn check_knows_both_settings() {
     let scene = scene();
     let folder = scene.path();
     textures(folder, "--textures all --max-size 16");
-    let found = run(folder, "check out --source leaves --textures all --max-size 16 --allow RC1510 -q");
+    let found = run(folder, "check out --source leaves --textures all --max-size 16 --allow RC1510");
     assert_eq!(found.code, 0, "{}", found.out);
     let found = run(folder, "check out --source leaves --textures bumps --max-size 8");
     assert_eq!(found.code, 3, "{}", found.out);
@@ -248,5 +248,5 @@ fn a_glb_has_no_image_besides_ktx2() {
     let report = json_of(&done(folder.path(), "bake waves -o out --textures all --rdo 0.5 --json"));
     let sizes = &report["assets"][0]["sizes"];
     assert_eq!((sizes["images"].as_u64(), sizes["fallback"].as_u64()), (Some(0), Some(0)));
-    done(folder.path(), "check out --source waves --deep --allow RC1510 -q");
+    done(folder.path(), "check out --source waves --deep --allow RC1510");
 }

@@ -72,9 +72,6 @@ fn cases() -> Vec<Case> {
     for engine in Engine::names() {
         add(format!("engine/{engine}"), format!("bake tiny -o OUT --engine {engine} --profile both"));
     }
-    for (name, options) in [("all", ""), ("all-rdo", " --rdo 0.5"), ("all-small", " --max-size 8")] {
-        add(format!("textures/{name}"), format!("bake tiny knobs -o OUT --textures all{options}"));
-    }
     for form in FORMS {
         for target in ["basis", "float"] {
             let settings = format!("--gltf {form} --target {target} --profile both");
