@@ -13,8 +13,8 @@ use texel_simd::Wide;
 
 /// Fits the modes with alpha to red, green, blue and alpha of `texels` and returns the best blocks.
 ///
-/// [`Effort::Fast`] gives the second plane to alpha, which is related to the colours least often. [`Effort::Best`] tries
-/// every channel, two patterns and a second round of regression.
+/// [`Effort::Fast`] gives the second plane to alpha, which is related to the colours least often. [`Effort::Best`]
+/// tries every channel, two patterns and a second round of regression.
 #[inline(always)]
 pub(crate) fn best_rgba<S: Simd>(simd: S, texels: &[Grid<S>; 4], effort: Effort) -> Blocks<S> {
     let (rounds, selectors): (_, &[f32]) = match effort {

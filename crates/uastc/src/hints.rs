@@ -93,8 +93,8 @@ impl Hints {
     }
 }
 
-/// Returns the least factor with which the offsets of an EAC block span all alphas of `texels`. Offsets beyond 0 and 255
-/// are clamped, so that both ends are exact.
+/// Returns the least factor with which the offsets of an EAC block span all alphas of `texels`. Alphas beyond 0 and
+/// 255 are clamped, so that both ends are exact.
 fn eac_multiplier(texels: &Texels) -> u8 {
     let (least, most) = texels.iter().fold((255, 0), |(least, most), &[.., a]| (a.min(least), a.max(most)));
     u8::div_ceil(most - least, EAC_RANGE).max(1)

@@ -55,8 +55,8 @@ pub struct TextureOptions {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "glTF options")]
 pub struct DocumentOptions {
-    /// Which textures are written as KTX2. For example --textures all --rdo 0.5, so that no other tool is needed for base
-    /// colour, emissive and occlusion. [default: bumps]
+    /// Which textures are written as KTX2. For example --textures all --rdo 0.5, so that no other tool is needed for
+    /// base colour, emissive and occlusion. [default: bumps]
     #[arg(long, value_enum)]
     textures: Option<Textures>,
     /// How textures are referenced. A PNG copy of each is for engines without KTX2: beside a .gltf they load one of the

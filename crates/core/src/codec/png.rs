@@ -15,7 +15,8 @@ const BAND: u32 = 64;
 /// Number of bytes of a chunk of the file.
 const CHUNK: usize = 1 << 20;
 
-/// Encodes a level as a PNG, which is opaque unless the level has alpha. The rows of the level are never all held at once.
+/// Encodes a level as a PNG, which is opaque unless the level has alpha. The rows of the level are never all held at
+/// once.
 ///
 /// # Errors
 /// [`EncodeError::Png`].
@@ -40,8 +41,9 @@ pub fn encode_png(rgba: &[u8], width: u32, height: u32, effort: Effort) -> Resul
     encode([rgba], (width, height), false, effort).map_err(|error| error.to_string())
 }
 
-/// Encodes bands of RGBA8 texels, as RGB unless they have alpha. For a 4096^2 normal and roughness map zlib's default effort takes 7.8
-/// CPU seconds, about as long as the rest of the bake; its fast effort takes 1.1 s, and files are an eighth larger.
+/// Encodes bands of RGBA8 texels, as RGB unless they have alpha. For a 4096^2 normal and roughness map zlib's default
+/// effort takes 7.8 CPU seconds, about as long as the rest of the bake; its fast effort takes 1.1 s, and files are an
+/// eighth larger.
 fn encode(
     bands: impl IntoIterator<Item = impl AsRef<[u8]>>,
     (width, height): (u32, u32),

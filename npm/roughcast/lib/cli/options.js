@@ -48,7 +48,17 @@ export const OUTPUT = {
   verbose: { type: 'boolean', short: 'v' },
 };
 
-const NUMBERS = ['max-error', 'rdo', 'max-size', 'max-texels', 'height-scale', 'nearest', 'screen-height', 'fov', 'aspect'];
+const NUMBERS = [
+  'max-error',
+  'rdo',
+  'max-size',
+  'max-texels',
+  'height-scale',
+  'nearest',
+  'screen-height',
+  'fov',
+  'aspect',
+];
 
 /**
  * Reads arguments.
