@@ -21,7 +21,7 @@ vec4 debugTexture( sampler2D map, vec2 uv ) {
 uniform float debugFiner;
 `;
 
-/** three.js roughens materials by the curvature of the mesh within a pixel: here within a pixel of the final picture. */
+/** three.js roughens materials by the curvature of the mesh within a pixel. Finer samples keep that roughness. */
 const LOBE = ShaderChunk.lights_physical_fragment.replace(
   'float geometryRoughness = ',
   'float geometryRoughness = debugFiner * ',
