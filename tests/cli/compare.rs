@@ -121,7 +121,7 @@ fn several_inputs_share_one_page_that_begins_with_their_verdicts() {
 fn pictures_can_be_left_out() {
     let folder = tempdir().expect("a folder");
     let input = fixtures().join("maps/line_normal.png");
-    let [input, output] = [&input, folder.path()].map(|path: &Path| path.to_str().expect("a path in UTF-8"));
+    let [input, output] = [input.as_path(), folder.path()].map(|path| path.to_str().expect("a path in UTF-8"));
     let run = roughcast(["compare", input, "-o", output, "--texels", "2", "--picture-width", "0"]);
     assert_eq!((run.code, run.err.as_str()), (0, ""));
     let report = report(folder.path());
