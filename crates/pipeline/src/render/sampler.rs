@@ -134,8 +134,8 @@ pub(super) fn texel_of(uv: [f64; 2], (width, height): (u32, u32)) -> [usize; 2] 
     [wrapped((uv[0] * f64::from(width)).floor(), width), wrapped((uv[1] * f64::from(height)).floor(), height)]
 }
 
-/// Returns the index of the integer `at` on an axis of `size` texels that repeats. `rem_euclid` of floats would be a call
-/// of `fmod`, which divides bit by bit.
+/// Returns the index of the integer `at` on an axis of `size` texels that repeats. `rem_euclid` of floats would be a
+/// call of `fmod`, which divides bit by bit.
 fn wrapped(at: f64, size: u32) -> usize {
     let length = f64::from(size);
     (at - (at / length).floor() * length).clamp(0.0, length - 1.0) as usize
