@@ -14,8 +14,8 @@ use crate::text::printable;
 
 /// Chart lobe and picture error against cost: every model, every peer and the best single lobe, on your own material.
 ///
-/// Writes compare.html (everything), compare-MATERIAL.svg, compare.csv and compare.json. Errors: lower is better. All values except the bake
-/// times are equal in every run.
+/// Writes compare.html (everything), compare-MATERIAL.svg, compare.csv and compare.json. Errors: lower is better. All
+/// values except the bake times are equal in every run.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  roughcast compare helmet.glb -o charts\n  \
     roughcast compare wool_normal.png sand_normal.png -o charts --roughness 0.3 --max-error 0.02")]
