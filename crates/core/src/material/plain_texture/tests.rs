@@ -98,7 +98,7 @@ fn other_grids_are_interpolated_in_linear_light() {
 #[test]
 fn hidden_colours_do_not_bleed_and_clear_texels_keep_a_colour() {
     // One red texel that is seen, and green ones that are not.
-    let mut samples = vec![0, 255, 0, 0].repeat(16);
+    let mut samples = [0, 255, 0, 0].repeat(16);
     samples[..4].copy_from_slice(&[255, 0, 0, 255]);
     let image = Image { width: 4, height: 4, channels: 4, samples: Samples::U8(samples) };
     let texture = PlainTexture::new(&image, Meaning::Colour(AlphaUse::Blend), (4, 4), WRAP);
