@@ -187,12 +187,14 @@ fn bytes_are_pinned() {
     assert_eq!(found, PINNED, "{found:#x?}");
 }
 
-/// The hashes of three metrics with each effort, then of lobes with each effort.
-const PINNED: [u64; 8] = [
+/// The hashes of all metrics with each effort, then of lobes with each effort.
+const PINNED: [u64; 10] = [
     0x76bf_93c3_48e2_8199,
+    0xc08a_e682_bc41_eb48,
     0xb41c_734c_4384_323d,
     0x03e4_961d_f67b_f0e2,
     0x75ac_9061_2cf2_219c,
+    0x2e04_5304_a8d3_b2d3,
     0x4478_6bc1_7979_a054,
     0xe5fe_d923_d7e4_372d,
     0x604f_0ac2_face_a00a,
