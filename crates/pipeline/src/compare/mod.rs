@@ -22,7 +22,7 @@ mod verdict;
 use crate::lobe::{Family, SquaredAlpha};
 use crate::math::symmetric::Symmetric2;
 use crate::metric::{Lobe, Peer, Surface, mean_errors, oracle, sample_texels};
-use crate::render::{Advance, Bumps, Material, Texture};
+use crate::render::{Advance, Material};
 
 pub use chart::Measure;
 pub use chart::file as chart;
@@ -30,6 +30,7 @@ pub use cost::{Axis, Cost};
 pub use entry::{Comparison, Entry, Kind};
 pub use files::{Charts, CompareError, CompareOptions, FailedInput, compare_files};
 pub use ours::Ours;
+use ours::normals;
 pub use page::page;
 pub use pictures::MAX_PICTURE_WIDTH;
 use pictures::picture_errors;
@@ -104,13 +105,6 @@ pub fn compare(
     let entries = entries.collect();
     let picture_noise = pictures.map(|pictures| pictures.noise);
     Some(Comparison { material: name.to_owned(), verdict: None, picture_noise, entries })
-}
-
-fn normals(material: &Material) -> Option<&Texture> {
-    match &material.bumps {
-        Bumps::Normals { texture, .. } => Some(texture),
-        Bumps::Flat | Bumps::Offsets { .. } => None,
-    }
 }
 
 fn lobe(material: &Material, size: (u32, u32), texel: (u32, u32)) -> Lobe {

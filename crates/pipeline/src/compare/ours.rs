@@ -1,6 +1,6 @@
 //! Our bakes, which are compared with the peers.
 
-use crate::render::Material;
+use crate::render::{Bumps, Material, Texture};
 
 /// A bake of ours.
 pub struct Ours {
@@ -14,4 +14,12 @@ pub struct Ours {
     pub seconds: f64,
     /// Whether `--model auto` chooses this model.
     pub chosen: bool,
+}
+
+/// Returns the normal map of `material`; `None` for other bumps.
+pub fn normals(material: &Material) -> Option<&Texture> {
+    match &material.bumps {
+        Bumps::Normals { texture, .. } => Some(texture),
+        Bumps::Flat | Bumps::Offsets { .. } => None,
+    }
 }

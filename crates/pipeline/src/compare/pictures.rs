@@ -5,7 +5,7 @@
 
 use rayon::prelude::*;
 
-use super::{Ours, normals};
+use super::ours::{Ours, normals};
 use crate::lobe::Family;
 use crate::metric::{FootprintMoments, Peer, Surface};
 use crate::mip::{Level, build};
