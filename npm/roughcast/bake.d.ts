@@ -28,7 +28,7 @@ export interface Settings {
   provenance?: boolean;
   /** Preset of `target`, `gltf`, `model` and `maxModel` for an engine; explicit settings win over it. */
   engine?: 'three' | 'babylon' | 'playcanvas' | 'filament' | 'bevy' | 'godot';
-  /** Which textures are written: those that the bake changes, or base colour and others, too. Default: bumps. */
+  /** Which textures are written: normals, roughness and anisotropy, or also base colour and others. Default: bumps. */
   textures?: 'bumps' | 'all';
   /** How the document refers to textures. Default: auto, which is strict in a .glb and fallback in a .gltf. */
   gltf?: 'auto' | 'fallback' | 'strict' | 'dual';

@@ -99,13 +99,13 @@ pub enum MaxModel {
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum Textures {
-    /// Those that the bake changes: normals, roughness and anisotropy. All other images stay as they are.
+    /// Normals, roughness and anisotropy of materials with bumps. All other images stay as they are.
     #[default]
-    #[cfg_attr(feature = "cli", value(help = "Those that the bake changes; all other images stay as they are"))]
+    #[cfg_attr(feature = "cli", value(help = "Normals, roughness and anisotropy; other images stay as they are"))]
     Bumps,
-    /// Base colour, emissive, occlusion, metalness with roughness, clearcoat, transmission, thickness and iridescence,
-    /// too.
-    #[cfg_attr(feature = "cli", value(help = "Base colour, emissive, occlusion and other maps, too"))]
+    /// Also base colour, emissive, occlusion, metalness with roughness, clearcoat, transmission, thickness and
+    /// iridescence.
+    #[cfg_attr(feature = "cli", value(help = "Also base colour, emissive, occlusion and other maps"))]
     All,
 }
 

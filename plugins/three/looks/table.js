@@ -67,20 +67,22 @@ function means(results) {
   return table(rows);
 }
 
+/** Variants of the table of parts. */
+export const PARTS = [
+  'portable',
+  'portable best',
+  'portable float',
+  'pyramid',
+  'pyramid best',
+  'pyramid float',
+  'reflected',
+];
+
 /** Returns how many times closer than plain mips other variants are, and where: by light and by subject. */
 function parts(results) {
-  const others = [
-    'portable',
-    'portable best',
-    'portable float',
-    'pyramid',
-    'pyramid best',
-    'pyramid float',
-    'reflected',
-  ];
   const rows = headed([
     'material',
-    ...others,
+    ...PARTS,
     'stock, suns',
     'stock, environment',
     'plugin, suns',
@@ -88,7 +90,7 @@ function parts(results) {
   ]);
   for (const result of results) {
     const plain = (light) => errorOf(result, 'original', light);
-    const cells = others.map((variant) => times(plain('both'), errorOf(result, variant)));
+    const cells = PARTS.map((variant) => times(plain('both'), errorOf(result, variant)));
     for (const [, ours] of SHADINGS) {
       for (const light of ['suns', 'environment']) cells.push(times(plain(light), errorOf(result, ours, light)));
     }

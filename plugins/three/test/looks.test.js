@@ -4,7 +4,7 @@ import test from 'node:test';
 import { missing as browserMissing } from '../browser.js';
 import { flicker, relativeL1, ssim } from '../looks/errors.js';
 import { DISTANCES, forEach, materials } from '../looks/run.js';
-import { errorOf, share, tables } from '../looks/table.js';
+import { PARTS, errorOf, share, tables } from '../looks/table.js';
 import { missing, temporary } from './roughcast.js';
 
 /** Names of the variants in the page. */
@@ -90,16 +90,7 @@ test('computes shares of the reachable gain', () => {
   assert.equal(share(0.5, 0.3, 0.1), 0.5);
   assert.equal(share(0.5, 0.4, 0.499), null, 'where nothing can be gained, there is no share');
   const view = (error) => ({ both: error, suns: 2 * error, environment: error / 2 });
-  const names = [
-    'portable',
-    'portable best',
-    'portable float',
-    'pyramid',
-    'pyramid best',
-    'pyramid float',
-    'reflected',
-  ];
-  const variants = [...names, 'portable float best', 'pyramid float best'].map((name) => [name, view(0.2)]);
+  const variants = [...PARTS, 'portable float best', 'pyramid float best'].map((name) => [name, view(0.2)]);
   const errors = [0.3, 0.5].map((plain) => ({ ...Object.fromEntries(variants), original: view(plain) }));
   const result = { name: 'cloth', isWhole: true, errors };
   assert.equal(errorOf(result, 'original'), 0.4);

@@ -7,8 +7,8 @@ use crate::material::reflectance::ReflectanceRows;
 use crate::math::symmetric::Symmetric2;
 use crate::mip::{LinearResampled, MipTail, TexelRows, Wrap, level_sizes};
 
-/// A texel of the base lobe: A (uu, uv, vv), then the red and blue channels of the roughness texture. Red is averaged;
-/// blue, the metalness, counts by base colour where that varies, too.
+/// A texel of the base lobe: A (uu, uv, vv), then the red and blue channels of the roughness texture. Mips have
+/// their means. Where metalness and base colour both vary, the mean of blue, the metalness, is weighted by base colour.
 pub type BaseTexel = [f32; 5];
 
 /// Returns the base lobe of a texel.

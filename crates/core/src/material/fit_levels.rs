@@ -75,6 +75,7 @@ pub fn fit_levels<R: TexelRows<Texel: LobeTexel>>(
         Effort::Fast => &FAST,
         Effort::Best => &BEST,
     };
+    let needs_marks = fits.iter().any(|fit| fit.uneven_only);
     let sizes = level_sizes(level_0.width(), level_0.height());
     let mut finer_uneven = Vec::new();
     for level in FIRST..sizes.len() {
@@ -83,7 +84,9 @@ pub fn fit_levels<R: TexelRows<Texel: LobeTexel>>(
         let is_uneven: Vec<AtomicBool> = (0..size.0 * size.1).map(|_| AtomicBool::default()).collect();
         tail.update_level(level_0, level, |y, finer, out| {
             let is_uneven = &is_uneven[(y * size.0) as usize..][..out.len()];
-            mark_uneven(&|y, out: &mut [_]| finer(level - 1, y, out), finer_size, &finer_uneven, y, is_uneven);
+            if needs_marks {
+                mark_uneven(&|y, out: &mut [_]| finer(level - 1, y, out), finer_size, &finer_uneven, y, is_uneven);
+            }
             let is_uneven: Vec<bool> = is_uneven.iter().map(|flag| flag.load(Ordering::Relaxed)).collect();
             let is_even_row = !is_uneven.contains(&true);
             if !(fit.uneven_only && is_even_row) {

@@ -1,7 +1,6 @@
 //! The products of a bake: normals, roughness, anisotropy, offsets with D or lambda_1, and plain textures, one file
-//! each. Beside them
-//! stand the base lobe, its roughening by bumps, and the mip chains that hold encoded products. This module knows
-//! neither documents nor files.
+//! each. Beside them stand the base lobe, its roughening by bumps, and the mip chains that hold encoded products. This
+//! module knows neither documents nor files.
 
 mod anisotropy;
 mod base;

@@ -42,32 +42,33 @@ pub fn picture_errors(
     width: u32,
     advance: Advance<'_>,
 ) -> Option<PictureErrors> {
-    let size = normals(truth)?.size(0);
-    let (finest, tail) = moments(surface, (size.0.min(FINEST), size.1.min(FINEST)));
-    let mut peer = Material { roughness: None, anisotropy: None, ..ours.first()?.material.clone() };
-    let mut sums = vec![0.0; ours.len() + Peer::ALL.len()];
-    let mut noise = 0.0;
     let distances = SCENE.distances();
+    let count = distances.len() as f64;
+    let mut views = Vec::new();
     for (done, distance) in distances.iter().enumerate() {
         let scene = SCENE.scene(width, *distance)?;
         let shader = Shader { reflection: Reflection::Ggx, filter: EnvironmentFilter::Ellipse, f0: scene.f0 };
         let advance = |share: f32| advance((done as f32 + share) / distances.len() as f32);
         let truth = supersampled(&scene, truth, &shader, SAMPLES, &advance);
-        noise += relative_l1(&truth.half, &truth.picture) / distances.len() as f64;
-        let mut add = |entry: usize, material: &Material| {
-            let picture = filtered(&scene, material, &shader, Filter::Anisotropic, &|_| {});
-            sums[entry] += relative_l1(&picture, &truth.picture) / distances.len() as f64;
-        };
-        ours.iter().enumerate().for_each(|(i, ours)| add(i, &ours.material));
-        for (i, formula) in Peer::ALL.into_iter().enumerate() {
-            peer.lost = LostBumps::Lobes(Texture::new(
-                lobes(&finest, formula),
-                tail.iter().map(|level| lobes(level, formula)).collect(),
-            ));
-            add(ours.len() + i, &peer);
-        }
+        views.push((scene, shader, truth));
     }
-    Some(PictureErrors { errors: sums, noise })
+    let error = |material: &Material| {
+        let errors = views.iter().map(|(scene, shader, truth)| {
+            relative_l1(&filtered(scene, material, shader, Filter::Anisotropic, &|_| {}), &truth.picture)
+        });
+        errors.sum::<f64>() / count
+    };
+    let size = normals(truth)?.size(0);
+    let (finest, tail) = moments(surface, (size.0.min(FINEST), size.1.min(FINEST)));
+    let mut peer = Material { roughness: None, anisotropy: None, ..ours.first()?.material.clone() };
+    let mut errors: Vec<f64> = ours.iter().map(|ours| error(&ours.material)).collect();
+    for formula in Peer::ALL {
+        let tail = tail.iter().map(|level| lobes(level, formula)).collect();
+        peer.lost = LostBumps::Lobes(Texture::new(lobes(&finest, formula), tail));
+        errors.push(error(&peer));
+    }
+    let noise = views.iter().map(|(.., truth)| relative_l1(&truth.half, &truth.picture)).sum::<f64>() / count;
+    Some(PictureErrors { errors, noise })
 }
 
 /// Mean normal, mean slopes, E\[f_u^2\], E\[f_u f_v\], E\[f_v^2\], and the mean base lobe.
