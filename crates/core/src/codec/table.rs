@@ -249,8 +249,8 @@ impl Codec {
     }
 
     /// Returns the facts of the format that a KTX2 file names, if it is one that Roughcast writes, or its sRGB form.
-    /// `format` is the Vulkan format of the header, and `model` the colour model of the descriptor. All formats of UASTC
-    /// round alike, so the first of them stands for all.
+    /// `format` is the Vulkan format of the header, and `model` the colour model of the descriptor. All formats of
+    /// UASTC round alike, so the first of them stands for all.
     pub fn of_file(format: Option<ktx2::Format>, model: Option<ColorModel>) -> Option<&'static Self> {
         TABLE.iter().find(|codec| match codec.identity {
             Identity::Vulkan(vulkan) => format.is_some() && (format == Some(vulkan) || format == codec.srgb),
