@@ -90,7 +90,7 @@ const RDO_2 = ['--textures', 'all', '--rdo', '2'];
 /** The rows of the table. */
 export const RECIPES = [
   ['source', async (input) => io.read(input)],
-  ['roughcast (`--textures bumps`)', roughcast()],
+  ['roughcast (`--textures bumps`; other images stay PNG and JPEG)', roughcast()],
   ['roughcast `--textures all`', roughcast('--textures', 'all')],
   ['roughcast `--textures all --rdo 0.5`', roughcast('--textures', 'all', '--rdo', '0.5')],
   ['roughcast `--textures all --rdo 2`', roughcast(...RDO_2)],
@@ -100,5 +100,5 @@ export const RECIPES = [
   ['uastc, level 2, RDO 1', basis(() => uastc(2, 1))],
   ['etc1s, quality 128', basis(() => etc1s(128))],
   ['colours etc1s 255, data uastc 2 with RDO 1', basis(({ isColour }) => (isColour ? etc1s(255) : uastc(2, 1)))],
-  ['optimize (WebP)', webp],
+  ['optimize (WebP, without mips)', webp],
 ];
