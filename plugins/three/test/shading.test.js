@@ -108,6 +108,35 @@ test('bumps lose no light to each other', options, async () => {
   }
 });
 
+test('diffuse light is the mean over the normals of the bumps', options, async () => {
+  const own = { metalness: 0, color: 0xffffff, specularIntensity: 0, roughness: 1 };
+  const drawn = async (name, change, environment) => {
+    const plane = { ...PLANE, environment };
+    return (await page.evaluate(([n, o]) => window[n](o), [name, { own, plane, ...change }])).filter(
+      (_, i) => i % 4 < 3,
+    );
+  };
+  const flat = { normal: [0, 0, 1] };
+  const length = 1 / Math.sqrt(1 + C * (K[0] + K[2]));
+  const isClose = (found, expected) => {
+    const brightest = Math.max(...expected);
+    assert.ok(brightest > 0.01, `the light is seen: ${brightest}`);
+    found.forEach((value, i) => assert.ok(Math.abs(value - expected[i]) < 2e-3 * brightest, `${value} ${expected[i]}`));
+  };
+  const direct = await drawn('plain', flat);
+  isClose(
+    await drawn('pyramid', { ...FLAT, own }),
+    direct.map((light) => length * light),
+  );
+  const [above, below] = [await drawn('plain', flat, 'above'), await drawn('plain', flat, 'below')];
+  assert.ok(Math.max(...above) > 2 * Math.max(...below), 'the halves differ');
+  // Seen from the normal, the half below is the half above as seen from its opposite.
+  isClose(
+    await drawn('pyramid', { ...FLAT, own }, 'above'),
+    above.map((light, i) => 0.5 * (light + below[i] + length * (light - below[i]))),
+  );
+});
+
 const SLOPE = [0.3, -0.2];
 const BUMPY = { ...FLAT, offset: SLOPE, lost: [0.2] };
 const ISOTROPIC = { own: { ...OWN, roughness: (ALPHA ** 2 + 2 * C * 0.04) ** 0.25 }, normal: normal(SLOPE) };

@@ -7,7 +7,7 @@ const ANCHORS = {
   normal: '#include <normal_fragment_maps>',
   lobe: '#include <lights_physical_fragment>',
   functions: '#include <lights_physical_pars_fragment>',
-  reflection: '#include <lights_fragment_maps>',
+  maps: '#include <lights_fragment_maps>',
   lights: '#include <lights_fragment_begin>',
 };
 
@@ -44,7 +44,8 @@ export function applyPyramid(material, pyramid) {
     const lights = replaced(ShaderChunk.lights_fragment_begin, shader.LOST_LIGHT, shader.baseLostLight);
     const tilted = replaced(program.fragmentShader, ANCHORS.normal, shader.normal);
     const roughened = after(replaced(tilted, ANCHORS.lights, lights), ANCHORS.lobe, shader.roughen);
-    program.fragmentShader = shader.declarations(variant) + withReflections(roughened);
+    const lit = after(withReflections(roughened), ANCHORS.maps, shader.diffuse);
+    program.fragmentShader = shader.declarations(variant) + lit;
   };
   return patch(material, `roughcast ${variant.model} ${variant.frame} ${variant.channels}`, edit, (copy) => {
     const scale = copy.normalScale.clone();
@@ -83,7 +84,7 @@ function patch(material, name, edit, patchClone) {
 }
 
 function withReflections(fragment) {
-  return replaced(after(fragment, ANCHORS.functions, shader.surroundings), ANCHORS.reflection, shader.reflection);
+  return replaced(after(fragment, ANCHORS.functions, shader.surroundings), ANCHORS.maps, shader.reflection);
 }
 
 function vector3(values) {

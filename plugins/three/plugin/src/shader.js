@@ -138,6 +138,21 @@ export const reflection = /* glsl */ `
 #undef getIBLAnisotropyRadiance
 `;
 
+/**
+ * Goes after `#include <lights_fragment_maps>`: diffuse light is the mean over the normals of the bumps. The part of the
+ * irradiance that changes sign with the normal counts by the length of the mean normal. Direct light is that part alone,
+ * where no bump is in shadow.
+ */
+export const diffuse = /* glsl */ `
+#if defined( ROUGHCAST_FACTOR ) || defined( ROUGHCAST_DEVIATION )
+  reflectedLight.directDiffuse *= roughcastMeanNormal;
+  #ifdef USE_ENVMAP
+    vec3 roughcastEven = 0.5 * ( iblIrradiance + getIBLIrradiance( - geometryNormal ) );
+    iblIrradiance = mix( roughcastEven, iblIrradiance, roughcastMeanNormal );
+  #endif
+#endif
+`;
+
 /** The arguments, in `lights_fragment_begin`, of the light that facets lose to and regain from each other. */
 export const LOST_LIGHT = 'vec2( material.roughness, dotNVms )';
 /** Bumps of a map neither hide nor light each other, so the base lobe alone decides on that light. */
@@ -147,6 +162,7 @@ export const baseLostLight = 'vec2( roughcastBase, dotNVms )';
 export const roughen = /* glsl */ `
   float roughcastBase = material.roughness;
   #if defined( ROUGHCAST_FACTOR ) || defined( ROUGHCAST_DEVIATION )
+  float roughcastMeanNormal;
   {
     // D or lambda_1, filtered by the sampler.
     vec3 d = mix( roughcastRoughnessMin, roughcastRoughnessMax, texture2D( bumpMap, vBumpMapUv ).rgb );
@@ -157,6 +173,8 @@ export const roughen = /* glsl */ `
       vec3 k = vec3( d.x * d.x, 0.0, d.x * d.x );
     #endif
     k *= roughcastScale.xxy * roughcastScale.xyy;
+    // The length of the mean of the unit normals of the bumps, whose slopes have the variance c tr K.
+    roughcastMeanNormal = inversesqrt( 1.0 + roughcastCorrection * ( k.x + k.z ) );
     #if defined( USE_ANISOTROPY )
       // The base lobe, in the frame of K.
       float across = pow2( pow2( material.roughness ) ), along = pow2( material.alphaT );
