@@ -1,6 +1,7 @@
 //! Tests that the fixtures are what their generator writes, and that a bake keeps what it does not replace.
 
 use std::fs;
+use std::path::Path;
 
 use serde_json::Value;
 use tempfile::tempdir;
@@ -60,18 +61,43 @@ fn a_bake_keeps_what_it_does_not_replace() {
     }
 }
 
-/// A plugin adds K to the base lobe, so that its texture stays in the document.
-#[test]
-fn both_profiles_together_keep_the_base_lobe() {
-    let folder = tempdir().expect("a folder");
-    bake(&fixtures().join("brushed/brushed.gltf"), folder.path(), &["--profile", "both"]);
-    let document = fs::read(folder.path().join("brushed.gltf")).expect("a document");
-    let document: Value = serde_json::from_slice(&document).expect("JSON");
+/// Returns the baked document of `fixtures/brushed`, whose roughness and metalness vary.
+fn brushed(folder: &Path, profile: &str) -> Value {
+    bake(&fixtures().join("brushed/brushed.gltf"), folder, &["--profile", profile]);
+    let document = fs::read(folder.join("brushed.gltf")).expect("a document");
+    serde_json::from_slice(&document).expect("JSON")
+}
+
+/// Returns the URI of the KTX2 file of the texture that the `textureInfo` at `pointer` names.
+fn ktx2_of<'d>(document: &'d Value, pointer: &str) -> &'d str {
     let at = |pointer: &str| document.pointer(pointer).unwrap_or_else(|| panic!("no {pointer}"));
-    let base_lobe = "/materials/0/extensions/ROUGHCAST_materials_roughness_pyramid/baseLobe";
-    let texture = at(&format!("{base_lobe}/metallicRoughnessTexture/index"));
-    assert_ne!(texture, at("/materials/0/pbrMetallicRoughness/metallicRoughnessTexture/index"));
-    let image = at(&format!("/textures/{texture}/source"));
-    assert_eq!(at(&format!("/images/{image}/uri")), "brushed_surface.png");
-    assert!(folder.path().join("brushed_surface.png").is_file());
+    let texture = at(&format!("{pointer}/index"));
+    let image = at(&format!("/textures/{texture}/extensions/KHR_texture_basisu/source"));
+    at(&format!("/images/{image}/uri")).as_str().expect("a URI")
+}
+
+const EXTENSION: &str = "/materials/0/extensions/ROUGHCAST_materials_roughness_pyramid";
+const CORE: &str = "/materials/0/pbrMetallicRoughness";
+
+/// A plugin adds K to the base lobe, and mips of the base lobe are not those of the material's texture.
+#[test]
+fn both_profiles_together_have_a_texture_of_the_base_lobe() {
+    let folder = tempdir().expect("a folder");
+    let document = brushed(folder.path(), "both");
+    let base = ktx2_of(&document, &format!("{EXTENSION}/baseLobe/metallicRoughnessTexture"));
+    assert_eq!(base, "brushed.roughcast/brushed_surface.baseRoughness.ktx2");
+    assert!(folder.path().join(base).is_file());
+    let core = ktx2_of(&document, &format!("{CORE}/metallicRoughnessTexture"));
+    assert_eq!(core, "brushed.roughcast/brushed_surface.roughness.ktx2");
+    assert_eq!(document.pointer(&format!("{EXTENSION}/baseLobe/roughnessFactor")), Some(&Value::from(1.0)));
+}
+
+#[test]
+fn the_pyramid_profile_has_the_base_lobe_in_the_core_properties() {
+    let folder = tempdir().expect("a folder");
+    let document = brushed(folder.path(), "pyramid");
+    let core = ktx2_of(&document, &format!("{CORE}/metallicRoughnessTexture"));
+    assert_eq!(core, "brushed.roughcast/brushed_surface.baseRoughness.ktx2");
+    assert_eq!(document.pointer(&format!("{CORE}/roughnessFactor")), Some(&Value::from(1)));
+    assert_eq!(document.pointer(&format!("{EXTENSION}/baseLobe")), None);
 }

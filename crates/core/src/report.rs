@@ -282,6 +282,8 @@ pub enum Content {
     Normal,
     /// Roughness in green; occlusion and metalness stay in red and blue.
     Roughness,
+    /// Roughness of the lobes that the pyramid profile adds K to, as in [`Self::Roughness`].
+    BaseRoughness,
     /// Direction in red and green, and strength in blue, of the anisotropy.
     Anisotropy,
     /// Offsets (f_u, f_v), as unit normals of scaled offsets.
@@ -302,6 +304,7 @@ impl Content {
         match self {
             Self::Normal => "normal",
             Self::Roughness => "roughness",
+            Self::BaseRoughness => "baseRoughness",
             Self::Anisotropy => "anisotropy",
             Self::Offset => "offset",
             Self::Factor => "factor",

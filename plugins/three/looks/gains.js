@@ -18,7 +18,7 @@ const LEVELS = [
 const LIGHTS = Array.from({ length: 12 }, (_, i) => ({ azimuth: 30 * i, elevation: [25, 40, 60][i % 3] }));
 
 const STOCK = ['--engine', 'three'];
-const PYRAMID = ['--profile', 'pyramid'];
+const PYRAMID = ['--engine', 'three', '--profile', 'pyramid'];
 const BEST = ['--quality', 'best'];
 const FLOAT = ['--target', 'float'];
 /** Options of each bake. `reflected` draws `anisotropic` with the reflections of the plugin. */

@@ -18,7 +18,7 @@ export const DISTANCES = [3, 5, 8, 13, 21, 34];
 const BAKES = {
   portable: ['--engine', 'three', ...(process.env.MODEL ? ['--model', process.env.MODEL] : [])],
   anisotropic: [],
-  pyramid: ['--profile', 'pyramid'],
+  pyramid: ['--engine', 'three', '--profile', 'pyramid'],
   both: ['--profile', 'both'],
 };
 

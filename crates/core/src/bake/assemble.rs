@@ -98,6 +98,7 @@ impl<'a> Assembly<'a> {
             self.pyramids.extend(layer.pyramid.map(|used| PyramidUse {
                 offset: first + used.offset,
                 roughness: used.roughness.map(|roughness| first + roughness),
+                base_roughness: used.base_roughness.map(|base| first + base),
                 ..used
             }));
             self.report.layers.push(layer.report);
@@ -256,13 +257,17 @@ fn write_pyramids(
             };
             RangedTexture { texture: indices[index], range }
         };
+        let base_lobe = pyramid.base_lobe.clone().map(|lobe| match pyramid.base_roughness {
+            Some(texture) => lobe.with_texture(indices[texture], &pyramid.mapping),
+            None => lobe,
+        });
         let extension = Extension::new(
             offset,
             pyramid.roughness.map(ranged),
             pyramid.correction,
             pyramid.frame,
             &pyramid.mapping,
-            pyramid.base_lobe.clone(),
+            base_lobe,
         );
         if !extension.is_finite() {
             return Err(BakeError::NotFinite { pointer: pyramid.pointer.clone() });

@@ -4,7 +4,7 @@ use crate::bake::choose::{LayerModel, candidates};
 use crate::bake::lobes::{LayerInput, LayerLobes};
 use crate::bake::offsets::MapOffsets;
 use crate::bake::products::{
-    EncodedTexture, LayerNormals, lobe_textures, normal_encoding, normals_of_lobes, normals_of_means,
+    EncodedTexture, LayerNormals, base_roughness_texture, lobe_textures, normal_encoding, normals_of_lobes, normals_of_means,
 };
 use crate::codec::EncodeError;
 use crate::material::{LobeLevels, Normals, Product, Roughening, notes};
@@ -21,8 +21,17 @@ pub struct LayerProducts {
     pub needed_variance: Option<f64>,
     /// The textures of the portable profile: roughness and anisotropy.
     pub textures: Vec<EncodedTexture>,
+    /// The texture of the lobes that the pyramid profile adds K to, if the material's own texture does not show them.
+    pub base_roughness: Option<EncodedTexture>,
     /// Notes to the user.
     pub notes: Vec<Note>,
+}
+
+impl LayerProducts {
+    /// Returns the number of textures that the bump map's other layers do not share.
+    pub fn texture_count(&self) -> usize {
+        self.textures.len() + usize::from(self.base_roughness.is_some())
+    }
 }
 
 /// The directions of a bump map's texels as far as earlier layers have decided them.
@@ -79,18 +88,22 @@ pub fn bake_layer<'m>(
     let model = LayerModel::new(choice, &layer, map.settings);
     let is_held = layer.can_be_roughened || map.settings.profile.has_pyramid();
     let reported_model = if is_held { model.model } else { Model::None };
-    let mut products = layer_products(map, model, reported_model, lobes)?;
+    let mut products = layer_products(map, model, reported_model, lobes, layer.first)?;
     products.notes.extend(layer.base.note.take());
     Ok((products, Decided { normals, pyramid }))
 }
 
-/// Makes the textures of a layer under `model` and frees its lobes.
+/// Makes the textures of a layer under `model` and frees its lobes. `first` is the finest level that is written of a base
+/// lobe.
 fn layer_products(
     map: &MapOffsets<'_>,
     model: LayerModel,
     reported_model: Model,
     lobes: LayerLobes<'_>,
+    first: usize,
 ) -> Result<LayerProducts, EncodeError> {
+    let base_roughness = lobes.with_base_texture().filter(|_| model.model != Model::None);
+    let base_roughness = base_roughness.map(|roughening| base_roughness_texture(map, roughening, first)).transpose()?;
     let LayerLobes { roughening, needed_variance, .. } = lobes;
     let mut notes: Vec<Note> = model.choice.as_ref().and_then(|choice| choice.note(map.settings)).into_iter().collect();
     let is_stored = map.settings.profile.is_portable() && model.model != Model::None;
@@ -101,5 +114,5 @@ fn layer_products(
         notes.extend(notes::of_roughening(&roughening, model.model, map.bump_map.noise()));
         roughening.free();
     }
-    Ok(LayerProducts { model, reported_model, needed_variance, textures, notes })
+    Ok(LayerProducts { model, reported_model, needed_variance, textures, base_roughness, notes })
 }

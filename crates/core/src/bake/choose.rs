@@ -4,7 +4,7 @@ use crate::bake::lobes::{LayerInput, LayerLobes};
 use crate::bake::offsets::MapOffsets;
 use crate::material::{LobeLevels, Normals, PyramidLevels, correction_factor, lost_variance};
 use crate::report::Choice;
-use crate::select::CandidateSet;
+use crate::select::{CandidateSet, PyramidData};
 use crate::settings::{Model, Settings};
 
 /// The chosen model of a layer.
@@ -31,7 +31,8 @@ pub fn candidates<'a, 'f>(
             Some(levels) => levels,
             None => map.bumps.moments(),
         };
-        (levels, correction_factor(needed, lost_variance(levels)))
+        let correction = correction_factor(needed, lost_variance(levels));
+        PyramidData { levels, correction, has_base_texture: lobes.with_base_texture().is_some() }
     });
     lobes.roughening.as_ref().map(|roughening| CandidateSet {
         roughening,

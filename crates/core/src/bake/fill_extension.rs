@@ -34,17 +34,23 @@ pub struct RangedTexture {
 }
 
 impl BaseLobe {
-    /// Returns the base lobe of `layer`, whose textures stay in the document.
-    pub fn new(layer: &Layer) -> Self {
+    /// Returns the base lobe of `layer`, whose textures stay in the document. If `is_baked`, a baked texture will take
+    /// the place of roughness and its factor.
+    pub fn new(layer: &Layer, is_baked: bool) -> Self {
         Self {
-            roughness_factor: Some(layer.roughness_factor),
-            metallic_roughness_texture: layer.roughness.as_ref().map(TextureInfo::of),
+            roughness_factor: Some(if is_baked { 1.0 } else { layer.roughness_factor }),
+            metallic_roughness_texture: layer.roughness.as_ref().filter(|_| !is_baked).map(TextureInfo::of),
             anisotropy: layer.anisotropy.as_ref().map(|anisotropy| Anisotropy {
                 anisotropy_strength: Some(anisotropy.strength),
                 anisotropy_rotation: Some(anisotropy.rotation),
                 anisotropy_texture: anisotropy.texture.as_ref().map(TextureInfo::of),
             }),
         }
+    }
+
+    /// Takes the texture with an index, which has the texture coordinates of `mapping`.
+    pub fn with_texture(self, index: usize, mapping: &Mapping) -> Self {
+        Self { metallic_roughness_texture: Some(TextureInfo::new(index, mapping)), ..self }
     }
 
     fn numbers(&self) -> impl Iterator<Item = f32> {

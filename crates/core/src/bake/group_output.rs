@@ -84,6 +84,8 @@ pub struct PyramidUse {
     pub correction: f32,
     /// The base lobe, if the core properties hold the roughened lobe.
     pub base_lobe: Option<BaseLobe>,
+    /// Index of the texture of that base lobe, if the bake makes one.
+    pub base_roughness: Option<usize>,
 }
 
 /// What the bake makes of a group.
@@ -106,21 +108,26 @@ impl GroupOutput {
         notes: impl Fn(&GroupLayer) -> (Option<Finest>, Vec<Note>),
     ) -> Self {
         let BumpMapProducts { normals, layers: products, pyramid } = products;
-        let before_pyramid = usize::from(normals.is_some()) + products.iter().map(|p| p.textures.len()).sum::<usize>();
         let normal_scale = normals.as_ref().and_then(|texture| texture.scale);
         let mut pyramid_layers = pyramid.layers.into_iter();
+        let mut bases = Vec::with_capacity(products.len());
+        let mut before = usize::from(normals.is_some());
+        for products in &products {
+            before += products.texture_count();
+            bases.push(products.base_roughness.is_some().then(|| before - 1));
+        }
         let mut layers = Vec::with_capacity(group.layers.len());
         for (index, layer) in group.layers.iter().enumerate() {
             let Some(lobes) = lobe_groups.iter().position(|users| users.contains(&index)) else { continue };
             let in_pyramid = if layer.row().is_in_pyramid { pyramid_layers.next() } else { None };
-            let products = &products[lobes];
-            let placement = LayerPlacement { layer, products, settings, before_pyramid, normal_scale };
+            let (products, base) = (&products[lobes], bases[lobes]);
+            let placement = LayerPlacement { layer, products, settings, before_pyramid: before, base, normal_scale };
             layers.push(placement.output(in_pyramid, notes(layer)));
         }
-        let places = Places { group, images };
+        let places = Places { group, images, has_core_roughness: settings.profile.is_portable() };
         let normals = normals.map(|texture| places.normals(texture));
         let lobes = products.into_iter().zip(lobe_groups).flat_map(|(products, users)| {
-            let textures = products.textures.into_iter();
+            let textures = products.textures.into_iter().chain(products.base_roughness);
             textures.map(|texture| places.of_lobe(texture, users)).collect::<Vec<_>>()
         });
         let pyramid = pyramid.textures.into_iter().map(|texture| places.of_bump_map(texture, Vec::new()));
@@ -132,6 +139,8 @@ impl GroupOutput {
 struct Places<'a> {
     group: &'a BumpMapGroup,
     images: &'a Images<'a>,
+    /// Whether core properties hold the roughened lobe, so that the base lobe stands in the extension alone.
+    has_core_roughness: bool,
 }
 
 impl Places<'_> {
@@ -159,6 +168,7 @@ impl Places<'_> {
         let users = users.iter().map(|user| &self.group.layers[*user]);
         let (replaced, slots): (_, Vec<Slot>) = match texture.content {
             Content::Anisotropy => (anisotropy, users.filter_map(GroupLayer::anisotropy_slot).collect()),
+            Content::BaseRoughness if self.has_core_roughness => (roughness, Vec::new()),
             _ => (roughness, users.flat_map(GroupLayer::roughness_slots).collect()),
         };
         GroupTexture {
@@ -178,6 +188,8 @@ struct LayerPlacement<'a> {
     settings: &'a Settings,
     /// How many textures stand before those of the pyramid profile.
     before_pyramid: usize,
+    /// Index of the texture of the base lobe, if there is one.
+    base: Option<usize>,
     /// What multiplies the slopes of the normal texture; none if that is 1.
     normal_scale: Option<f32>,
 }
@@ -208,7 +220,8 @@ impl LayerPlacement<'_> {
             finest,
             notes,
         };
-        let roughness_factor = self.is_roughened().then(|| layer.pointer(layer.row().roughness_factor));
+        let is_factor_baked = self.is_roughened() || self.base.is_some();
+        let roughness_factor = is_factor_baked.then(|| layer.pointer(layer.row().roughness_factor));
         let normal_scale = self.normal_scale.map(|scale| (layer.normal_scale(), scale * layer.slope_scale));
         GroupLayerOutput {
             report,
@@ -261,7 +274,8 @@ impl LayerPlacement<'_> {
             mapping: layer.layer.bumps.texture().mapping.clone(),
             frame: in_pyramid.frame,
             correction: in_pyramid.correction,
-            base_lobe: self.is_roughened().then(|| BaseLobe::new(&layer.layer)),
+            base_lobe: self.is_roughened().then(|| BaseLobe::new(&layer.layer, self.base.is_some())),
+            base_roughness: self.base.filter(|_| self.is_roughened()),
         }
     }
 }

@@ -144,6 +144,12 @@ impl<'a> LayerLobes<'a> {
         self.roughening.as_ref().filter(|_| self.can_decide)
     }
 
+    /// Returns the lobes if the pyramid profile needs a texture of the base lobe.
+    pub fn with_base_texture(&self) -> Option<&Roughening<'a>> {
+        self.needed_variance?;
+        self.deciding().filter(|roughening| roughening.needs_base_texture())
+    }
+
     /// Returns the levels of the pyramid profile that these lobes decide.
     pub fn pyramid_levels<'m>(&self, map: &MapOffsets<'m>) -> Option<LobeLevels<'m>> {
         self.needed_variance?;

@@ -4,7 +4,9 @@ use crate::bake::choose::LayerModel;
 use crate::bake::lobes::LayerLobes;
 use crate::bake::offsets::MapOffsets;
 use crate::codec::EncodeError;
-use crate::material::{AnisotropyTexture, Encoding, MipChain, Normals, Product, Range, Roughening, RoughnessTexture};
+use crate::material::{
+    AnisotropyTexture, BaseRoughnessTexture, Encoding, MipChain, Normals, Product, Range, Roughening, RoughnessTexture,
+};
 use crate::report::{Content, TextureReport};
 use crate::settings::Model;
 
@@ -80,6 +82,23 @@ pub fn normal_texture(
         mip_chain,
         range: None,
         scale: (map.normal_scale != 1.0).then_some(map.normal_scale),
+        model: Model::None,
+        lobe_errors: Vec::new(),
+    })
+}
+
+/// Makes the texture of the lobes that the pyramid profile adds K to, without levels finer than `first`.
+pub fn base_roughness_texture(
+    map: &MapOffsets<'_>,
+    roughening: &Roughening<'_>,
+    first: usize,
+) -> Result<EncodedTexture, EncodeError> {
+    let encoding = Encoding::of(map.settings, 3).starting_at(first).with_orm_metric();
+    Ok(EncodedTexture {
+        content: Content::BaseRoughness,
+        mip_chain: BaseRoughnessTexture(roughening).encode(encoding)?,
+        range: None,
+        scale: None,
         model: Model::None,
         lobe_errors: Vec::new(),
     })

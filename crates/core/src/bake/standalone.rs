@@ -57,7 +57,7 @@ pub fn bake_map(
     let (mut textures, mut model, mut choice) = (Vec::from_iter(normals), Model::None, None);
     for layer in layers {
         notes.extend(layer.notes);
-        textures.extend(layer.textures);
+        textures.extend(layer.textures.into_iter().chain(layer.base_roughness));
         (model, choice) = (layer.reported_model, layer.model.choice);
     }
     textures.extend(pyramid.textures);

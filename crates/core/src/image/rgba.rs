@@ -86,10 +86,19 @@ impl Rgba<'_> {
 
     /// Returns red and blue if both are constant over the image.
     pub fn common_red_blue(&self) -> Option<[f32; 2]> {
-        let [red, _, blue] = self.0.colour_ranges();
-        let is_constant = |[least, largest]: [f32; 2]| least == largest;
-        (is_constant(red) && is_constant(blue)).then_some([red[0], blue[0]])
+        let [red, _, blue] = self.0.colour_ranges().map(constant);
+        Some([red?, blue?])
     }
+
+    /// Returns green if it is constant over the image.
+    pub fn common_green(&self) -> Option<f32> {
+        constant(self.0.colour_ranges()[1])
+    }
+}
+
+/// Returns the value of a range of one value.
+fn constant([least, largest]: [f32; 2]) -> Option<f32> {
+    (least == largest).then_some(least)
 }
 
 impl Image {

@@ -124,6 +124,12 @@ impl BaseRows<'_> {
         SquaredAlpha::isotropic(self.roughness(green).into()).0.uu
     }
 
+    /// Returns whether a texture varies the roughness, or a metalness that counts by base colour.
+    pub fn has_varying_texture(&self) -> bool {
+        let varies = |rows: &LinearResampled<Rgba<'_>>| rows.source().common_green().is_none();
+        self.roughness.as_ref().is_some_and(varies) || self.coloured().is_some()
+    }
+
     /// Returns the metalness with the base colour by which it counts, if both vary.
     fn coloured(&self) -> Option<ColouredRows<'_, '_>> {
         ColouredRows::new(self.roughness.as_ref()?, self.reflectance.as_ref()?)

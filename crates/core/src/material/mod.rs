@@ -4,6 +4,7 @@
 
 mod anisotropy;
 mod base;
+mod base_roughness;
 mod bump_map;
 mod bumps;
 mod correction;
@@ -27,10 +28,13 @@ mod range;
 mod reflectance;
 mod roughening;
 mod roughness;
+#[cfg(test)]
+mod rust_and_steel;
 mod stored_slopes;
 
 pub use anisotropy::AnisotropyTexture;
 pub use base::{Base, BaseAnisotropy, BaseLevels, BaseRows, base_lobe};
+pub use base_roughness::BaseRoughnessTexture;
 pub use bump_map::{BumpMap, FrameTransforms, Framed};
 pub use bumps::Bumps;
 pub use filter_loss::filter_loss;

@@ -4,6 +4,7 @@ use crate::lobe::SquaredAlpha;
 use crate::material::base::{Base, BaseTexel, base_lobe};
 use crate::material::bumps::Bumps;
 use crate::material::lobes::Lobes;
+use crate::math::symmetric::Symmetric2;
 use crate::mip::Sampler;
 use crate::settings::Settings;
 
@@ -13,6 +14,7 @@ pub struct Roughening<'a> {
     lobes: Lobes<'a>,
     /// Levels at which [`Self::roughened_row`] returns the base lobes.
     base_levels: Vec<usize>,
+    needs_base_texture: bool,
 }
 
 impl<'a> Roughening<'a> {
@@ -26,7 +28,10 @@ impl<'a> Roughening<'a> {
         settings: &Settings,
     ) -> Self {
         let lobes = Lobes::new(&base, bumps, slope_scale, sampler, settings);
-        Self { base, lobes, base_levels: Vec::new() }
+        let is_isotropic = !base.level_0().is_anisotropic();
+        let needs_base_texture =
+            settings.profile.has_pyramid() && is_isotropic && base.level_0().has_varying_texture();
+        Self { base, lobes, base_levels: Vec::new(), needs_base_texture }
     }
 
     /// Keeps the base lobe at `levels`.
@@ -77,6 +82,27 @@ impl<'a> Roughening<'a> {
         let mut lobes = vec![SquaredAlpha::default(); width];
         self.lobes.squared_alphas(level, y, &mut lobes);
         lobes
+    }
+
+    /// Returns whether the pyramid profile needs a texture of the base lobe: its mips then are not those of the
+    /// material's own texture. An anisotropic base lobe keeps its textures.
+    pub fn needs_base_texture(&self) -> bool {
+        self.needs_base_texture
+    }
+
+    /// Returns the lobes that the pyramid profile adds K to, in row `y` of `level`, which has `width` texels. The
+    /// roughened lobe can be narrower than the mean of the base lobes, since texels count by reflectance. K cannot be
+    /// negative, so that the base lobe is then the isotropic part that the roughened lobe has.
+    pub fn pyramid_base_row(&self, level: usize, y: u32, width: usize) -> Vec<SquaredAlpha> {
+        let base = self.base_row(level, y, width);
+        if level == 0 || !self.needs_base_texture() {
+            return base;
+        }
+        let narrower = |(SquaredAlpha(base), SquaredAlpha(roughened)): (SquaredAlpha, SquaredAlpha)| {
+            let squared = base.uu.min(roughened.eigen().minor.max(0.0));
+            SquaredAlpha(Symmetric2::diagonal(squared, squared))
+        };
+        base.into_iter().zip(self.roughened_row(level, y, width)).map(narrower).collect()
     }
 
     /// Returns the base lobes of row `y` of `level`, which has `width` texels.

@@ -13,8 +13,8 @@ pub struct CandidateSet<'a, 'f> {
     pub settings: &'a Settings,
     /// The normal texture of the portable profile, if that profile is written.
     pub normals: Option<&'a Normals<'a>>,
-    /// Levels and correction factor c of the pyramid profile, if that profile is written.
-    pub pyramid: Option<(&'a dyn PyramidLevels, f32)>,
+    /// What the pyramid profile stores, if that profile is written.
+    pub pyramid: Option<PyramidData<'a>>,
     /// The sampler's mode, across and down.
     pub wrap: [Wrap; 2],
     /// The model with the most parameters that the layer can have.
@@ -23,6 +23,16 @@ pub struct CandidateSet<'a, 'f> {
     pub finest: usize,
     /// The finest level that is written.
     pub first: usize,
+}
+
+/// What the pyramid profile stores of a layer.
+pub struct PyramidData<'a> {
+    /// Offsets and K.
+    pub levels: &'a dyn PyramidLevels,
+    /// The correction factor c.
+    pub correction: f32,
+    /// Whether a texture has the base lobes that K is added to. Otherwise the material's own texture has them.
+    pub has_base_texture: bool,
 }
 
 impl CandidateSet<'_, '_> {
@@ -59,18 +69,21 @@ impl CandidateSet<'_, '_> {
     /// Returns the bytes of the roughness data on the GPU.
     pub(super) fn bytes(&self, model: Model, first: usize, sizes: &[(u32, u32)]) -> u64 {
         let target = self.settings.target;
-        let of =
-            |format: PayloadFormat| sizes[first..].iter().map(|s| format.level_bytes(s.0, s.1) as u64).sum::<u64>();
+        let of = |format: PayloadFormat, first: usize| {
+            sizes[first..].iter().map(|s| format.level_bytes(s.0, s.1) as u64).sum::<u64>()
+        };
         let portable = match model {
-            Model::Isotropic => of(target.format(3)),
-            Model::Anisotropic => 2 * of(target.format(3)),
+            Model::Isotropic => of(target.format(3), first),
+            Model::Anisotropic => 2 * of(target.format(3), first),
             _ => 0,
         };
-        let pyramid = match model {
-            Model::Isotropic => of(target.format(1)),
-            Model::Anisotropic => of(target.format(3)),
-            _ => 0,
+        let pyramid = match (&self.pyramid, model) {
+            (None, _) | (_, Model::None | Model::Auto) => 0,
+            (Some(pyramid), model) => {
+                let base = if pyramid.has_base_texture { of(target.format(3), self.first) } else { 0 };
+                base + of(target.format(if model == Model::Isotropic { 1 } else { 3 }), first)
+            }
         };
-        u64::from(self.normals.is_some()) * portable + u64::from(self.pyramid.is_some()) * pyramid
+        u64::from(self.normals.is_some()) * portable + pyramid
     }
 }

@@ -8,5 +8,5 @@ mod rule;
 mod shown;
 mod texture_samples;
 
-pub use candidate_set::CandidateSet;
+pub use candidate_set::{CandidateSet, PyramidData};
 pub use rule::choose;

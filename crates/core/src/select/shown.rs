@@ -5,12 +5,12 @@ use rayon::prelude::*;
 use crate::codec::EncodeError;
 use crate::lobe::SquaredAlpha;
 use crate::material::{
-    AnisotropyTexture, Encoding, LevelRows, OffsetTexture, Product, Quantity, QuantityTexture, RoughnessTexture,
+    AnisotropyTexture, BaseRoughnessTexture, Encoding, LevelRows, OffsetTexture, Product, Quantity, QuantityTexture, RoughnessTexture,
     slopes_of_texel, with_rows,
 };
 use crate::math::symmetric::Symmetric2;
 use crate::metric::{Lobe, Site, shown_lobe, shown_normal, with_z};
-use crate::select::candidate_set::CandidateSet;
+use crate::select::candidate_set::{CandidateSet, PyramidData};
 use crate::select::texture_samples::{LevelTexel, TextureSampler};
 use crate::settings::Model;
 
@@ -52,7 +52,7 @@ impl<'t, 'f> Shown<'t, 'f> {
     }
 
     fn pyramid_normals(&self) -> Result<Vec<[f64; 3]>, EncodeError> {
-        let Some((levels, _)) = self.set.pyramid else { return Ok(Vec::new()) };
+        let Some(PyramidData { levels, .. }) = self.set.pyramid else { return Ok(Vec::new()) };
         let encoding = Encoding::of_normals(self.set.settings).starting_at(self.set.first);
         let texture = OffsetTexture::new(levels, encoding);
         let scale = f64::from(texture.scale * self.set.roughening.lobes().slope_scale());
@@ -140,18 +140,18 @@ impl<'t, 'f> Shown<'t, 'f> {
 
     /// Returns the squared alphas A + 2 c K that a plugin computes from D or lambda_1.
     fn pyramid_alphas(&self, model: Model, first: usize) -> Result<Vec<[f64; 3]>, EncodeError> {
-        let Some((levels, correction)) = self.set.pyramid else { return Ok(Vec::new()) };
-        let base = self.base_alphas()?;
+        let Some(pyramid) = &self.set.pyramid else { return Ok(Vec::new()) };
         let quantity = match model {
             Model::Isotropic => Quantity::Lambda1,
             Model::Anisotropic => Quantity::Factor,
-            _ => return Ok(base),
+            _ => return self.base_alphas(),
         };
+        let base = if pyramid.has_base_texture { self.pyramid_base_alphas()? } else { self.base_alphas()? };
         let scale = self.set.roughening.lobes().slope_scale();
         let encoding = Encoding::of(self.set.settings, quantity.channels() as u32).starting_at(first);
-        let texture = QuantityTexture::new(levels, quantity, encoding);
+        let texture = QuantityTexture::new(pyramid.levels, quantity, encoding);
         let texels = self.read(&texture, first, encoding)?;
-        let weight = 2.0 * f64::from(correction * scale * scale);
+        let weight = 2.0 * f64::from(pyramid.correction * scale * scale);
         let roughened = |([uu, uv, vv], texel): ([f64; 3], [f32; 4])| {
             let d = texture.range.values::<3>(texel).map(f64::from);
             let [ku, kv, kw] = match quantity {
@@ -163,7 +163,15 @@ impl<'t, 'f> Shown<'t, 'f> {
         Ok(base.into_iter().zip(texels).map(roughened).collect())
     }
 
-    /// Returns the squared alphas of the base lobe, which no bake encodes.
+    /// Returns the squared alphas of the base lobes that K is added to.
+    fn pyramid_base_alphas(&self) -> Result<Vec<[f64; 3]>, EncodeError> {
+        let set = self.set;
+        let encoding = Encoding::of(set.settings, 3).with_orm_metric();
+        let roughness = self.read(&BaseRoughnessTexture(set.roughening), set.first, encoding)?;
+        Ok(roughness.into_iter().map(|[_, roughness, ..]| shown_lobe(roughness, None)).collect())
+    }
+
+    /// Returns the squared alphas of the base lobe as the material's own textures have it.
     fn base_alphas(&self) -> Result<Vec<[f64; 3]>, EncodeError> {
         let row = |level, y, out: &mut [[f32; 4]]| {
             store_alphas(self.set.roughening.base_row(level, y, out.len()), out);

@@ -122,9 +122,9 @@ impl Engine {
 
 impl Preset {
     /// Returns the model that a bake of `profile` needs. The engine's own shader decides on the model if the core
-    /// material is baked; offsets and D alone are for a plugin, which shows every model.
-    pub fn model(&self, profile: Profile) -> Option<Model> {
-        profile.is_portable().then_some(Model::Isotropic)
+    /// material is baked. Offsets and D alone are for a plugin, which shows anisotropic lobes as they are.
+    pub fn model(&self, profile: Profile) -> Model {
+        if profile.is_portable() { Model::Isotropic } else { Model::Anisotropic }
     }
 
     /// Returns the model with the most parameters that the engine can show in a bake of `profile`.

@@ -168,7 +168,7 @@ impl Values {
             target: Some(preset.target),
             gltf: Some(preset.form),
             glb: preset.glb,
-            model: preset.model(profile),
+            model: Some(preset.model(profile)),
             max_model: preset.max_model(profile),
             scale_normals: Some(preset.reads_normal_scale),
             ..Self::default()

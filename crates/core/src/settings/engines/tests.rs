@@ -14,8 +14,9 @@ fn every_engine_has_a_preset_of_its_own_name() {
 fn presets_bake_isotropic_lobes_into_core_materials() {
     for engine in Engine::ALL {
         let preset = engine.preset();
-        assert_eq!(preset.model(Profile::Both), Some(Model::Isotropic), "{engine:?}");
-        assert_eq!((preset.model(Profile::Pyramid), preset.max_model(Profile::Pyramid)), (None, None), "{engine:?}");
+        assert_eq!(preset.model(Profile::Both), Model::Isotropic, "{engine:?}");
+        assert_eq!(preset.model(Profile::Pyramid), Model::Anisotropic, "{engine:?}");
+        assert_eq!(preset.max_model(Profile::Pyramid), None, "{engine:?}");
     }
 }
 

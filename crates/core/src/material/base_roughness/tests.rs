@@ -1,0 +1,67 @@
+use super::*;
+use crate::material::bumps::Bumps;
+use crate::material::pyramid_levels::{LobeLevels, PyramidLevels, PyramidTexel};
+use crate::material::rust_and_steel::{RustAndSteel, SIDE};
+use crate::mip::Sampler;
+use crate::settings::{Profile, Settings};
+
+fn roughening<'a>(material: &'a RustAndSteel, bumps: &Bumps<'a>, profile: Profile) -> Roughening<'a> {
+    let settings = Settings { profile, ..Settings::default() };
+    Roughening::new(material.base(true), bumps, 1.0, Sampler::default(), &settings)
+}
+
+/// Returns row `y` of `level` of the texture.
+fn row(roughening: &Roughening<'_>, level: usize, y: u32) -> Vec<[f32; 4]> {
+    let mut row = vec![[0.0; 4]; (SIDE >> level) as usize];
+    BaseRoughnessTexture(roughening).row(level, y, &mut row);
+    row
+}
+
+/// Steel reflects more than the rust beside it, so that the lobe is narrower than the mean of the base lobes.
+#[test]
+fn the_texture_with_k_is_the_roughened_lobe_even_where_that_is_narrow() {
+    let material = RustAndSteel::new();
+    let bumps = Bumps::new(&material.bump_map, (SIDE, SIDE));
+    let roughening = roughening(&material, &bumps, Profile::Pyramid);
+    assert!(roughening.needs_base_texture());
+    let levels = LobeLevels::new(&bumps, &roughening);
+    let mut narrower = 0;
+    for level in 1..=6 {
+        for y in 0..SIDE >> level {
+            let width = (SIDE >> level) as usize;
+            let mut texels = vec![PyramidTexel::default(); width];
+            levels.row(level, y, &mut texels);
+            let (mean, roughened) =
+                (roughening.base_row(level, y, width), roughening.roughened_row(level, y, width));
+            for (x, [_, roughness, ..]) in row(&roughening, level, y).into_iter().enumerate() {
+                let base = f64::from(roughness).powi(4);
+                let (k, expected) = (texels[x].covariance, roughened[x].0);
+                let found = [base + 2.0 * f64::from(k.uu), 2.0 * f64::from(k.uv), base + 2.0 * f64::from(k.vv)];
+                for (found, expected) in found.into_iter().zip([expected.uu, expected.uv, expected.vv]) {
+                    assert!((found - f64::from(expected)).abs() < 1e-5, "level {level}: {found}, {expected}");
+                }
+                narrower += usize::from(f64::from(mean[x].0.uu) > base + 0.01);
+            }
+        }
+    }
+    assert!(narrower > 0, "the mean of base lobes is wider somewhere");
+}
+
+/// The mean metalness is a half; steel has most of the colour.
+#[test]
+fn metalness_counts_by_base_colour() {
+    let material = RustAndSteel::new();
+    let bumps = Bumps::new(&material.bump_map, (SIDE, SIDE));
+    let roughening = roughening(&material, &bumps, Profile::Pyramid);
+    let [_, _, metalness, _] = row(&roughening, 6, 0)[0];
+    assert!(metalness > 0.8, "{metalness}");
+}
+
+#[test]
+fn only_the_pyramid_needs_the_texture() {
+    let material = RustAndSteel::new();
+    let bumps = Bumps::new(&material.bump_map, (SIDE, SIDE));
+    for (profile, is_needed) in [(Profile::Portable, false), (Profile::Pyramid, true), (Profile::Both, true)] {
+        assert_eq!(roughening(&material, &bumps, profile).needs_base_texture(), is_needed);
+    }
+}
