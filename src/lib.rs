@@ -165,4 +165,6 @@ pub use report::{
     AssetReport as Report, Candidate, Choice, Content, LayerReport, Miss, Reason as MissReason, TextureReport,
 };
 #[doc(inline)]
-pub use settings::{Finest, Form, MaxModel, Model, Profile, RecordedSettings, Settings, SettingsError, Textures, View};
+pub use settings::{
+    DiffuseLight, Finest, Form, MaxModel, Model, Profile, RecordedSettings, Settings, SettingsError, Textures, View,
+};

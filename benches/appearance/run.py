@@ -34,7 +34,7 @@ QUICK_MATERIALS = ("mirror_tiles", "brushed", "painted_rust")
 # Changes of these files make new truths.
 TRUTH_FILES = ("formula.py", "lights.py", "shading.py", "source.py", "truth.py", "views.py")
 # Changes of these files change the page, but no result.
-PAGE_FILES = ("charts.py", "intervals.py", "page.py", "run.py", "sources.py", "summary.py")
+PAGE_FILES = ("charts.py", "intervals.py", "page.py", "run.py", "sources.py", "summary.py", "suns.py")
 # Programs of the study of limits, which `run.py` does not use.
 LIMITS_FILES = ("footprints.py", "limits.py", "limits_page.py", "parts.py")
 # The view of the pictures on the page.

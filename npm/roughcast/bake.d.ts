@@ -30,6 +30,8 @@ export interface Settings {
   engine?: 'three' | 'babylon' | 'playcanvas' | 'filament' | 'bevy' | 'godot';
   /** Which textures are written: normals, roughness and anisotropy, or also base colour and others. Default: bumps. */
   textures?: 'bumps' | 'all';
+  /** The light that base colours are baked for; `suns` needs `textures: 'all'`. Default: environment. */
+  diffuseLight?: 'environment' | 'suns';
   /** How the document refers to textures. Default: auto, which is strict in a .glb and fallback in a .gltf. */
   gltf?: 'auto' | 'fallback' | 'strict' | 'dual';
   /** Whether a .glb with everything inside is written. Default: the container of the input. */

@@ -1,4 +1,4 @@
-//! Tests `--textures all` and `--max-size` on the command line. Tests of what is baked are those of the library.
+//! Tests `--textures all`, `--max-size` and `--diffuse-light` on the command line. Tests of what is baked are those of the library.
 
 use std::fs;
 use std::path::Path;
@@ -104,10 +104,35 @@ fn check_knows_both_settings() {
 }
 
 #[test]
+fn check_knows_base_colours_for_suns() {
+    let scene = scene();
+    let folder = scene.path();
+    bake(folder, "--textures all --diffuse-light suns --gltf strict --report report.json");
+    done(folder, "check out --source leaves --deep --allow RC1510");
+    done(folder, "check out --source leaves --textures all --gltf strict --diffuse-light suns --allow RC1510");
+    let found = run(folder, "check out --source leaves --textures all --gltf strict --diffuse-light environment");
+    assert_eq!(found.code, 3, "{}", found.out);
+    assert!(found.out.contains("diffuse-light unset"), "{}", found.out);
+    let report = json_of(&fs::read_to_string(folder.join("report.json")).expect("a report"));
+    assert_eq!(report["settings"]["diffuseLight"], "suns");
+    let textures = report["assets"][0]["textures"].as_array().expect("textures");
+    let darkened: Vec<_> = textures.iter().filter(|texture| texture["diffuseLight"] == "suns").collect();
+    // The flat material and the emissive share the image of the leaves, and are not darkened.
+    assert_eq!(darkened.len(), 1, "{textures:#?}");
+    let path = darkened[0]["path"].as_str().expect("a path");
+    let recorded = json_of(&done(folder, &format!("inspect out/{path} --json"))).to_string();
+    for part in ["\"diffuseLight\":\"suns\"", "normal.png", "surface.png"] {
+        assert!(recorded.contains(part), "{recorded}");
+    }
+}
+
+#[test]
 fn settings_that_cannot_be_are_refused() {
     let scene = scene();
     for (options, message) in [
         ("--textures all --target float", "expected --target basis for --textures all"),
+        ("--diffuse-light suns", "expected --textures all for --diffuse-light suns"),
+        ("--diffuse-light suns --textures all --target bc", "expected --target basis for --textures all"),
         ("--max-size 3", "expected a number of texels from 4"),
         ("--max-size x", "expected a number of texels, found \"x\""),
     ] {

@@ -64,6 +64,7 @@ fn defaults_and_presets_are_valid() {
 #[test]
 fn all_textures_and_smaller_ones_are_valid() {
     assert_valid(&["--textures", "all"]);
+    assert_valid(&["--textures", "all", "--diffuse-light", "suns"]);
     assert_valid(&["--textures", "all", "--max-size", "8", "--gltf", "strict", "--glb"]);
 }
 

@@ -72,10 +72,13 @@ pub enum NoteKind {
     LayerWithoutPyramid,
     /// The engine widens lobes a second time for bumps that the bake has counted.
     EngineLimiter,
+    /// The base colour was not darkened for suns.
+    BaseColourUnchanged,
 }
 
 impl NoteKind {
-    /// Returns whether notes of this kind ask the user for something. [`missed_bound`] decides for each of its notes.
+    /// Returns whether notes of this kind ask the user for something. [`missed_bound`] and [`base_colour_unchanged`]
+    /// decide for each of their notes.
     fn asks_for_action(self) -> bool {
         match self {
             // Another source file is better.
@@ -100,7 +103,8 @@ impl NoteKind {
             | Self::OtherWrapMode
             | Self::SpecularGlossiness
             | Self::AnisotropyDropped
-            | Self::LayerWithoutPyramid => false,
+            | Self::LayerWithoutPyramid
+            | Self::BaseColourUnchanged => false,
         }
     }
 }
@@ -319,6 +323,48 @@ pub fn engine_limiter(engine: &str, switch: &str) -> Note {
     note(NoteKind::EngineLimiter, text)
 }
 
+/// Why a base colour was not darkened for suns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum KeptColour {
+    /// It is a KTX2, which the bake does not change.
+    Ktx2,
+    /// Its texels do not lie over those of the bump map.
+    OtherTexels,
+    /// The metalness of its texels is not known.
+    UnknownMetalness,
+    /// It is a factor without a texture.
+    NoTexture,
+    /// No light falls on it.
+    Unlit,
+    /// Engines may read another colour.
+    SpecularGlossiness,
+}
+
+/// Returns the note on a base colour that was not darkened for suns.
+pub fn base_colour_unchanged(reason: KeptColour) -> Note {
+    let (asks_for_action, reason) = match reason {
+        KeptColour::Ktx2 => (true, "it is a KTX2 already; bake its PNG or JPEG"),
+        KeptColour::OtherTexels => (
+            true,
+            "its texture coordinates, KHR_texture_transform or wrap mode are not those of the bumps; give both \
+             textures the same",
+        ),
+        KeptColour::UnknownMetalness => (
+            true,
+            "its metalness is not known texel by texel; give the bumps and the textures of roughness and anisotropy \
+             the same texture coordinates and wrap mode",
+        ),
+        KeptColour::NoTexture => (false, "it is a factor without a texture, and has no mips"),
+        KeptColour::Unlit => (false, "the material has KHR_materials_unlit, so that no light falls on it"),
+        KeptColour::SpecularGlossiness => (
+            false,
+            "the material has KHR_materials_pbrSpecularGlossiness, and engines that know it read another colour",
+        ),
+    };
+    let text = format!("the base colour was not darkened for suns: {reason}");
+    Note { kind: NoteKind::BaseColourUnchanged, asks_for_action, text }
+}
+
 #[cfg(test)]
 mod tests {
     use serde_json::json;
@@ -337,6 +383,9 @@ mod tests {
             engine_limiter("Godot", "turn its limiter off"),
             compressed_mesh("KHR_draco_mesh_compression", Unread::Layout),
             unknown_reflectance(&"the image is damaged"),
+            base_colour_unchanged(KeptColour::Ktx2),
+            base_colour_unchanged(KeptColour::OtherTexels),
+            base_colour_unchanged(KeptColour::UnknownMetalness),
             missed_bound("level 2 misses --max-error 0.1".to_owned(), true),
         ];
         asking.iter().for_each(|note| assert!(note.asks_for_action, "{note:?}"));
@@ -358,6 +407,9 @@ mod tests {
             specular_glossiness(),
             anisotropy_dropped("--model isotropic"),
             layer_without_pyramid("clearcoat"),
+            base_colour_unchanged(KeptColour::NoTexture),
+            base_colour_unchanged(KeptColour::Unlit),
+            base_colour_unchanged(KeptColour::SpecularGlossiness),
             missed_bound("level 2 misses --max-error 0.1".to_owned(), false),
         ];
         explaining.iter().for_each(|note| assert!(!note.asks_for_action, "{note:?}"));

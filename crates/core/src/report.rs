@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 use crate::gltf::material::{LayerKind, Material};
 use crate::material::Range;
 use crate::note::{self, Note};
-use crate::settings::{Finest, Model, Settings};
+use crate::settings::{DiffuseLight, Finest, Model, Settings};
 
 /// The report of one asset.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -267,6 +267,9 @@ pub struct TextureReport {
     /// What multiplies the slopes of the stored normals; only in textures of offsets.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scale: Option<f32>,
+    /// The light that its mips are darkened for; only in textures of base colour, absent if mips are means.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub diffuse_light: Option<DiffuseLight>,
 }
 
 fn is_zero(n: &usize) -> bool {

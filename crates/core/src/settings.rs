@@ -109,6 +109,21 @@ pub enum Textures {
     All,
 }
 
+/// The light that base colours are baked for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum DiffuseLight {
+    /// Light from all around, which bumps hardly lose. Mips of base colours are means.
+    #[default]
+    #[cfg_attr(feature = "cli", value(help = "Light from all around: mips of base colours are means"))]
+    Environment,
+    /// Suns and lamps alone. Mips of base colours are darkened by the diffuse light that bumps lose.
+    #[cfg_attr(feature = "cli", value(help = "Suns and lamps alone: bumps darken mips of base colours"))]
+    Suns,
+}
+
 /// How the document refers to textures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
@@ -165,6 +180,8 @@ pub struct Settings {
     /// Which textures of materials are written. [`Textures::All`] needs [`Target::Basis`], the only payload with sRGB
     /// colours.
     pub textures: Textures,
+    /// The light that base colours are baked for. [`DiffuseLight::Suns`] needs [`Textures::All`].
+    pub diffuse_light: DiffuseLight,
     /// The most texels that a side of a written texture has, at least 4: level 0 is the first level within this size.
     /// `None` keeps the size of the images.
     pub max_size: Option<u32>,
@@ -202,6 +219,7 @@ impl Default for Settings {
             quality: Effort::Fast,
             rdo: None,
             textures: Textures::default(),
+            diffuse_light: DiffuseLight::default(),
             max_size: None,
             gltf: Form::default(),
             glb: None,
@@ -238,6 +256,7 @@ impl Settings {
         with_target: target, Target;
         with_quality: quality, Effort;
         with_textures: textures, Textures;
+        with_diffuse_light: diffuse_light, DiffuseLight;
         with_gltf: gltf, Form;
         with_scale_normals: scale_normals, bool;
         with_max_texels: max_texels, u64;
@@ -315,6 +334,9 @@ impl Settings {
         }
         if self.textures == Textures::All && self.target != Target::Basis {
             return Err(SettingsError::ColoursWithoutBasis { target: self.target });
+        }
+        if self.diffuse_light == DiffuseLight::Suns && self.textures != Textures::All {
+            return Err(SettingsError::SunsWithoutColours);
         }
         limit::MAX_ERROR.check(f64::from(self.max_error))?;
         self.rdo.map(|loss| limit::RDO.check(loss)).transpose()?;

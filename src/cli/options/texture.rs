@@ -10,7 +10,7 @@ use crate::codec::Target;
 use crate::codec::uastc::Effort;
 use crate::lobe::Distribution;
 use crate::project::{Engine, Values};
-use crate::settings::{Form, Limit, MaxModel, Model, Profile, Settings, Textures, limit};
+use crate::settings::{DiffuseLight, Form, Limit, MaxModel, Model, Profile, Settings, Textures, limit};
 
 /// How textures are baked and encoded.
 #[derive(Debug, Args)]
@@ -59,6 +59,10 @@ pub struct DocumentOptions {
     /// base colour, emissive and occlusion. [default: bumps]
     #[arg(long, value_enum)]
     textures: Option<Textures>,
+    /// The light that base colours are baked for. Under suns, bumps reflect less diffuse light than their mean normal,
+    /// and their base colour is darkened by as much from level 1 on. Needs --textures all. [default: environment]
+    #[arg(long, value_enum, value_name = "LIGHT")]
+    diffuse_light: Option<DiffuseLight>,
     /// How textures are referenced. A PNG copy of each is for engines without KTX2: beside a .gltf they load one of the
     /// two, but a .glb would make every engine load both. [default: auto, or what --engine needs]
     #[arg(long, value_enum)]
@@ -120,6 +124,7 @@ impl DocumentOptions {
     pub fn values(&self, values: Values) -> Values {
         Values {
             textures: self.textures,
+            diffuse_light: self.diffuse_light,
             gltf: self.gltf,
             engine: self.engine,
             max_model: self.max_model,

@@ -19,10 +19,12 @@ use super::reader::Reader;
 use crate::gltf::document::{Container, Document};
 use crate::gltf::extensions::declare;
 use crate::gltf::json::Json;
+use crate::gltf::layers::LayerKind;
 use crate::gltf::rewrite::{NewImage, NewTexture, add_textures};
 use crate::gltf::texture::ImageLocation;
 use crate::gltf::uri::{encode_path, relative_path};
 use crate::material::Range;
+use crate::note::Note;
 use crate::report::{AssetReport, LayerReport};
 use crate::settings::{Form, Settings};
 
@@ -104,6 +106,14 @@ impl<'a> Assembly<'a> {
             self.report.layers.push(layer.report);
         }
         Ok(())
+    }
+
+    /// Adds notes on the base layers of the materials of the indices, whose bump maps were added before.
+    pub fn add_notes(&mut self, notes: impl IntoIterator<Item = (usize, Note)>) {
+        for (material, note) in notes {
+            let is_base = |layer: &&mut LayerReport| layer.index == material && layer.layer == LayerKind::Base;
+            self.report.layers.iter_mut().filter(is_base).for_each(|layer| layer.notes.push(note.clone()));
+        }
     }
 
     fn add_texture(

@@ -7,12 +7,13 @@ use serde_json::Value;
 use super::assemble::Assembly;
 use super::bake_group::bake_group;
 use super::baked_asset::BakedAsset;
+use super::diffuse_light::bumpy_colours;
 use super::error::BakeError;
 use super::geometry::Geometry;
 use super::group::group_by_bump_map;
 use super::output_document;
 use super::output_sizes::output_sizes;
-use super::plain_textures::group_plain_textures;
+use super::plain_textures::{PlainTextureOutput, group_plain_textures};
 use super::reader::Reader;
 use super::source::{Source, SourceError};
 use crate::gltf::document::{Container, check_version};
@@ -39,7 +40,8 @@ pub fn bake_asset(source: &Source<'_>, settings: &Settings, advance: &dyn Fn(f32
     let flat: Vec<LayerReport> = materials.iter().filter(|m| m.layers.is_empty()).map(LayerReport::flat).collect();
     // Step 2: group the layers by bump map.
     let groups = group_by_bump_map(&root, materials, settings, &geometry)?;
-    let plain = group_plain_textures(&root, settings)?;
+    let bumpy = bumpy_colours(&root, &groups, settings);
+    let plain = group_plain_textures(&root, settings, &bumpy)?;
     let mut assembly = Assembly::new(&reader, settings)?;
     if groups.is_empty() && plain.is_empty() && container == source.document.container() {
         return unchanged(source, flat);
@@ -51,11 +53,13 @@ pub fn bake_asset(source: &Source<'_>, settings: &Settings, advance: &dyn Fn(f32
         advance((done + 1) as f32 / steps);
     }
     for (done, texture) in plain.into_iter().enumerate() {
-        if let Some(output) = texture.bake(&assembly.taken_slots(), &reader, settings)? {
-            assembly.add(output)?;
+        match texture.bake(&assembly.taken_slots(), &reader, settings)? {
+            PlainTextureOutput::Texture(output) => assembly.add(*output)?,
+            PlainTextureOutput::Unchanged(notes) => assembly.add_notes(notes),
         }
         advance((groups.len() + done + 1) as f32 / steps);
     }
+    assembly.add_notes(bumpy.into_iter().filter_map(|(material, bumpy)| Some((material, bumpy.err()?))));
     assembly.finish(flat)
 }
 

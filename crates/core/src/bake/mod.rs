@@ -13,7 +13,8 @@
 //! | 8 | `products`, `pyramid`, `encode` | rows of values | encoded levels, KTX2 files |
 //! | 9 | `assemble` | textures | the document, its files, a report |
 //!
-//! Textures that the bake does not change take steps 3 and 7 to 9 in `plain_textures`.
+//! Textures that the bake does not change take steps 3 and 7 to 9 in `plain_textures`; `diffuse_light` darkens base
+//! colours among them for suns.
 //!
 //! [`bake_asset`] runs all steps. [`bake_map`] runs steps 4 to 8 of a material of one map; both go through
 //! `bake_bump_map`, which bakes the layers of one bump map by `bake_layer`.
@@ -27,6 +28,7 @@ mod baked_asset;
 mod choose;
 mod compact;
 mod decode;
+mod diffuse_light;
 mod error;
 mod fill_extension;
 mod frame;

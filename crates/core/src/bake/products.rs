@@ -8,7 +8,7 @@ use crate::material::{
     AnisotropyTexture, BaseRoughnessTexture, Encoding, MipChain, Normals, Product, Range, Roughening, RoughnessTexture,
 };
 use crate::report::{Content, TextureReport};
-use crate::settings::Model;
+use crate::settings::{DiffuseLight, Model};
 
 /// A baked texture whose levels are encoded in memory, and which is no file yet.
 pub struct EncodedTexture {
@@ -20,6 +20,8 @@ pub struct EncodedTexture {
     pub range: Option<Range>,
     /// What multiplies the slopes of normals: in textures of offsets, and in normal textures of low bumps.
     pub scale: Option<f32>,
+    /// The light that its mips are darkened for; none if mips are means.
+    pub diffuse_light: Option<DiffuseLight>,
     /// What it models of the lost bumps.
     pub model: Model,
     /// Mean lobe errors of its layer, level by level, if it holds roughness data that were chosen.
@@ -39,6 +41,7 @@ impl EncodedTexture {
             bytes,
             range: self.range.clone(),
             scale: self.scale,
+            diffuse_light: self.diffuse_light,
         }
     }
 }
@@ -82,6 +85,7 @@ pub fn normal_texture(
         mip_chain,
         range: None,
         scale: (map.normal_scale != 1.0).then_some(map.normal_scale),
+        diffuse_light: None,
         model: Model::None,
         lobe_errors: Vec::new(),
     })
@@ -99,6 +103,7 @@ pub fn base_roughness_texture(
         mip_chain: BaseRoughnessTexture(roughening).encode(encoding)?,
         range: None,
         scale: None,
+        diffuse_light: None,
         model: Model::None,
         lobe_errors: Vec::new(),
     })
@@ -116,6 +121,7 @@ pub fn lobe_textures(
         mip_chain,
         range: None,
         scale: None,
+        diffuse_light: None,
         model: model.model,
         lobe_errors: model.lobe_errors(),
     };

@@ -173,6 +173,7 @@ impl Textures<'_, '_> {
                     mip_chain: texture.encode(encoding)?,
                     range: None,
                     scale: Some(texture.scale),
+                    diffuse_light: None,
                     model: Model::None,
                     lobe_errors: Vec::new(),
                 };
@@ -188,7 +189,15 @@ impl Textures<'_, '_> {
                 let mip_chain = texture.encode(encoding)?;
                 let note = (quantity == Quantity::Factor).then(|| notes::of_factor(filter_loss(levels))).flatten();
                 let range = Some(texture.range);
-                let encoded = EncodedTexture { content, mip_chain, range, scale: None, model, lobe_errors: Vec::new() };
+                let encoded = EncodedTexture {
+                    content,
+                    mip_chain,
+                    range,
+                    scale: None,
+                    diffuse_light: None,
+                    model,
+                    lobe_errors: Vec::new(),
+                };
                 Ok((encoded, Made { key, lost_variance: lost_variance(unrotated), note }))
             }
         }

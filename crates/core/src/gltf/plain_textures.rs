@@ -29,10 +29,14 @@ pub struct PlainTextureUse {
     pub pointer: String,
     /// Index into `textures`.
     pub texture: usize,
+    /// Index of the material.
+    pub index: usize,
     /// Name of the material, or `material <index>`.
     pub material: String,
     /// What its texels mean.
     pub meaning: Meaning,
+    /// Whether it is the base colour of the material.
+    pub is_base_colour: bool,
 }
 
 /// The texels of a place of materials.
@@ -70,6 +74,7 @@ pub fn plain_textures(root: &Value) -> Vec<PlainTextureUse> {
             let name = material.get("name").and_then(Value::as_str);
             Some(PlainTextureUse {
                 pointer: format!("/materials/{index}/{place}"),
+                index,
                 texture: usize::try_from(info.get("index")?.as_u64()?).ok()?,
                 material: name.map_or_else(|| format!("material {index}"), str::to_owned),
                 meaning: match texels {
@@ -77,6 +82,7 @@ pub fn plain_textures(root: &Value) -> Vec<PlainTextureUse> {
                     Texels::Colour => Meaning::Colour(AlphaUse::Opaque),
                     Texels::BaseColour => Meaning::Colour(alpha_use(material)),
                 },
+                is_base_colour: *texels == Texels::BaseColour,
             })
         })
     });
@@ -132,6 +138,7 @@ mod tests {
         assert!(found.iter().all(|found| found.texture == 3 && found.material == "material 1"));
         assert_eq!(found[0].pointer, "/materials/1/pbrMetallicRoughness/baseColorTexture");
         assert_eq!(found[0].meaning, Meaning::Colour(AlphaUse::Opaque));
+        assert!(found.iter().enumerate().all(|(n, found)| found.index == 1 && found.is_base_colour == (n == 0)));
         assert!(plain_textures(&json!({ "materials": [{ "occlusionTexture": 1 }] })).is_empty());
     }
 }

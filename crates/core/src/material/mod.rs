@@ -10,6 +10,7 @@ mod bumps;
 mod correction;
 mod coverage;
 mod diagnostics;
+mod diffuse_light;
 mod filter_loss;
 mod fit_levels;
 mod lobes;
@@ -37,6 +38,7 @@ pub use base::{Base, BaseAnisotropy, BaseLevels, BaseRows, base_lobe};
 pub use base_roughness::BaseRoughnessTexture;
 pub use bump_map::{BumpMap, FrameTransforms, Framed};
 pub use bumps::Bumps;
+pub use diffuse_light::{DiffuseLight, DiffuseSource};
 pub use filter_loss::filter_loss;
 pub(crate) use mip_chain::EDGE;
 pub use mip_chain::{

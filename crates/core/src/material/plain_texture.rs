@@ -1,4 +1,5 @@
-//! A texture that the bake encodes and does not change. Its mips are means of linear light.
+//! A texture that the bake encodes and does not change. Its mips are means of linear light, which diffuse light that
+//! bumps lose may darken.
 //!
 //! Colours under an alpha are means weighted by alpha (premultiplied), so that texels that nobody sees do not bleed
 //! into those that are seen. They are stored without the alpha in them, as glTF asks for.
@@ -8,6 +9,7 @@ use std::sync::LazyLock;
 use crate::gltf::plain_textures::{AlphaUse, Meaning};
 use crate::image::{Image, Rgba, linear_to_srgb, srgb_to_linear};
 use crate::material::coverage::{coverage, scale_for_coverage};
+use crate::material::diffuse_light::DiffuseLight;
 use crate::material::product::Product;
 use crate::mip::{LinearResampled, MipTail, TexelRows, Wrap, level_sizes};
 
@@ -16,6 +18,8 @@ pub struct PlainTexture<'a> {
     image: &'a Image,
     size: (u32, u32),
     levels: Levels<'a>,
+    /// Multiplies linear light; none if mips stay means.
+    diffuse_light: Option<DiffuseLight<'a>>,
 }
 
 /// The levels of a plain texture.
@@ -43,7 +47,19 @@ impl<'a> PlainTexture<'a> {
                 Levels::Opaque { tail: MipTail::new(&level_0), level_0, is_srgb }
             }
         };
-        Self { image, size, levels }
+        Self { image, size, levels, diffuse_light: None }
+    }
+
+    /// Multiplies the colours of all levels, which must be on the grid of the texture, by the factors of
+    /// `diffuse_light`.
+    #[must_use]
+    pub fn darkened_by(self, diffuse_light: Option<DiffuseLight<'a>>) -> Self {
+        Self { diffuse_light, ..self }
+    }
+
+    /// Returns the factors of linear light of row `y` of `level`, which has `width` texels.
+    fn factors(&self, level: usize, y: u32, width: usize) -> Vec<f32> {
+        self.diffuse_light.as_ref().map_or_else(|| vec![1.0; width], |light| light.row(level, y))
     }
 
     /// Returns whether texels have alpha.
@@ -66,31 +82,33 @@ impl Product for PlainTexture<'_> {
         if self.is_image(level) {
             return Rgba(self.image).row(y, out);
         }
+        let factors = self.factors(level, y, out.len());
         match &self.levels {
             Levels::Opaque { level_0, tail, is_srgb } => {
                 let store = |value: f32| if *is_srgb { linear_to_srgb(value) } else { value };
                 let mut texels = vec![[0.0; 3]; out.len()];
                 tail.row(level_0, level, y, &mut texels);
-                for (out, [red, green, blue]) in out.iter_mut().zip(texels) {
-                    *out = [store(red), store(green), store(blue), 1.0];
+                for ((out, texel), factor) in out.iter_mut().zip(texels).zip(factors) {
+                    let [red, green, blue] = texel.map(|value| store(factor * value));
+                    *out = [red, green, blue, 1.0];
                 }
             }
             Levels::Alpha { level_0, tail, scales } => {
                 let mut texels = vec![[0.0; 7]; out.len()];
                 tail.row(level_0, level, y, &mut texels);
-                for (out, texel) in out.iter_mut().zip(texels) {
-                    *out = straight(texel, scales[level]);
+                for ((out, texel), factor) in out.iter_mut().zip(texels).zip(factors) {
+                    *out = straight(texel, factor, scales[level]);
                 }
             }
         }
     }
 }
 
-/// Returns the sRGB colour and the alpha of a texel whose alpha is multiplied by `scale`. A texel without any alpha has
-/// the mean of its colours.
-fn straight([red, green, blue, alpha, plain @ ..]: [f32; 7], scale: f32) -> [f32; 4] {
+/// Returns the sRGB colour and the alpha of a texel whose light is multiplied by `factor`, and its alpha by `scale`. A
+/// texel without any alpha has the mean of its colours.
+fn straight([red, green, blue, alpha, plain @ ..]: [f32; 7], factor: f32, scale: f32) -> [f32; 4] {
     let colour = if alpha > 0.0 { [red, green, blue].map(|light| light / alpha) } else { plain };
-    let [red, green, blue] = colour.map(|light| linear_to_srgb(light.clamp(0.0, 1.0)));
+    let [red, green, blue] = colour.map(|light| linear_to_srgb((factor * light).clamp(0.0, 1.0)));
     [red, green, blue, (scale * alpha).min(1.0)]
 }
 

@@ -72,32 +72,15 @@ pub struct ReflectanceRows<'a> {
 }
 
 impl<'a> ReflectanceRows<'a> {
-    /// Puts the reflectance on a grid of `width` x `height` texels, as samplers magnify textures. Returns `None` if the
-    /// reflectance is constant.
-    pub fn new(source: &ReflectanceSource<'a>, (width, height): (u32, u32), wrap: [Wrap; 2]) -> Option<Self> {
-        let on_grid = |image: &'a Image, function: &dyn Fn(usize, f64) -> f64| {
-            let sum = ChannelSum::new(image, function);
-            match sum.constant() {
-                Some(constant) => Number::Constant(constant),
-                None => Number::Texture(LinearResampled::new(sum, width, height, wrap)),
-            }
-        };
-        let number = |image: Option<&'a Image>, function: &dyn Fn(usize, f64) -> f64| match image {
-            Some(image) => on_grid(image, function),
-            None => Number::Constant((0..4).map(|channel| function(channel, 1.0)).sum::<f64>() as f32),
-        };
-        let metalness = match (source.metalness, source.roughness) {
-            (Metalness::Texture(factor), Some(image)) => on_grid(image, &channel(2, factor)),
-            (Metalness::Constant(factor) | Metalness::Texture(factor), _) => Number::Constant(factor),
-        };
+    /// Puts the reflectance on a grid of `size` texels, as samplers magnify textures. Returns `None` if the reflectance
+    /// is constant.
+    pub fn new(source: &ReflectanceSource<'a>, size: (u32, u32), wrap: [Wrap; 2]) -> Option<Self> {
+        let specular = channel(3, source.specular.factor);
         let rows = Self {
-            metalness,
-            metal_f0: number(source.base_colour.image, &luminance(source.base_colour.factor, 1.0)),
-            dielectric_f0: number(
-                source.specular_colour.image,
-                &luminance(source.specular_colour.factor, DIELECTRIC_F0),
-            ),
-            specular: number(source.specular.image, &channel(3, source.specular.factor)),
+            metalness: Number::of_metalness(source.metalness, source.roughness, size, wrap),
+            metal_f0: Number::of_luminance(source.base_colour, 1.0, size, wrap),
+            dielectric_f0: Number::of_luminance(source.specular_colour, DIELECTRIC_F0, size, wrap),
+            specular: Number::new(source.specular.image, &specular, size, wrap),
         };
         (!rows.is_constant()).then_some(rows)
     }
@@ -158,17 +141,59 @@ fn luminance(factor: [f32; 3], scale: f32) -> impl Fn(usize, f64) -> f64 {
 
 /// A number of each texel.
 #[derive(Clone)]
-enum Number<'a> {
+pub(super) enum Number<'a> {
     Constant(f32),
     Texture(LinearResampled<ChannelSum<'a>>),
 }
 
-impl Number<'_> {
+impl<'a> Number<'a> {
+    /// Puts the sum of `function(channel, value)` over the channels of `image` on a grid of `size` texels. All channels
+    /// are 1 without an image.
+    fn new(
+        image: Option<&'a Image>,
+        function: &dyn Fn(usize, f64) -> f64,
+        (width, height): (u32, u32),
+        wrap: [Wrap; 2],
+    ) -> Self {
+        let Some(image) = image else {
+            return Self::Constant((0..4).map(|channel| function(channel, 1.0)).sum::<f64>() as f32);
+        };
+        let sum = ChannelSum::new(image, function);
+        match sum.constant() {
+            Some(constant) => Self::Constant(constant),
+            None => Self::Texture(LinearResampled::new(sum, width, height, wrap)),
+        }
+    }
+
+    /// Puts the metalness, which is blue of `roughness` if it is a texture, on a grid of `size` texels.
+    pub(super) fn of_metalness(
+        metalness: Metalness,
+        roughness: Option<&'a Image>,
+        size: (u32, u32),
+        wrap: [Wrap; 2],
+    ) -> Self {
+        match (metalness, roughness) {
+            (Metalness::Texture(factor), Some(image)) => Self::new(Some(image), &channel(2, factor), size, wrap),
+            (Metalness::Constant(factor) | Metalness::Texture(factor), _) => Self::Constant(factor),
+        }
+    }
+
+    /// Puts the luminance of an sRGB colour times `scale` on a grid of `size` texels.
+    pub(super) fn of_luminance(
+        Factored { image, factor }: Factored<'a, [f32; 3]>,
+        scale: f32,
+        size: (u32, u32),
+        wrap: [Wrap; 2],
+    ) -> Self {
+        Self::new(image, &luminance(factor, scale), size, wrap)
+    }
+
     fn is_constant(&self) -> bool {
         matches!(self, Self::Constant(_))
     }
 
-    fn row(&self, y: u32, width: usize) -> Vec<[f32; 1]> {
+    /// Returns the numbers of row `y`, which has `width` texels.
+    pub(super) fn row(&self, y: u32, width: usize) -> Vec<[f32; 1]> {
         match self {
             Self::Constant(number) => vec![[*number]; width],
             Self::Texture(rows) => {

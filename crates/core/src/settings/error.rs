@@ -34,6 +34,12 @@ pub enum SettingsError {
         /// The payload.
         target: Target,
     },
+    /// Only textures of base colour that are written can be baked for suns.
+    #[error(
+        "expected --textures all for --diffuse-light suns, since it changes mips of base colours, found --textures \
+         bumps; add --textures all, or leave --diffuse-light out"
+    )]
+    SunsWithoutColours,
     /// A .glb has no external texture that both references could name.
     #[error(
         "expected a .gltf for --gltf dual, which --engine bevy sets too, since both references name an external .ktx2; \

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Form, MaxModel, Model, Profile, Settings, Textures, View};
+use super::{DiffuseLight, Form, MaxModel, Model, Profile, Settings, Textures, View};
 use crate::bump::Frame;
 use crate::codec::Target;
 use crate::codec::uastc::Effort;
@@ -50,6 +50,9 @@ pub struct RecordedSettings {
     /// [`Settings::textures`]; absent if only baked textures are written.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub textures: Option<Textures>,
+    /// [`Settings::diffuse_light`]; absent for light from all around.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub diffuse_light: Option<DiffuseLight>,
     /// [`Settings::max_size`]; absent if it is not set.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub max_size: Option<u32>,
@@ -78,6 +81,7 @@ impl RecordedSettings {
             rdo: settings.rdo,
             scale_normals: settings.scale_normals,
             textures: Some(settings.textures).filter(|textures| *textures != Textures::Bumps),
+            diffuse_light: Some(settings.diffuse_light).filter(|light| *light != DiffuseLight::Environment),
             max_size: settings.max_size,
             view: settings.view,
         }

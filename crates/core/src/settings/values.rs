@@ -8,7 +8,7 @@ use crate::codec::Target;
 use crate::codec::uastc::Effort;
 use crate::lobe::{Distribution, Family};
 use crate::settings::engines::Engine;
-use crate::settings::{Form, MaxModel, Model, Profile, Settings, SettingsError, Textures, View, limit};
+use crate::settings::{DiffuseLight, Form, MaxModel, Model, Profile, Settings, SettingsError, Textures, View, limit};
 
 /// Declares the settings, each once: the struct that holds them, and what is done with every one of them.
 macro_rules! values {
@@ -109,6 +109,7 @@ values! {
     provenance: bool,
     engine: Engine,
     textures: Textures,
+    diffuse_light: DiffuseLight,
     gltf: Form,
     glb: bool,
     scale_normals: bool,
@@ -149,6 +150,7 @@ impl Values {
             max_texels: Some(defaults.max_texels),
             provenance: Some(defaults.provenance),
             textures: Some(defaults.textures),
+            diffuse_light: Some(defaults.diffuse_light),
             gltf: Some(defaults.gltf),
             glb: defaults.glb,
             scale_normals: Some(defaults.scale_normals),
@@ -200,6 +202,7 @@ impl Values {
         settings.rdo = rdo;
         settings.max_size = self.max_size;
         settings.textures = self.textures.unwrap_or_default();
+        settings.diffuse_light = self.diffuse_light.unwrap_or_default();
         settings.gltf = form;
         settings.glb = self.glb;
         settings.scale_normals = self.scale_normals.unwrap_or(defaults.scale_normals);

@@ -27,6 +27,7 @@ export const DOCUMENT = {
   engine: text,
   'max-model': text,
   textures: text,
+  'diffuse-light': text,
   gltf: text,
   glb: flag,
   frame: text,
