@@ -1,4 +1,5 @@
-//! Tests `--textures all`, `--max-size` and `--diffuse-light` on the command line. Tests of what is baked are those of the library.
+//! Tests `--textures all`, `--max-size` and `--diffuse-light` on the command line. Tests of what is baked are those of
+//! the library.
 
 use std::fs;
 use std::path::Path;

@@ -44,8 +44,8 @@ pub enum PlainTextureOutput {
     Unchanged(Vec<(usize, Note)>),
 }
 
-/// Groups the plain textures of `root`, in the order of the file; none if `settings` leave them as they are. `bumpy` has
-/// the base colours that are darkened.
+/// Groups the plain textures of `root`, in the order of the file; none if `settings` leave them as they are. `bumpy`
+/// has the base colours that are darkened.
 ///
 /// # Errors
 /// [`GroupError`] for the first reference that leads nowhere.

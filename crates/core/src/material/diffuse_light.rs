@@ -51,8 +51,8 @@ impl<'a> DiffuseLight<'a> {
         Self { tail: MipTail::new(&level_0), level_0 }
     }
 
-    /// Returns the factors of row `y` of `level`, in [0, 1]. Those of level 0 are 1, since engines magnify level 0 of the
-    /// bumps with all its normals.
+    /// Returns the factors of row `y` of `level`, in [0, 1]. Those of level 0 are 1, since engines magnify level 0 of
+    /// the bumps with all its normals.
     pub fn row(&self, level: usize, y: u32) -> Vec<f32> {
         if level == 0 {
             return repeat_n(1.0, self.level_0.width() as usize).collect();
