@@ -278,7 +278,7 @@ fn is_zero(n: &usize) -> bool {
 
 /// What the texels of a baked texture are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
+#[serde(rename_all = "camelCase")]
 #[non_exhaustive]
 pub enum Content {
     /// Unit normals.

@@ -4,7 +4,8 @@ use crate::bake::choose::{LayerModel, candidates};
 use crate::bake::lobes::{LayerInput, LayerLobes};
 use crate::bake::offsets::MapOffsets;
 use crate::bake::products::{
-    EncodedTexture, LayerNormals, base_roughness_texture, lobe_textures, normal_encoding, normals_of_lobes, normals_of_means,
+    EncodedTexture, LayerNormals, base_roughness_texture, lobe_textures, normal_encoding, normals_of_lobes,
+    normals_of_means,
 };
 use crate::codec::EncodeError;
 use crate::material::{LobeLevels, Normals, Product, Roughening, notes};
@@ -93,8 +94,8 @@ pub fn bake_layer<'m>(
     Ok((products, Decided { normals, pyramid }))
 }
 
-/// Makes the textures of a layer under `model` and frees its lobes. `first` is the finest level that is written of a base
-/// lobe.
+/// Makes the textures of a layer under `model` and frees its lobes. `first` is the finest level that is written of a
+/// base lobe.
 fn layer_products(
     map: &MapOffsets<'_>,
     model: LayerModel,

@@ -29,8 +29,7 @@ impl<'a> Roughening<'a> {
     ) -> Self {
         let lobes = Lobes::new(&base, bumps, slope_scale, sampler, settings);
         let is_isotropic = !base.level_0().is_anisotropic();
-        let needs_base_texture =
-            settings.profile.has_pyramid() && is_isotropic && base.level_0().has_varying_texture();
+        let needs_base_texture = settings.profile.has_pyramid() && is_isotropic && base.level_0().has_varying_texture();
         Self { base, lobes, base_levels: Vec::new(), needs_base_texture }
     }
 

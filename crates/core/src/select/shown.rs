@@ -5,8 +5,8 @@ use rayon::prelude::*;
 use crate::codec::EncodeError;
 use crate::lobe::SquaredAlpha;
 use crate::material::{
-    AnisotropyTexture, BaseRoughnessTexture, Encoding, LevelRows, OffsetTexture, Product, Quantity, QuantityTexture, RoughnessTexture,
-    slopes_of_texel, with_rows,
+    AnisotropyTexture, BaseRoughnessTexture, Encoding, LevelRows, OffsetTexture, Product, Quantity, QuantityTexture,
+    RoughnessTexture, slopes_of_texel, with_rows,
 };
 use crate::math::symmetric::Symmetric2;
 use crate::metric::{Lobe, Site, shown_lobe, shown_normal, with_z};

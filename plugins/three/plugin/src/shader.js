@@ -139,9 +139,9 @@ export const reflection = /* glsl */ `
 `;
 
 /**
- * Goes after `#include <lights_fragment_maps>`: diffuse light is the mean over the normals of the bumps. The part of the
- * irradiance that changes sign with the normal counts by the length of the mean normal. Direct light is that part alone,
- * where no bump is in shadow.
+ * Goes after `#include <lights_fragment_maps>`: diffuse light is the mean over the normals of the bumps. The part of
+ * the irradiance that changes sign with the normal counts by the length of the mean normal. Direct light is that part
+ * alone, where no bump is in shadow.
  */
 export const diffuse = /* glsl */ `
 #if defined( ROUGHCAST_FACTOR ) || defined( ROUGHCAST_DEVIATION )

@@ -31,8 +31,7 @@ fn the_texture_with_k_is_the_roughened_lobe_even_where_that_is_narrow() {
             let width = (SIDE >> level) as usize;
             let mut texels = vec![PyramidTexel::default(); width];
             levels.row(level, y, &mut texels);
-            let (mean, roughened) =
-                (roughening.base_row(level, y, width), roughening.roughened_row(level, y, width));
+            let (mean, roughened) = (roughening.base_row(level, y, width), roughening.roughened_row(level, y, width));
             for (x, [_, roughness, ..]) in row(&roughening, level, y).into_iter().enumerate() {
                 let base = f64::from(roughness).powi(4);
                 let (k, expected) = (texels[x].covariance, roughened[x].0);

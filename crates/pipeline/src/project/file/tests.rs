@@ -83,7 +83,7 @@ fn an_engine_sets_its_preset_beneath_other_values_of_its_source() {
     assert_eq!(needs("d.gltf"), ["basis", "strict", "isotropic"]);
     assert_eq!(needs("e.gltf"), ["basis", "strict", "isotropic"]);
     // A plugin shades this asset, not the shader of the engine.
-    assert_eq!(needs("e_far.gltf"), ["basis", "strict", "none"]);
+    assert_eq!(needs("e_far.gltf"), ["basis", "strict", "anisotropic"]);
     assert_eq!(value(text, "a.gltf", "engine"), serde_json::Value::Null);
 }
 

@@ -127,6 +127,7 @@ fn the_command_line_has_the_settings_as_flags() {
         "--max-texels=268435456",
         "--no-provenance",
         "--textures=bumps",
+        "--diffuse-light=environment",
         "--gltf=auto",
         "--frame=unit",
         "--main-direction=0.0,1.0,0.0",
