@@ -30,6 +30,7 @@ export const DOCUMENT = {
   'diffuse-light': text,
   gltf: text,
   glb: flag,
+  'scale-normals': flag,
   frame: text,
   'main-direction': text,
   'height-scale': text,
