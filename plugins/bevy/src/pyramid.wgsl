@@ -40,6 +40,17 @@ override fn bevy_pbr::lighting::specular_anisotropy(
 }
 #endif
 
+// The length of the mean of the unit normals of the bumps.
+var<private> mean_normal: f32 = 1.0;
+
+// Diffuse light of direct lights is the mean over the normals of the bumps.
+override fn bevy_pbr::lighting::Fd_Burley(
+    input: ptr<function, lighting::LightingInput>,
+    derived_input: ptr<function, lighting::DerivedLightingInput>,
+) -> f32 {
+    return mean_normal * lighting::Fd_Burley(input, derived_input);
+}
+
 #ifdef VERTEX_TANGENTS
 #ifdef VERTEX_UVS_A
 
@@ -100,6 +111,8 @@ fn roughen(input: ptr<function, PbrInput>, frame: Frame, uv: vec2<f32>) {
     var k = vec3(d.x * d.x, 0.0, d.x * d.x);
 #endif
     k *= frame.scale.xxy * frame.scale.xyy;
+    // The slopes of the bumps have the variance c tr K.
+    mean_normal = inverseSqrt(1.0 + pyramid.correction_factor * (k.x + k.z));
     let alpha = lighting::perceptualRoughnessToRoughness((*input).material.perceptual_roughness);
 #ifdef STANDARD_MATERIAL_ANISOTROPY
     // The base lobe, in the frame of K.

@@ -72,6 +72,28 @@ impl Asset {
         Vec3::from(image::open(path).unwrap().to_rgb8().get_pixel(0, 0).0.map(|c| f32::from(c) / 255.0))
     }
 
+    /// Writes the asset again as a matt dielectric, which reflects diffuse light alone.
+    pub fn make_matt(&self) {
+        let (mut document, _) = plane();
+        document["materials"][0]["pbrMetallicRoughness"]["metallicFactor"] = json!(0);
+        self.write_matt(document, "plane.gltf");
+    }
+
+    /// Writes a plane of a matt dielectric without bumps, and returns its path.
+    pub fn matt(&self, roughness: f32) -> String {
+        let (mut document, _) = plane();
+        document["materials"][0] =
+            json!({ "pbrMetallicRoughness": { "metallicFactor": 0, "roughnessFactor": roughness } });
+        self.write_matt(document, "matt.gltf");
+        "matt.gltf".to_owned()
+    }
+
+    fn write_matt(&self, mut document: Value, name: &str) {
+        document["materials"][0]["extensions"] = json!({ "KHR_materials_specular": { "specularFactor": 0 } });
+        document["extensionsUsed"] = json!(["KHR_materials_specular"]);
+        fs::write(self.folder.join(name), document.to_string()).unwrap();
+    }
+
     /// Writes a plane without bumps whose lobe is anisotropic along u, and returns its path.
     pub fn anisotropic(&self, roughness: f32, strength: f32) -> String {
         let (mut document, _) = plane();

@@ -120,6 +120,21 @@ fn a_roughened_core_material_is_not_roughened_again() {
 }
 
 #[test]
+fn diffuse_light_is_the_mean_over_the_normals_of_the_bumps() {
+    let Some((folder, asset)) = setup() else { return };
+    let mut renderer = Renderer::new(folder.path(), true);
+    asset.make_matt();
+    let baked = asset.bake("matt", "--profile pyramid --model isotropic");
+    let lambda_1 = baked.roughness(asset.last_texel(&baked, "lambda1")).x;
+    let variance = baked.correction_factor() * lambda_1 * lambda_1;
+    // Bevy's diffuse light depends on the roughness, too: A' = A + 2 c lambda_1^2.
+    let flat = renderer.draw(&asset.matt((ROUGHNESS.powi(4) + 2.0 * variance).powf(0.25)));
+    let expected: Picture = flat.iter().map(|light| light / (1.0 + 2.0 * variance).sqrt()).collect();
+    assert!(relative_l1(&flat, &expected) > 0.03, "the bumps are too low");
+    assert_close(&renderer.draw(&baked.path), &expected, 0.01, "diffuse light");
+}
+
+#[test]
 fn a_portable_asset_needs_no_plugin() {
     let Some((folder, asset)) = setup() else { return };
     let mut renderer = Renderer::new(folder.path(), false);
