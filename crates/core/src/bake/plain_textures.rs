@@ -21,7 +21,7 @@ use crate::gltf::texture::{TextureSource, Textures};
 use crate::material::{Encoding, PlainTexture, Product, first_within, grid};
 use crate::note::{self, KeptColour, Note};
 use crate::report::Content;
-use crate::settings::{DiffuseLight, Model, Settings, Textures as Written};
+use crate::settings::{DiffuseLight, Settings, Textures as Written};
 
 /// Plain textures of one image, one sampler and one meaning. Base colours also have the same bumps and metalness over
 /// them, if they are darkened for suns.
@@ -118,14 +118,10 @@ impl PlainTextureGroup<'_> {
             Meaning::Colour(_) => Encoding::of_colours(settings, texture.has_alpha())
                 .ok_or(EncodeError::WithoutColours { target: settings.target })?,
         };
+        let content = if meaning == Meaning::Linear { Content::Linear } else { Content::Colour };
         let texture = EncodedTexture {
-            content: if meaning == Meaning::Linear { Content::Linear } else { Content::Colour },
-            mip_chain: texture.encode(encoding.starting_at(first_within(settings, size)))?,
-            range: None,
-            scale: None,
             diffuse_light: bumpy.map(|_| DiffuseLight::Suns),
-            model: Model::None,
-            lobe_errors: Vec::new(),
+            ..EncodedTexture::new(content, texture.encode(encoding.starting_at(first_within(settings, size)))?)
         };
         let slot = |pointer: String| Slot { pointer, mapping: Mapping::default() };
         let texture = GroupTexture {

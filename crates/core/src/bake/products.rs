@@ -29,6 +29,19 @@ pub struct EncodedTexture {
 }
 
 impl EncodedTexture {
+    /// Makes a texture without range, scale and model.
+    pub fn new(content: Content, mip_chain: MipChain) -> Self {
+        Self {
+            content,
+            mip_chain,
+            range: None,
+            scale: None,
+            diffuse_light: None,
+            model: Model::None,
+            lobe_errors: Vec::new(),
+        }
+    }
+
     /// Returns the report of the texture as a KTX2 file of `bytes` bytes at `path`.
     pub fn report(&self, path: String, bytes: usize) -> TextureReport {
         TextureReport {
@@ -80,15 +93,8 @@ pub fn normal_texture(
         Some(decided) => decided.mip_chain,
         None => normals_of_means(map).encode(normal_encoding(map, first))?,
     };
-    Ok(EncodedTexture {
-        content: Content::Normal,
-        mip_chain,
-        range: None,
-        scale: (map.normal_scale != 1.0).then_some(map.normal_scale),
-        diffuse_light: None,
-        model: Model::None,
-        lobe_errors: Vec::new(),
-    })
+    let scale = (map.normal_scale != 1.0).then_some(map.normal_scale);
+    Ok(EncodedTexture { scale, ..EncodedTexture::new(Content::Normal, mip_chain) })
 }
 
 /// Makes the texture of the lobes that the pyramid profile adds K to, without levels finer than `first`.
@@ -98,15 +104,7 @@ pub fn base_roughness_texture(
     first: usize,
 ) -> Result<EncodedTexture, EncodeError> {
     let encoding = Encoding::of(map.settings, 3).starting_at(first).with_orm_metric();
-    Ok(EncodedTexture {
-        content: Content::BaseRoughness,
-        mip_chain: BaseRoughnessTexture(roughening).encode(encoding)?,
-        range: None,
-        scale: None,
-        diffuse_light: None,
-        model: Model::None,
-        lobe_errors: Vec::new(),
-    })
+    Ok(EncodedTexture::new(Content::BaseRoughness, BaseRoughnessTexture(roughening).encode(encoding)?))
 }
 
 /// Makes the roughness texture of a layer and, under the anisotropic model, its anisotropy texture.
@@ -117,13 +115,9 @@ pub fn lobe_textures(
 ) -> Result<Vec<EncodedTexture>, EncodeError> {
     let encoding = Encoding::of(map.settings, 3).starting_at(model.first);
     let texture = |content, mip_chain| EncodedTexture {
-        content,
-        mip_chain,
-        range: None,
-        scale: None,
-        diffuse_light: None,
         model: model.model,
         lobe_errors: model.lobe_errors(),
+        ..EncodedTexture::new(content, mip_chain)
     };
     let roughness = RoughnessTexture::new(roughening, model.model).encode(encoding.with_orm_metric())?;
     let mut textures = vec![texture(Content::Roughness, roughness)];

@@ -169,13 +169,8 @@ impl Textures<'_, '_> {
                 let encoding = Encoding::of_normals(settings).starting_at(key.first);
                 let texture = OffsetTexture::new(levels, encoding);
                 let encoded = EncodedTexture {
-                    content: Content::Offset,
-                    mip_chain: texture.encode(encoding)?,
-                    range: None,
                     scale: Some(texture.scale),
-                    diffuse_light: None,
-                    model: Model::None,
-                    lobe_errors: Vec::new(),
+                    ..EncodedTexture::new(Content::Offset, texture.encode(encoding)?)
                 };
                 Ok((encoded, Made { key, lost_variance: 0.0, note: None }))
             }
@@ -189,15 +184,7 @@ impl Textures<'_, '_> {
                 let mip_chain = texture.encode(encoding)?;
                 let note = (quantity == Quantity::Factor).then(|| notes::of_factor(filter_loss(levels))).flatten();
                 let range = Some(texture.range);
-                let encoded = EncodedTexture {
-                    content,
-                    mip_chain,
-                    range,
-                    scale: None,
-                    diffuse_light: None,
-                    model,
-                    lobe_errors: Vec::new(),
-                };
+                let encoded = EncodedTexture { range, model, ..EncodedTexture::new(content, mip_chain) };
                 Ok((encoded, Made { key, lost_variance: lost_variance(unrotated), note }))
             }
         }

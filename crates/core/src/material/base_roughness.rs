@@ -1,7 +1,7 @@
 //! The roughness texture of the pyramid profile: the roughness of the lobes that a plugin adds K to in green; red and
 //! blue as in the material's texture, but for metalness, which counts by base colour.
 
-use crate::lobe::{Roughness, SquaredAlpha};
+use crate::lobe::Roughness;
 use crate::material::product::Product;
 use crate::material::roughening::Roughening;
 
@@ -20,16 +20,13 @@ impl Product for BaseRoughnessTexture<'_, '_> {
         }
         let mut red_blue = vec![[0.0; 2]; out.len()];
         base.red_blue(level, y, &mut red_blue);
-        let lobes = self.0.pyramid_base_row(level, y, out.len());
+        let lobes = self.0.pyramid_base_row(level, y, &self.0.roughened_row(level, y, out.len()));
         for ((texel, [red, blue]), lobe) in out.iter_mut().zip(red_blue).zip(lobes) {
-            *texel = [red, roughness(lobe), blue, 1.0];
+            // These lobes are isotropic.
+            let Roughness(green) = lobe.closest_isotropic().into();
+            *texel = [red, green.min(1.0), blue, 1.0];
         }
     }
-}
-
-/// Returns the roughness of an isotropic lobe.
-fn roughness(lobe: SquaredAlpha) -> f32 {
-    Roughness::from(lobe.closest_isotropic()).0.min(1.0)
 }
 
 #[cfg(test)]

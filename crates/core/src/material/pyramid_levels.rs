@@ -98,7 +98,7 @@ fn roughening_row(roughening: &Roughening<'_>, level: usize, y: u32, out: &mut [
     let mut offsets = vec![[0.0; 2]; out.len()];
     lobes.offsets(level, y, &mut offsets);
     let roughened = roughening.roughened_row(level, y, out.len());
-    let base = roughening.pyramid_base_row(level, y, out.len());
+    let base = roughening.pyramid_base_row(level, y, &roughened);
     for (((texel, [u, v]), roughened), base) in out.iter_mut().zip(offsets).zip(roughened).zip(base) {
         *texel = PyramidTexel {
             offset: Offset { u, v },

@@ -14,6 +14,7 @@ pub struct Roughening<'a> {
     lobes: Lobes<'a>,
     /// Levels at which [`Self::roughened_row`] returns the base lobes.
     base_levels: Vec<usize>,
+    /// See [`Self::needs_base_texture`].
     needs_base_texture: bool,
 }
 
@@ -89,19 +90,19 @@ impl<'a> Roughening<'a> {
         self.needs_base_texture
     }
 
-    /// Returns the lobes that the pyramid profile adds K to, in row `y` of `level`, which has `width` texels. The
-    /// roughened lobe can be narrower than the mean of the base lobes, since texels count by reflectance. K cannot be
-    /// negative, so that the base lobe is then the isotropic part that the roughened lobe has.
-    pub fn pyramid_base_row(&self, level: usize, y: u32, width: usize) -> Vec<SquaredAlpha> {
-        let base = self.base_row(level, y, width);
+    /// Returns the lobes that the pyramid profile adds K to, in row `y` of `level`. `roughened` are the roughened lobes
+    /// of that row. They can be narrower than the mean of the base lobes, since texels count by reflectance. K cannot
+    /// be negative, so that the base lobe then has the smaller squared alpha of the roughened lobe.
+    pub fn pyramid_base_row(&self, level: usize, y: u32, roughened: &[SquaredAlpha]) -> Vec<SquaredAlpha> {
+        let base = self.base_row(level, y, roughened.len());
         if level == 0 || !self.needs_base_texture() {
             return base;
         }
-        let narrower = |(SquaredAlpha(base), SquaredAlpha(roughened)): (SquaredAlpha, SquaredAlpha)| {
+        let narrower = |(SquaredAlpha(base), SquaredAlpha(roughened)): (SquaredAlpha, &SquaredAlpha)| {
             let squared = base.uu.min(roughened.eigen().minor.max(0.0));
             SquaredAlpha(Symmetric2::diagonal(squared, squared))
         };
-        base.into_iter().zip(self.roughened_row(level, y, width)).map(narrower).collect()
+        base.into_iter().zip(roughened).map(narrower).collect()
     }
 
     /// Returns the base lobes of row `y` of `level`, which has `width` texels.
