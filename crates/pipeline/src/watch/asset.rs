@@ -101,11 +101,15 @@ impl Planned {
         Self { job, seen }
     }
 
-    /// Returns the files beside the document that `known` did not read, with their looks.
-    pub fn new_files(&self, input: &Input, known: Option<&KnownAsset>) -> Looks {
+    /// Returns the files that were read for the plan and look different from what `known` read, with their looks. The
+    /// document is among them if it changed after [`KnownAsset::changed`] looked at it.
+    pub fn changed_files(&self, known: Option<&KnownAsset>) -> Looks {
         let known = known.map_or(&[][..], |known| &known.seen);
-        let is_new = |path: &PathBuf| *path != input.path && known.iter().all(|(known, _)| known != path);
-        let paths = self.seen.iter().map(|(path, _)| path).filter(|path| is_new(path));
-        paths.map(|path| (path.clone(), Look::at(path))).collect()
+        let is_known = |path: &PathBuf, look| known.iter().any(|(known, seen)| known == path && seen.looks_like(look));
+        let looks = self.seen.iter().map(|(path, seen)| (path.clone(), seen.look()));
+        looks.filter(|(path, look)| !is_known(path, *look)).collect()
     }
 }
+
+#[cfg(test)]
+mod tests;

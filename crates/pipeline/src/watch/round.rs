@@ -215,10 +215,11 @@ impl Round {
         let plan =
             |((input, resolved), is_ready): (&(Input, Resolved), bool)| is_ready.then(|| Planned::new(input, resolved));
         let planned: Vec<Option<Planned>> = selected.par_iter().zip(are_ready).map(plan).collect();
-        let are_new_settled = |(planned, (input, _)): (Option<Planned>, &(Input, Resolved))| {
-            planned.filter(|planned| are_settled(&planned.new_files(input, self.assets.get(&input.path))))
+        // A file may have changed since it was looked at above, and a new document may refer to new files.
+        let is_settled = |(planned, (input, _)): (Option<Planned>, &(Input, Resolved))| {
+            planned.filter(|planned| are_settled(&planned.changed_files(self.assets.get(&input.path))))
         };
-        planned.into_iter().zip(selected).map(are_new_settled).collect()
+        planned.into_iter().zip(selected).map(is_settled).collect()
     }
 
     /// Returns the guard of this look: it may write inside the output folder only, and over no file that is read.
