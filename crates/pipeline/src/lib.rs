@@ -25,3 +25,4 @@ use roughcast_core::{
     api, bake, bump, codec, decode, digest, gltf, image, ktx2, lobe, material, math, memory, metric, mip, note, report,
     settings,
 };
+use texel_simd as simd;

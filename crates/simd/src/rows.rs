@@ -18,7 +18,14 @@ pub fn map_row<'a, T: 'a, const N: usize, const M: usize>(
     function: impl Fn([f32; N]) -> [f32; M],
     store: impl FnMut(&mut T, [f32; M]),
 ) {
-    map_row_marking(texels, out, |texel| (function(texel), false), store);
+    // A function that is not compiled into the loop is not vectorised.
+    map_row_marking(
+        texels,
+        out,
+        #[inline(always)]
+        |texel| (function(texel), false),
+        store,
+    );
 }
 
 /// Works like [`map_row`] with a `function` that can also mark texels. Returns whether any texel was marked.

@@ -26,7 +26,7 @@ pub struct Lobe {
 }
 
 /// Narrower lobes are widened to this alpha, because a lobe without width has no density. Engines clamp far above it.
-pub(super) const MIN_ALPHA: f64 = 1e-3;
+pub const MIN_ALPHA: f64 = 1e-3;
 
 impl Lobe {
     /// Returns the lobe with squared alphas `a` (uu, uv, vv, positive semidefinite) in the frame of `normal`. T is made

@@ -21,7 +21,7 @@ mod sample_sites;
 mod tests;
 
 pub use decoded::{Decoded, mean_errors, sample_texels, shown_lobe, shown_normal, with_z};
-pub use density::Lobe;
+pub use density::{Lobe, MIN_ALPHA};
 pub use draws::{DRAWN, DrawnFootprint};
 pub use fit::{FitEffort, fit};
 pub use footprint::{Footprint, FootprintMoments, Part, Surface};

@@ -1,6 +1,6 @@
 //! A pinhole camera.
 
-use crate::math::vector::{Vector, cross, normalised};
+use crate::math::vector::{Vector, cross, dot, normalised};
 
 /// An eye and its picture plane. The world is right-handed, and z points up.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,5 +40,13 @@ impl Camera {
         let across = 2.0 * x / f64::from(self.size[0]) - 1.0;
         let down = 2.0 * y / f64::from(self.size[1]) - 1.0;
         normalised([0, 1, 2].map(|i| self.forward[i] + across * self.right[i] - down * self.up[i]))
+    }
+
+    /// Returns how the vector to a point at `distance` on the ray of (`x`, `y`) changes with one column and with one
+    /// row, on the plane through the point that is parallel to the picture.
+    pub fn steps(&self, x: f64, y: f64, distance: f64) -> [Vector; 2] {
+        let ahead = distance * dot(self.ray(x, y), self.forward);
+        let [width, height] = self.size.map(f64::from);
+        [self.right.map(|c| 2.0 * c * ahead / width), self.up.map(|c| -2.0 * c * ahead / height)]
     }
 }

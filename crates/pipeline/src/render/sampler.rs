@@ -131,7 +131,13 @@ fn texel(level: &Level<Texel>, x: f64, y: f64) -> Texel {
 
 /// Returns the column and the row of the texel at `uv` of a repeating level of `size` texels.
 pub(super) fn texel_of(uv: [f64; 2], (width, height): (u32, u32)) -> [usize; 2] {
-    [wrapped((uv[0] * f64::from(width)).floor(), width), wrapped((uv[1] * f64::from(height)).floor(), height)]
+    let texel = |at: f64, size: u32| {
+        // `floor` would be a call on processors of 2005, for which the tool is compiled.
+        let turns = at as i64 as f64;
+        let share = at - turns + if at < turns { 1.0 } else { 0.0 };
+        ((share * f64::from(size)) as usize).min(size as usize - 1)
+    };
+    [texel(uv[0], width), texel(uv[1], height)]
 }
 
 /// Returns the index of the integer `at` on an axis of `size` texels that repeats. `rem_euclid` of floats would be a

@@ -58,7 +58,7 @@ pub struct Shader {
 
 /// Smallest cosine between a normal and the direction to the eye. A normal that faces away is turned until it has this
 /// cosine: the eye sees other bumps in such a place, and engines shade it, too.
-const MIN_FACING: f64 = 1e-3;
+pub(super) const MIN_FACING: f64 = 1e-3;
 
 /// Maximum number of look-ups along the ellipse.
 const MAX_TAPS: f64 = 16.0;

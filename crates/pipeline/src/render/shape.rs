@@ -37,12 +37,6 @@ pub struct Hit {
 impl Shape {
     /// Returns the nearest point of the surface, seen from outside, on the ray from `eye` along the unit vector `ray`.
     pub fn hit(&self, eye: Vector, ray: Vector) -> Option<Hit> {
-        self.hit_beside(eye, ray, None)
-    }
-
-    /// Does the work of [`Self::hit`] faster if `neighbour` is a hit nearby. The texture coordinates of a sphere then
-    /// continue those of the neighbour, also across the seam of the map.
-    pub fn hit_beside(&self, eye: Vector, ray: Vector, neighbour: Option<&Hit>) -> Option<Hit> {
         match *self {
             Self::Plane { repeats } => {
                 let t = -eye[2] / ray[2];
@@ -65,53 +59,19 @@ impl Shape {
                 }
                 let t = middle - inside.sqrt();
                 let n = [0, 1, 2].map(|i| eye[i] + t * ray[i]);
-                let ring = ring(n);
+                let ring = (n[0] * n[0] + n[1] * n[1]).sqrt().max(1e-6);
                 // At the poles, where east is any direction, T points to +y.
                 let [cos, sin] = if ring > 1e-6 { [n[0] / ring, n[1] / ring] } else { [1.0, 0.0] };
                 let tangent = [-sin, cos, 0.0];
                 Some(Hit {
                     position: n,
                     frame: [tangent, [-n[2] * cos, -n[2] * sin, ring], n],
-                    uv: match neighbour {
-                        None => [libm::atan2(n[1], n[0]), libm::acos(n[2].clamp(-1.0, 1.0))]
-                            .map(|angle| angle / TAU * repeats),
-                        Some(Hit { position: from, uv: [u, v], .. }) => {
-                            let [east, down] = angles_between(*from, n);
-                            [u + east / TAU * repeats, v + down / TAU * repeats]
-                        }
-                    },
+                    uv: [libm::atan2(n[1], n[0]), libm::acos(n[2].clamp(-1.0, 1.0))].map(|angle| angle / TAU * repeats),
                     uv_per_unit: [repeats / (TAU * ring), 0.5 * repeats / PI],
                 })
             }
         }
     }
-}
-
-/// Returns the distance of a point on the unit sphere from the axis, at least 1e-6.
-fn ring(n: Vector) -> f64 {
-    (n[0] * n[0] + n[1] * n[1]).sqrt().max(1e-6)
-}
-
-/// Returns how far `to` lies east of `from` on the unit sphere, and how far down from the pole, in radians.
-fn angles_between(from: Vector, to: Vector) -> [f64; 2] {
-    let (beside, ahead) = (from[0] * to[1] - from[1] * to[0], from[0] * to[0] + from[1] * to[1]);
-    let sine = ring(to) * from[2] - to[2] * ring(from);
-    // Most neighbours are near. Terms of Taylor series up to the seventh power have an error below 3e-13 there.
-    let near = |x: f64| x.abs() < 0.05;
-    let tangent = beside / ahead;
-    let east = if ahead > 0.0 && near(tangent) {
-        let squared = tangent * tangent;
-        tangent * (1.0 - squared * (1.0 / 3.0 - squared * (1.0 / 5.0 - squared / 7.0)))
-    } else {
-        libm::atan2(beside, ahead)
-    };
-    let squared = sine * sine;
-    let down = if near(sine) && dot(from, to) > 0.0 {
-        sine * (1.0 + squared * (1.0 / 6.0 + squared * (3.0 / 40.0 + squared * 15.0 / 336.0)))
-    } else {
-        libm::acos(to[2].clamp(-1.0, 1.0)) - libm::acos(from[2].clamp(-1.0, 1.0))
-    };
-    [east, down]
 }
 
 impl Hit {

@@ -16,27 +16,6 @@ fn frames_are_orthonormal_and_right_handed() {
     assert_eq!(Shape::Sphere { repeats: 1.0 }.hit(eye, [0.0, 0.0, 1.0]), None);
 }
 
-#[test]
-fn hits_beside_a_neighbour_are_those_of_the_ray() {
-    let eye = [-3.0, 0.01, 0.4];
-    let repeats = 26.0;
-    let shape = Shape::Sphere { repeats };
-    let toward = |x: f64, y: f64| normalised([3.0, x, y]);
-    for [x, y] in [[0.0, -0.1], [0.003, 0.1], [-0.5, -0.2], [0.3, 0.4], [0.1, -0.6]] {
-        let neighbour = shape.hit(eye, toward(x, y)).expect("a hit");
-        for [dx, dy] in [[0.0, 0.0], [0.004, -0.002], [-0.02, 0.03], [0.2, 0.1], [-0.3, -0.2]] {
-            let ray = toward(x + dx, y + dy);
-            let Some(exact) = shape.hit(eye, ray) else { continue };
-            let found = shape.hit_beside(eye, ray, Some(&neighbour)).expect("a hit");
-            assert_eq!((found.position, found.frame), (exact.position, exact.frame));
-            // The map repeats: texture coordinates may differ by whole turns.
-            let turns = (found.uv[0] - exact.uv[0]) / repeats;
-            assert!((turns - turns.round()).abs() < 1e-11, "{x} {y} {dx} {dy}: {turns}");
-            assert!((found.uv[1] - exact.uv[1]).abs() < 1e-9 * repeats, "{found:?} {exact:?}");
-        }
-    }
-}
-
 /// From straight above at height 1, a picture 2 wide with 100 pixels has pixels 0.02 wide.
 #[test]
 fn footprints_have_known_sizes() {
