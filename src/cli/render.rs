@@ -41,7 +41,7 @@ pub struct Args {
     #[arg(long, value_enum, default_value_t = Filter::Anisotropic)]
     filter: Filter,
     /// What filters the surroundings that a lobe reflects.
-    #[arg(long, value_enum, default_value_t = EnvironmentFilter::Ellipse)]
+    #[arg(long, value_enum, default_value_t = EnvironmentFilter::Facets)]
     environment: EnvironmentFilter,
     /// Width of a picture in pixels.
     #[arg(long, default_value_t = 256, value_parser = clap::value_parser!(u32).range(8..=4096), value_name = "PX")]

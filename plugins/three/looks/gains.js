@@ -70,7 +70,7 @@ const measure = async (name, page) => {
     const truth = await truthOf(name, view, page);
     errors.push(await page.evaluate((o) => window.gains(o), { view, names: NAMES, truth }));
   }
-  results.push({ name, isWhole: isWhole(name), errors });
+  results.push({ name, kind: kindOf(name), errors });
   writeFileSync(stored, JSON.stringify({ views: views.map(({ kind, level }) => ({ kind, level })), results }, null, 1));
   if (page.problems.length) console.error(`${name}: ${page.problems.join('; ')}`);
   console.error(`${name} is measured`);
@@ -97,8 +97,10 @@ async function truthOf(name, view, page) {
   return `/baked/${file}`;
 }
 
-/** Returns whether a material has a map of its base colour. The others are metals with one colour. */
-function isWhole(name) {
+/** Returns `whole` for a material with a map of its base colour, and `metal` or `dielectric` for one with a colour. */
+function kindOf(name) {
   const file = path.join(chosen.find(([known]) => known === name)[1], `${name}.gltf`);
-  return JSON.parse(readFileSync(file, 'utf8')).materials.some((m) => m.pbrMetallicRoughness?.baseColorTexture);
+  const { materials } = JSON.parse(readFileSync(file, 'utf8'));
+  if (materials.some((m) => m.pbrMetallicRoughness?.baseColorTexture)) return 'whole';
+  return materials.some((m) => m.pbrMetallicRoughness?.metallicFactor === 0) ? 'dielectric' : 'metal';
 }

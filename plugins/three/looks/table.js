@@ -27,7 +27,7 @@ const percent = (value) => (value === null ? '' : `${Math.round(100 * value)} %`
 const table = (rows) => rows.map((cells) => `| ${cells.join(' | ')} |`).join('\n');
 const headed = (cells) => [cells, cells.map((_, i) => (i === 0 ? '---' : '---:'))];
 
-/** Returns the errors of each material, and means over metals and over whole materials. */
+/** Returns the errors of each material. */
 function byMaterial(results) {
   const rows = headed([
     'material',
@@ -49,8 +49,9 @@ function byMaterial(results) {
 function means(results) {
   const rows = headed(['mean of', ...SHADINGS.flatMap(([name]) => [name, 'reachable', 'share of the gain'])]);
   for (const [title, group] of [
-    ['metals', results.filter(({ isWhole }) => !isWhole)],
-    ['whole materials', results.filter(({ isWhole }) => isWhole)],
+    ['metals', results.filter(({ kind }) => kind === 'metal')],
+    ['dielectrics', results.filter(({ kind }) => kind === 'dielectric')],
+    ['whole materials', results.filter(({ kind }) => kind === 'whole')],
   ]) {
     if (!group.length) continue;
     const cells = SHADINGS.flatMap(([, ours, best]) => {

@@ -92,7 +92,7 @@ test('computes shares of the reachable gain', () => {
   const view = (error) => ({ both: error, suns: 2 * error, environment: error / 2 });
   const variants = [...PARTS, 'portable float best', 'pyramid float best'].map((name) => [name, view(0.2)]);
   const errors = [0.3, 0.5].map((plain) => ({ ...Object.fromEntries(variants), original: view(plain) }));
-  const result = { name: 'cloth', isWhole: true, errors };
+  const result = { name: 'cloth', kind: 'whole', errors };
   assert.equal(errorOf(result, 'original'), 0.4);
   assert.equal(
     errorOf(result, 'original', 'suns', (i) => i === 1),

@@ -13,6 +13,7 @@ mod environment;
 mod facets;
 mod font;
 mod highlight;
+mod lobe_filter;
 mod material;
 mod patch;
 mod quasirandom;

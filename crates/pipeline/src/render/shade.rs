@@ -35,12 +35,16 @@ pub enum Reflection {
 /// The part of a lobe that filters the surroundings.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, clap::ValueEnum)]
 pub enum EnvironmentFilter {
+    /// Facets are sampled from the lobe, and each has the blur of its share of the lobe. No shape of the lobe is
+    /// assumed, so that the result is close to the exact integral.
+    #[default]
+    #[value(help = "Facets sampled from the whole lobe, close to the exact integral")]
+    Facets,
     /// lambda_1 selects the level of one look-up, which blurs every axis as much as the longest axis of the lobe.
     #[value(help = "lambda_1 picks the mip level of the environment")]
     Lambda1,
     /// D gives several look-ups along the longer axis of the ellipse of reflected rays. The shorter axis gives their
     /// blur.
-    #[default]
     #[value(help = "D spreads taps along the ellipse of reflected rays")]
     Ellipse,
 }
@@ -60,31 +64,23 @@ pub struct Shader {
 /// cosine: the eye sees other bumps in such a place, and engines shade it, too.
 pub(super) const MIN_FACING: f64 = 1e-3;
 
-/// Maximum number of look-ups along the ellipse.
-const MAX_TAPS: f64 = 16.0;
-
-/// Scales of the normal distributions whose mixture approximates GGX. GGX slopes are bivariate Student t with 2 degrees
-/// of freedom: normal variables divided by the square root of an exponential variable. Each scale is 1 over the mean of
-/// that variable within one of its quarters.
-const GGX_SCALES: [f32; 4] = [7.302, 2.098, 1.0, 0.4191];
-
 /// A point with its lobe, as seen from one direction.
 pub struct View<'a> {
-    shader: &'a Shader,
-    lobe: Lobe,
+    pub(super) shader: &'a Shader,
+    pub(super) lobe: Lobe,
     /// K of the lobe: half its squared alphas.
-    k: Symmetric2,
-    axes: [Vector; 3],
-    view: Vector,
+    pub(super) k: Symmetric2,
+    pub(super) axes: [Vector; 3],
+    pub(super) view: Vector,
     /// n.v
-    facing: f64,
+    pub(super) facing: f64,
     /// Lambda of the direction to the eye: how much of the surface other bumps hide.
-    hidden: f64,
+    pub(super) hidden: f64,
 }
 
 /// The distribution that a facet was sampled from, which gives its weight.
 #[derive(Clone, Copy)]
-enum Weight {
+pub(super) enum Weight {
     /// All facets, D(h) (n.h). The weight is F G (v.h) / ((n.v) (n.h)) (B. Walter et al., "Microfacet models for
     /// refraction through rough surfaces", 2007, eq. 41).
     AllFacets,
@@ -157,82 +153,6 @@ impl View<'_> {
         }
     }
 
-    /// Returns the radiance that the point reflects from the surroundings, filtered by the lobe. `to_world` rotates
-    /// directions from the tangent frame into the world.
-    pub fn from_environment(&self, environment: &Environment, to_world: &impl Fn(Vector) -> Vector) -> Radiance {
-        let scales = match self.shader.reflection {
-            Reflection::Ggx => GGX_SCALES.as_slice(),
-            _ => &[1.0],
-        };
-        let mut sum = [0.0; 3];
-        for &scale in scales {
-            let k = scale * self.k;
-            let value = match self.shader.filter {
-                EnvironmentFilter::Lambda1 => {
-                    let lambda_1 = f64::from(k.eigen().major.max(0.0)).sqrt();
-                    self.look_up([0.0; 2], 2.0 * lambda_1, environment, to_world)
-                }
-                EnvironmentFilter::Ellipse => self.filter_along_ellipse(k, environment, to_world),
-            };
-            sum = [0, 1, 2].map(|i| sum[i] + value[i] / scales.len() as f64);
-        }
-        sum
-    }
-
-    /// Filters the surroundings along the ellipse of reflected rays. A slope s turns the reflection by 2 s in the plane
-    /// of view and normal, and by 2 (n.v) s across that plane.
-    fn filter_along_ellipse(
-        &self,
-        k: Symmetric2,
-        environment: &Environment,
-        to_world: &impl Fn(Vector) -> Vector,
-    ) -> Radiance {
-        let [x, y] = [dot(self.view, self.axes[0]), dot(self.view, self.axes[1])];
-        let length = (x * x + y * y).sqrt();
-        let [x, y] = if length > 1e-9 { [x / length, y / length] } else { [1.0, 0.0] };
-        let (uu, uv, vv) = (f64::from(k.uu), f64::from(k.uv), f64::from(k.vv));
-        // K in the plane of view and normal, and across that plane.
-        let plane = uu * x * x + 2.0 * uv * x * y + vv * y * y;
-        let mixed = (vv - uu) * x * y + uv * (x * x - y * y);
-        let across = uu * y * y - 2.0 * uv * x * y + vv * x * x;
-        let c = self.facing;
-        let rays = Symmetric2::new((4.0 * plane) as f32, (4.0 * c * mixed) as f32, (4.0 * c * c * across) as f32);
-        let ellipse = rays.eigen();
-        let (long, short) = (f64::from(ellipse.major.max(0.0)).sqrt(), f64::from(ellipse.minor).sqrt());
-        let count = (2.0 * long / short.max(1e-9)).ceil().clamp(1.0, MAX_TAPS) as u32;
-        if count <= 2 {
-            return self.look_up([0.0; 2], long, environment, to_world);
-        }
-        // The blur is at least the distance of the taps.
-        let blur = short.max(2.5 * long / f64::from(count));
-        let spread = (long * long - blur * blur).max(0.0).sqrt();
-        let [a, b] = ellipse.axis.map(f64::from);
-        // The slope that turns a ray by a unit along the longer axis of the ellipse.
-        let (in_plane, beside) = (0.5 * a, 0.5 * b / c);
-        let slope = [in_plane * x - beside * y, in_plane * y + beside * x];
-        let mut sum = [0.0; 3];
-        for tap in 0..count {
-            let t = spread * normal_quantile((f64::from(tap) + 0.5) / f64::from(count));
-            let value = self.look_up([t * slope[0], t * slope[1]], blur, environment, to_world);
-            sum = [0, 1, 2].map(|i| sum[i] + value[i] / f64::from(count));
-        }
-        sum
-    }
-
-    /// Returns the radiance that a facet with this slope about the normal reflects from the surroundings. The blur is
-    /// that of facets whose slopes turn reflections by `deviation`, as long as the slopes are small.
-    fn look_up(
-        &self,
-        [u, v]: [f64; 2],
-        deviation: f64,
-        environment: &Environment,
-        to_world: &impl Fn(Vector) -> Vector,
-    ) -> Radiance {
-        let facet = normalised(combine([u, v, 1.0], self.axes));
-        let deviation = 2.0 * libm::atan(0.5 * deviation);
-        self.reflect(facet, |d| environment.filtered(to_world(d), deviation), Weight::AllFacets)
-    }
-
     /// Returns the unfiltered radiance that one facet reflects from the surroundings. The point `at` of the unit square
     /// samples the facet from the lobe; the mean over evenly spread points is the exact value of
     /// [`Self::from_environment`].
@@ -252,7 +172,7 @@ impl View<'_> {
     /// Samples a facet of a GGX lobe from the facets that the eye sees (E. Heitz, "Sampling the GGX distribution of
     /// visible normals", 2018), with any factor S of A = S S^T instead of diag(alpha_x, alpha_y). Half-vectors sampled
     /// from D would have the weight F G (v.h) / ((n.v) (n.h)), which is unbounded near grazing views.
-    fn sample_visible_facet(&self, [radial, azimuth]: [f64; 2]) -> Vector {
+    pub(super) fn sample_visible_facet(&self, [radial, azimuth]: [f64; 2]) -> Vector {
         let [uu, uv, vv] = self.lobe.squared_alpha();
         let l = uu.sqrt();
         let (m, r) = (uv / l, (vv - uv * uv / uu).max(0.0).sqrt());
@@ -271,7 +191,7 @@ impl View<'_> {
     }
 
     /// Returns the radiance that `facet` reflects to the eye, weighted for the distribution that it was sampled from.
-    fn reflect(&self, facet: Vector, radiance: impl Fn(Vector) -> Radiance, weight: Weight) -> Radiance {
+    pub(super) fn reflect(&self, facet: Vector, radiance: impl Fn(Vector) -> Radiance, weight: Weight) -> Radiance {
         let seen = dot(self.view, facet);
         let light = [0, 1, 2].map(|i| 2.0 * seen * facet[i] - self.view[i]);
         let lit = dot(light, self.axes[2]);
@@ -316,12 +236,4 @@ impl View<'_> {
             }
         }
     }
-}
-
-/// Returns the quantile of the standard normal distribution with an error below 4.5e-4 (M. Abramowitz, I. Stegun,
-/// "Handbook of mathematical functions", 26.2.23).
-fn normal_quantile(p: f64) -> f64 {
-    let t = (-2.0 * libm::log(p.min(1.0 - p))).sqrt();
-    let x = t - (2.515517 + t * (0.802853 + t * 0.010328)) / (1.0 + t * (1.432788 + t * (0.189269 + t * 0.001308)));
-    if p < 0.5 { -x } else { x }
 }

@@ -205,3 +205,19 @@ fn scenes_show_their_surface_from_outside() {
         assert!(hits.iter().all(|(ray, hit)| dot(*ray, hit.frame[2]) < 0.0), "{name:?}");
     }
 }
+
+/// On a flat surface nothing is filtered but the surroundings: the error of a picture is that of their filter.
+#[test]
+fn sampled_facets_filter_surroundings_nearly_exactly() {
+    let scene = SceneName::Sphere.scene(24, 1.0).expect("a scene");
+    for reflection in [Reflection::Ggx, Reflection::Beckmann] {
+        for roughness in [0.5, 0.8] {
+            let flat = flat(roughness);
+            let of = |filter| error(&scene, &flat, &Shader { filter, reflection, ..METAL }, &flat, 4096);
+            let facets = of(EnvironmentFilter::Facets);
+            assert!(facets < 0.045, "{reflection:?} {roughness}: {facets}");
+            // A wide lobe is not an ellipse.
+            assert!(roughness < 0.6 || of(EnvironmentFilter::Ellipse) > 2.0 * facets, "{reflection:?}");
+        }
+    }
+}
