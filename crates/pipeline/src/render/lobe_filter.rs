@@ -26,23 +26,27 @@ impl View<'_> {
     /// Returns the radiance that the point reflects from the surroundings, filtered by the lobe. `to_world` rotates
     /// directions from the tangent frame into the world.
     pub fn from_environment(&self, environment: &Environment, to_world: &impl Fn(Vector) -> Vector) -> Radiance {
-        if self.shader.filter == EnvironmentFilter::Facets {
-            return self.filter_by_facets(environment, to_world);
+        match self.shader.filter {
+            EnvironmentFilter::Facets => self.filter_by_facets(environment, to_world),
+            EnvironmentFilter::Ellipse => {
+                self.mean_over_scales(|k| self.filter_along_ellipse(k, environment, to_world))
+            }
+            EnvironmentFilter::Lambda1 => self.mean_over_scales(|k| {
+                let lambda_1 = f64::from(k.eigen().major.max(0.0)).sqrt();
+                self.look_up([0.0; 2], 2.0 * lambda_1, environment, to_world)
+            }),
         }
+    }
+
+    /// Returns the mean of `filtered(K)` over the normal distributions whose mixture is the lobe.
+    fn mean_over_scales(&self, filtered: impl Fn(Symmetric2) -> Radiance) -> Radiance {
         let scales = match self.shader.reflection {
             Reflection::Ggx => GGX_SCALES.as_slice(),
             _ => &[1.0],
         };
         let mut sum = [0.0; 3];
         for &scale in scales {
-            let k = scale * self.k;
-            let value = match self.shader.filter {
-                EnvironmentFilter::Ellipse => self.filter_along_ellipse(k, environment, to_world),
-                _ => {
-                    let lambda_1 = f64::from(k.eigen().major.max(0.0)).sqrt();
-                    self.look_up([0.0; 2], 2.0 * lambda_1, environment, to_world)
-                }
-            };
+            let value = filtered(scale * self.k);
             sum = [0, 1, 2].map(|i| sum[i] + value[i] / scales.len() as f64);
         }
         sum
