@@ -8,6 +8,8 @@ import { surroundings } from './viewer/surroundings.js';
 
 /** Samples per pixel of the truth, and samples per frame while nothing moves. */
 const [ENOUGH, AT_ONCE] = [256, 4];
+/** Samples per pixel of the other pictures, as an engine with multisampling draws them. */
+const MULTISAMPLES = 4;
 /** Milliseconds without a change before several samples are drawn at once. */
 const PAUSE = 150;
 
@@ -111,7 +113,8 @@ export class Stage {
     this.#camera.lookAt(0, 0, 0);
     for (const name of ['before', 'baked']) {
       if (!this.#pictures.has(name)) {
-        this.#pictures.set(name, new THREE.WebGLRenderTarget(1, 1, { type: THREE.HalfFloatType }));
+        const format = { type: THREE.HalfFloatType, samples: MULTISAMPLES };
+        this.#pictures.set(name, new THREE.WebGLRenderTarget(1, 1, format));
       }
       const target = this.#pictures.get(name);
       target.setSize(width, height);
