@@ -8,8 +8,10 @@ const element = (id) => document.getElementById(id);
 const form = element('form');
 const status = element('status');
 const baker = new Baker();
-const stage = new Stage(element('canvas'), (samples) => {
-  element('samples').textContent = samples ? `${samples} samples per pixel` : '';
+const stage = new Stage(element('canvas'), (samples, errors) => {
+  const measured = Object.entries(errors).filter(([, error]) => error !== null);
+  const text = measured.map(([name, error]) => `${name} ${error.toFixed(3)}`).join(', ');
+  element('samples').textContent = samples ? `${samples} samples per pixel${text && `; error: ${text}`}` : '';
 });
 
 /** The file that is shown: its name without extension, and its bytes. */

@@ -6,7 +6,9 @@ uniform sampler2D left, right;
 uniform float leftSamples, rightSamples, split, line;
 varying vec2 at;
 void main() {
-  vec3 c = at.x < split ? texture2D( left, at ).rgb / leftSamples : texture2D( right, at ).rgb / rightSamples;
+  vec4 picture = at.x < split ? texture2D( left, at ) / leftSamples : texture2D( right, at ) / rightSamples;
+  // Pixels that nothing covers are transparent.
+  vec3 c = picture.rgb + ( 1.0 - picture.a ) * vec3( 0.02, 0.02, 0.022 );
   c *= 1.6 / ( 1.0 + max( max( c.r, c.g ), c.b ) );
   c = sRGBTransferOETF( vec4( c, 1.0 ) ).rgb;
   gl_FragColor = vec4( abs( at.x - split ) < line ? vec3( 1.0 ) : c, 1.0 );

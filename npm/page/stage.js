@@ -2,6 +2,7 @@
 import * as THREE from 'three';
 import { newLoader } from './loader.js';
 import { Screen } from './screen.js';
+import { Meter } from './viewer/measure.js';
 import { subject } from './viewer/subject.js';
 import { Accumulator, unfiltered } from './viewer/supersample.js';
 import { surroundings } from './viewer/surroundings.js';
@@ -10,6 +11,8 @@ import { surroundings } from './viewer/surroundings.js';
 const [ENOUGH, AT_ONCE] = [256, 4];
 /** Samples per pixel of the other pictures, as an engine with multisampling draws them. */
 const MULTISAMPLES = 4;
+/** Samples per pixel of the truth at which errors are measured. */
+const MEASURED_AT = [32, ENOUGH];
 /** Milliseconds without a change before several samples are drawn at once. */
 const PAUSE = 150;
 
@@ -22,20 +25,23 @@ export class Stage {
   #isStale = true;
   #changedAt = 0;
   #isRequested = false;
+  #errors = {};
+  #measuredAt = 0;
 
-  /** `onFrame` takes the number of samples of the truth. */
+  /** `onFrame` takes the number of samples of the truth, and the error of each other picture once it is measured. */
   constructor(canvas, onFrame) {
     this.onFrame = onFrame;
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: false });
     this.screen = new Screen(this.renderer);
+    this.renderer.setClearColor(0x000000, 0);
     this.truth = new Accumulator(this.renderer);
+    this.meter = new Meter(this.renderer);
     this.load = newLoader(this.renderer);
     this.view = { kind: 'plane', distance: 6, azimuth: 20, elevation: 20, split: 0.5, left: 'before', right: 'baked' };
     const lamp = new THREE.DirectionalLight(0xffffff, 3);
     lamp.position.copy(direction(160, 40));
     this.#scene.add(lamp);
     this.#scene.environment = surroundings(this.renderer, 'room');
-    this.#scene.background = new THREE.Color(0.02, 0.02, 0.022);
     new ResizeObserver(() => this.set({})).observe(canvas);
   }
 
@@ -85,19 +91,32 @@ export class Stage {
     if (isRunning) {
       this.#only('supersampled');
       truth.add(this.#scene, this.#camera, performance.now() - this.#changedAt < PAUSE ? 1 : AT_ONCE);
+      this.#measure();
     }
     const picture = (name) =>
       name === 'supersampled'
         ? { texture: truth.texture, samples: truth.count }
         : { texture: (this.#pictures.get(name) ?? this.#pictures.get('before')).texture, samples: 1 };
     this.screen.show(picture(view.left), picture(view.right), view.split);
-    this.onFrame(isNeeded ? truth.count : 0);
+    this.onFrame(isNeeded ? truth.count : 0, this.#errors);
     if (isRunning) this.#request();
   }
 
-  /** Draws the variants again, with one sample per pixel. */
+  /** Measures the error of both variants when the truth has enough samples. */
+  #measure() {
+    const { truth } = this;
+    const due = MEASURED_AT.findLast((samples) => truth.count >= samples) ?? 0;
+    if (due === this.#measuredAt) return;
+    this.#measuredAt = due;
+    const picture = { texture: truth.texture, samples: truth.count };
+    for (const name of this.#assets.keys()) {
+      this.#errors[name] = this.meter.relativeL1({ texture: this.#pictures.get(name).texture, samples: 1 }, picture);
+    }
+  }
+
+  /** Draws the variants again. */
   #draw() {
-    this.#isStale = false;
+    [this.#isStale, this.#errors, this.#measuredAt] = [false, {}, 0];
     const { clientWidth, clientHeight } = this.renderer.domElement;
     const ratio = Math.min(devicePixelRatio, 2);
     this.renderer.setPixelRatio(ratio);

@@ -86,6 +86,8 @@ test('bakes a sample, shows the truth, and offers the file that Node bakes', opt
   await page.waitForFunction(() =>
     /(3[2-9]|[4-9]\d|\d{3}) samples/.test(document.getElementById('samples').textContent),
   );
+  const measured = /error: before (\S+), baked (\S+)/.exec(await page.locator('#samples').textContent());
+  for (const error of measured.slice(1)) assert.ok(0.01 < Number(error) && Number(error) < 0.5, measured[0]);
   await page.screenshot({ path: path.join(SHOTS, 'before-truth.png') });
   await choose(page, 'left', 'baked');
   await page.screenshot({ path: path.join(SHOTS, 'baked-truth.png') });

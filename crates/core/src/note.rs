@@ -87,7 +87,8 @@ impl NoteKind {
             Self::SamplerWithoutMips
             | Self::UnknownTexelSize
             | Self::OtherTextureCoordinates
-            | Self::CompressedMesh => true,
+            | Self::CompressedMesh
+            | Self::AnisotropyDropped => true,
             // A setting of the engine is better.
             Self::EngineLimiter => true,
             Self::NoBumpMap
@@ -102,7 +103,6 @@ impl NoteKind {
             | Self::ConflictingRotations
             | Self::OtherWrapMode
             | Self::SpecularGlossiness
-            | Self::AnisotropyDropped
             | Self::LayerWithoutPyramid
             | Self::BaseColourUnchanged => false,
         }
@@ -305,7 +305,11 @@ pub fn specular_glossiness() -> Note {
 
 /// Returns the note on an anisotropic material that was baked with the isotropic model because of `setting`.
 pub fn anisotropy_dropped(setting: &str) -> Note {
-    let text = format!("the material's anisotropy was dropped because `{setting}` was requested");
+    let text = format!(
+        "the material's anisotropy was dropped because of `{setting}`, which presets of engines set: an engine that \
+         reads KHR_materials_anisotropy shows another highlight than before; bake this material with `--model none` to \
+         keep its anisotropy"
+    );
     note(NoteKind::AnisotropyDropped, text)
 }
 
@@ -405,7 +409,6 @@ mod tests {
             conflicting_rotations(0.5, 0.5),
             other_wrap_mode("anisotropy"),
             specular_glossiness(),
-            anisotropy_dropped("--model isotropic"),
             layer_without_pyramid("clearcoat"),
             base_colour_unchanged(KeptColour::NoTexture),
             base_colour_unchanged(KeptColour::Unlit),
