@@ -43,7 +43,8 @@ def main():
 
 def write_map(number, path, folder):
     """Writes the material of a normal map. The package has images in scripts, as `data:` URLs."""
-    image = Image.open(io.BytesIO(base64.b64decode(path.read_text().split("base64,")[1].split("'")[0].split('"')[0])))
+    data = path.read_text().split("base64,")[1].split("'")[0]
+    image = Image.open(io.BytesIO(base64.b64decode(data)))
     is_metal = number % 2 == 0
     name = f"{'metal' if is_metal else 'dielectric'}_{number:02}"
     target = folder / name

@@ -87,8 +87,7 @@ impl NoteKind {
             Self::SamplerWithoutMips
             | Self::UnknownTexelSize
             | Self::OtherTextureCoordinates
-            | Self::CompressedMesh
-            | Self::AnisotropyDropped => true,
+            | Self::CompressedMesh => true,
             // A setting of the engine is better.
             Self::EngineLimiter => true,
             Self::NoBumpMap
@@ -103,6 +102,7 @@ impl NoteKind {
             | Self::ConflictingRotations
             | Self::OtherWrapMode
             | Self::SpecularGlossiness
+            | Self::AnisotropyDropped
             | Self::LayerWithoutPyramid
             | Self::BaseColourUnchanged => false,
         }
@@ -303,14 +303,16 @@ pub fn specular_glossiness() -> Note {
     note(NoteKind::SpecularGlossiness, text)
 }
 
-/// Returns the note on an anisotropic material that was baked with the isotropic model because of `setting`.
-pub fn anisotropy_dropped(setting: &str) -> Note {
-    let text = format!(
-        "the material's anisotropy was dropped because of `{setting}`, which presets of engines set: an engine that \
-         reads KHR_materials_anisotropy shows another highlight than before; bake this material with `--model none` to \
-         keep its anisotropy"
-    );
-    note(NoteKind::AnisotropyDropped, text)
+/// Returns the note on an anisotropic material that was baked with the isotropic model because of `setting`. If
+/// `is_seen`, the engine may read the anisotropy, and what was dropped is seen.
+pub fn anisotropy_dropped(setting: &str, is_seen: bool) -> Note {
+    let mut text = format!("the material's anisotropy was dropped because of `{setting}`");
+    if is_seen {
+        text += ", which presets of engines set: an engine that reads KHR_materials_anisotropy shows another highlight \
+                 than before; bake this material with `--model none` to keep its anisotropy, without the roughness of \
+                 lost bumps";
+    }
+    Note { kind: NoteKind::AnisotropyDropped, asks_for_action: is_seen, text }
 }
 
 /// Returns the note on a layer of a material that the extension of the pyramid profile does not describe.
@@ -409,6 +411,7 @@ mod tests {
             conflicting_rotations(0.5, 0.5),
             other_wrap_mode("anisotropy"),
             specular_glossiness(),
+            anisotropy_dropped("--model isotropic", false),
             layer_without_pyramid("clearcoat"),
             base_colour_unchanged(KeptColour::NoTexture),
             base_colour_unchanged(KeptColour::Unlit),
@@ -416,6 +419,7 @@ mod tests {
             missed_bound("level 2 misses --max-error 0.1".to_owned(), false),
         ];
         explaining.iter().for_each(|note| assert!(!note.asks_for_action, "{note:?}"));
+        assert!(anisotropy_dropped("--model isotropic", true).asks_for_action, "the engine may read anisotropy");
     }
 
     #[test]

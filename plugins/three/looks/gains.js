@@ -1,7 +1,7 @@
 // usage: npm run gains -- FOLDER [--only NAME,...] [--output DIR] [--pixels N]
 // Prints the tables of docs/engines.md on the reachable gain. FOLDER holds materials as <name>/<name>.gltf.
 import { createHash } from 'node:crypto';
-import { existsSync, mkdirSync, readFileSync, readdirSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdirSync, readFileSync, readdirSync, statSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { parseArgs } from 'node:util';
 import { example, repository } from '../test/roughcast.js';
@@ -85,9 +85,10 @@ console.log(tables(results));
 async function truthOf(name, view, page) {
   const source = chosen.find(([known]) => known === name)[1];
   const hash = createHash('sha256').update(JSON.stringify(view));
-  const files = readdirSync(source)
+  const files = readdirSync(source, { recursive: true })
     .sort()
-    .map((file) => path.join(source, file));
+    .map((file) => path.join(source, file))
+    .filter((file) => statSync(file).isFile());
   for (const file of [...files, ...PROGRAMS]) hash.update(readFileSync(file));
   const file = path.join('truths', `${name}-${hash.digest('hex').slice(0, 16)}.bin`);
   if (!existsSync(path.join(values.output, file))) {

@@ -205,7 +205,9 @@ impl LayerPlacement<'_> {
         notes.extend(products.notes.iter().cloned());
         let anisotropy = self.anisotropy_change();
         if matches!(anisotropy, AnisotropyChange::Dropped { .. }) {
-            notes.extend(Self::dropping_setting(settings).map(note::anisotropy_dropped));
+            // An engine whose models end with isotropic lobes does not read anisotropy.
+            let is_seen = settings.max_model != MaxModel::Isotropic;
+            notes.extend(Self::dropping_setting(settings).map(|setting| note::anisotropy_dropped(setting, is_seen)));
         }
         if settings.profile.has_pyramid() && in_pyramid.is_none() {
             notes.push(note::layer_without_pyramid(layer.row().name));

@@ -125,7 +125,7 @@ impl View<'_> {
                 Weight::AllFacets => all,
                 Weight::VisibleFacets => all * seen / (dot(facet, self.axes[2]) * self.facing * (1.0 + self.hidden)),
             };
-            // A reflected direction turns twice as far as its facet, and less across the plane of view and facet.
+            // Reflection spreads the solid angle of facets by 4 (v.h) (Walter et al., eq. 14).
             let solid_angle = 4.0 * seen / (f64::from(FACETS) * density.max(1e-12));
             let deviation = (0.5 * (solid_angle / PI).sqrt()).min(1.0);
             let value = self.reflect(facet, |d| environment.filtered(to_world(d), BLUR * deviation), weight);

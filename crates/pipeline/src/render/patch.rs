@@ -73,31 +73,20 @@ impl Patch {
 
     /// Finds the points at `places` in the pixel, from (0, 0) to (1, 1), and stores them in `out`, which is as long.
     pub fn trace(&self, places: &[[f32; 2]], out: &mut [PatchPoint]) {
-        let store = |out: &mut PatchPoint, [x, y, z, u, v, meeting]: [f32; 6]| {
-            let meeting = match meeting {
-                HIT => Meeting::Hit,
-                FAR => Meeting::Far,
-                _ => Meeting::Miss,
-            };
-            *out = PatchPoint { position: [x, y, z], uv: [u, v], meeting };
-        };
-        if self.is_plane {
-            map_row(
-                places.iter().copied(),
-                out,
-                #[inline(always)]
-                |place| self.on_plane(place),
-                store,
-            );
-        } else {
-            map_row(
-                places.iter().copied(),
-                out,
-                #[inline(always)]
-                |place| self.on_sphere(place),
-                store,
-            );
-        }
+        map_row(
+            places.iter().copied(),
+            out,
+            #[inline(always)]
+            |place| if self.is_plane { self.on_plane(place) } else { self.on_sphere(place) },
+            |out, [x, y, z, u, v, meeting]| {
+                let meeting = match meeting {
+                    HIT => Meeting::Hit,
+                    FAR => Meeting::Far,
+                    _ => Meeting::Miss,
+                };
+                *out = PatchPoint { position: [x, y, z], uv: [u, v], meeting };
+            },
+        );
     }
 
     /// Returns the vector from the middle of the pixel to a place in it, at the distance of the surface.
@@ -137,13 +126,14 @@ impl Patch {
         let growth = wider / ((to[0] * to[0] + to[1] * to[1]).sqrt() + ring);
         let sine = growth * from[2] - offset[2] * ring;
         let tangent = (from[0] * offset[1] - from[1] * offset[0]) / (ring * ring + along);
-        // Terms of Taylor series up to the seventh power have an error below 3e-13 below 0.05.
+        // Taylor series of the arc tangent and the arc sine up to the seventh power. For numbers below 0.05 their error
+        // is below 3e-13.
         let squared = tangent * tangent;
         let east = tangent * (1.0 - squared * (1.0 / 3.0 - squared * (1.0 / 5.0 - squared / 7.0)));
         let squared = sine * sine;
         let down = sine * (1.0 + squared * (1.0 / 6.0 + squared * (3.0 / 40.0 + squared * 15.0 / 336.0)));
         let [u, v] = [fraction(self.uv[0] + east * self.repeats), fraction(self.uv[1] + down * self.repeats)];
-        // A point that is not near is far also if its numbers are not numbers.
+        // The comparisons are false if the numbers are NaN, as at a pole, so that such a point is far.
         let is_near = tangent.abs().max(sine.abs()) < 0.05 && ring * ring + along > 0.0;
         let met = if is_near { HIT } else { FAR };
         let meeting = if inside.min(toward) < 0.0 { MISS } else { met };

@@ -132,7 +132,7 @@ fn texel(level: &Level<Texel>, x: f64, y: f64) -> Texel {
 /// Returns the column and the row of the texel at `uv` of a repeating level of `size` texels.
 pub(super) fn texel_of(uv: [f64; 2], (width, height): (u32, u32)) -> [usize; 2] {
     let texel = |at: f64, size: u32| {
-        // `floor` would be a call on processors of 2005, for which the tool is compiled.
+        // The tool is compiled for processors that have no instruction for `floor`, so that `floor` is a slow call.
         let turns = at as i64 as f64;
         let share = at - turns + if at < turns { 1.0 } else { 0.0 };
         ((share * f64::from(size)) as usize).min(size as usize - 1)

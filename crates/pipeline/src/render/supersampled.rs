@@ -10,6 +10,7 @@ use super::samples::{Sample, SampleShader, ShadedSample};
 use super::scene::Scene;
 use super::shade::{Reflection, Shader};
 use super::shape::Hit;
+use crate::math::vector::Vector;
 
 /// Pixels whose corners and middle do not see the surface have this part of the samples.
 const EMPTY_PIXEL: u32 = 16;
@@ -67,8 +68,9 @@ impl Truth<'_> {
     /// Draws the pixel whose upper left corner is at (`x`, `y`).
     fn pixel(&self, x: f64, y: f64) -> PixelSums {
         let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
-        let middle = self.hit(x + 0.5, y + 0.5);
-        let is_empty = middle.is_none() && corners.iter().all(|[right, down]| self.hit(x + right, y + down).is_none());
+        let hit = |right: f64, down: f64| self.hit(self.scene.camera.ray(x + right, y + down));
+        let middle = hit(0.5, 0.5);
+        let is_empty = middle.is_none() && corners.iter().all(|[right, down]| hit(*right, *down).is_none());
         let samples = if is_empty { (self.samples / EMPTY_PIXEL).max(2) } else { self.samples };
         let sequence = Quasirandom::new(x as u32, y as u32);
         let mut sums = PixelSums::default();
@@ -88,8 +90,8 @@ impl Truth<'_> {
         sums
     }
 
-    fn hit(&self, x: f64, y: f64) -> Option<Hit> {
-        self.scene.shape.hit(self.scene.camera.eye, self.scene.camera.ray(x, y))
+    fn hit(&self, ray: Vector) -> Option<Hit> {
+        self.scene.shape.hit(self.scene.camera.eye, ray)
     }
 
     /// Adds the samples of `points` in the pixel, the first of which has an even number.
@@ -108,7 +110,7 @@ impl Truth<'_> {
         for (i, (PatchPoint { position, uv, meeting }, point)) in found.iter().zip(points).enumerate() {
             let half = &mut sums.halves[i % 2];
             match meeting {
-                Meeting::Miss => half.add_background(self.scene, x + point[0], y + point[1]),
+                Meeting::Miss => half.add_background(self.scene, self.scene.camera.ray(x + point[0], y + point[1])),
                 Meeting::Far => self.add_sample(half, [x, y], *point),
                 Meeting::Hit => {
                     let bump = self.facets.at(uv.map(f64::from));
@@ -135,10 +137,10 @@ impl Truth<'_> {
 
     /// Adds the sample of one point in the pixel.
     fn add_sample(&self, half: &mut SampleSums, [x, y]: [f64; 2], [px, py, radial, azimuth]: [f64; 4]) {
-        let Some(hit) = self.hit(x + px, y + py) else {
-            return half.add_background(self.scene, x + px, y + py);
-        };
         let ray = self.scene.camera.ray(x + px, y + py);
+        let Some(hit) = self.hit(ray) else {
+            return half.add_background(self.scene, ray);
+        };
         let point = self.facets.at(hit.uv);
         let view = self.shader.view(&point, hit.to_tangent(ray).map(|c| -c));
         let to_world = |d| hit.to_world(d);
@@ -199,8 +201,8 @@ impl SampleSums {
         self.count += 1.0;
     }
 
-    fn add_background(&mut self, scene: &Scene, x: f64, y: f64) {
-        add(&mut self.behind, scene.background(scene.camera.ray(x, y)), 1.0);
+    fn add_background(&mut self, scene: &Scene, ray: Vector) {
+        add(&mut self.behind, scene.background(ray), 1.0);
         self.count += 1.0;
     }
 
