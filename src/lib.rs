@@ -166,5 +166,6 @@ pub use report::{
 };
 #[doc(inline)]
 pub use settings::{
-    DiffuseLight, Finest, Form, MaxModel, Model, Profile, RecordedSettings, Settings, SettingsError, Textures, View,
+    DiffuseLight, Finest, Form, MaxModel, Model, OwnAnisotropy, Profile, RecordedSettings, Settings, SettingsError,
+    Textures, View,
 };

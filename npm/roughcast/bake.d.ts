@@ -32,6 +32,8 @@ export interface Settings {
   textures?: 'bumps' | 'all';
   /** The light that base colours are baked for; `suns` needs `textures: 'all'`. Default: environment. */
   diffuseLight?: 'environment' | 'suns';
+  /** What becomes of the anisotropy that a material has of its own. Default: bake, or what `engine` needs. */
+  ownAnisotropy?: 'bake' | 'keep' | 'ignore';
   /** Whether low bumps are stretched in their texture, and `normalTexture.scale` shrinks them. Default: false. */
   scaleNormals?: boolean;
   /** How the document refers to textures. Default: auto, which is strict in a .glb and fallback in a .gltf. */

@@ -13,6 +13,7 @@ mod fixtures;
 mod goldens;
 mod merge;
 mod notes;
+mod own_anisotropy;
 mod plain_textures;
 mod plan;
 mod process;

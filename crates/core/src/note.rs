@@ -68,6 +68,8 @@ pub enum NoteKind {
     SpecularGlossiness,
     /// The material's anisotropy was dropped.
     AnisotropyDropped,
+    /// The anisotropy of a material and its roughness stayed as they were.
+    AnisotropyKept,
     /// The pyramid profile describes no layer but the base layer.
     LayerWithoutPyramid,
     /// The engine widens lobes a second time for bumps that the bake has counted.
@@ -103,6 +105,7 @@ impl NoteKind {
             | Self::OtherWrapMode
             | Self::SpecularGlossiness
             | Self::AnisotropyDropped
+            | Self::AnisotropyKept
             | Self::LayerWithoutPyramid
             | Self::BaseColourUnchanged => false,
         }
@@ -308,11 +311,18 @@ pub fn specular_glossiness() -> Note {
 pub fn anisotropy_dropped(setting: &str, is_seen: bool) -> Note {
     let mut text = format!("the material's anisotropy was dropped because of `{setting}`");
     if is_seen {
-        text += ", which presets of engines set: an engine that reads KHR_materials_anisotropy shows another highlight \
-                 than before; bake this material with `--model none` to keep its anisotropy, without the roughness of \
-                 lost bumps";
+        text += ": engines that read KHR_materials_anisotropy show another highlight than before; \
+                 `--own-anisotropy keep` keeps it, without the roughness of lost bumps";
     }
     Note { kind: NoteKind::AnisotropyDropped, asks_for_action: is_seen, text }
+}
+
+/// Returns the note on a material whose anisotropy and roughness stay as they are.
+pub fn anisotropy_kept() -> Note {
+    let text = "the material's anisotropy and its roughness were left unchanged, as `--own-anisotropy keep` asks: most \
+                engines take the axes of anisotropic highlights from the surface, so that lost bumps do not widen \
+                these highlights";
+    note(NoteKind::AnisotropyKept, text)
 }
 
 /// Returns the note on a layer of a material that the extension of the pyramid profile does not describe.
@@ -412,6 +422,7 @@ mod tests {
             other_wrap_mode("anisotropy"),
             specular_glossiness(),
             anisotropy_dropped("--model isotropic", false),
+            anisotropy_kept(),
             layer_without_pyramid("clearcoat"),
             base_colour_unchanged(KeptColour::NoTexture),
             base_colour_unchanged(KeptColour::Unlit),

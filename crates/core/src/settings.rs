@@ -93,6 +93,25 @@ pub enum MaxModel {
     Anisotropic,
 }
 
+/// What becomes of the anisotropy that a material has of its own.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum OwnAnisotropy {
+    /// It is joined with the bumps to one lobe for each texel. An isotropic model drops it.
+    #[default]
+    #[cfg_attr(feature = "cli", value(help = "Join it with the bumps to one lobe; isotropic models drop it"))]
+    Bake,
+    /// It stays as it is, and so does the roughness. For engines that take the axes of anisotropic highlights from the
+    /// surface instead of its bumps: such highlights hardly follow the bumps, so that lost bumps do not widen them.
+    #[cfg_attr(feature = "cli", value(help = "Leave it and the roughness: anisotropic highlights hardly follow bumps"))]
+    Keep,
+    /// It stays as it is, and bumps widen the roughness as if there was none. For engines that do not read it.
+    #[cfg_attr(feature = "cli", value(help = "Leave it, and bake the roughness as for a material without it"))]
+    Ignore,
+}
+
 /// Which textures of materials are written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
@@ -164,6 +183,9 @@ pub struct Settings {
     /// The model with the most parameters that [`Model::Auto`] may choose. An explicit [`Model::Anisotropic`] overrides
     /// it.
     pub max_model: MaxModel,
+    /// What becomes of the anisotropy that a core material has of its own. An explicit [`Model::Anisotropic`] overrides
+    /// it.
+    pub own_anisotropy: OwnAnisotropy,
     /// Largest mean lobe error at any level, in [0, 1], that [`Model::Auto`] accepts.
     pub max_error: f32,
     /// The shape of the distribution of slopes that footprints are assumed to have.
@@ -212,6 +234,7 @@ impl Default for Settings {
             profile: Profile::default(),
             model: Model::default(),
             max_model: MaxModel::default(),
+            own_anisotropy: OwnAnisotropy::default(),
             max_error: 0.1,
             distribution: Distribution::default(),
             lobe: Family::default(),
@@ -251,6 +274,7 @@ impl Settings {
         with_profile: profile, Profile;
         with_model: model, Model;
         with_max_model: max_model, MaxModel;
+        with_own_anisotropy: own_anisotropy, OwnAnisotropy;
         with_distribution: distribution, Distribution;
         with_lobe: lobe, Family;
         with_target: target, Target;
@@ -269,6 +293,12 @@ impl Settings {
             (Model::Anisotropic, _) | (_, MaxModel::Anisotropic) => Model::Anisotropic,
             (_, MaxModel::Isotropic) => Model::Isotropic,
         }
+    }
+
+    /// Returns what the bake does with the anisotropy that a material has of its own.
+    pub(crate) fn effective_own_anisotropy(&self) -> OwnAnisotropy {
+        let is_overridden = !self.profile.is_portable() || self.model == Model::Anisotropic;
+        if is_overridden { OwnAnisotropy::Bake } else { self.own_anisotropy }
     }
 
     /// Sets [`Settings::max_error`].

@@ -10,7 +10,7 @@ use crate::codec::Target;
 use crate::codec::uastc::Effort;
 use crate::lobe::Distribution;
 use crate::project::{Engine, Values};
-use crate::settings::{DiffuseLight, Form, Limit, MaxModel, Model, Profile, Settings, Textures, limit};
+use crate::settings::{DiffuseLight, Form, Limit, MaxModel, Model, OwnAnisotropy, Profile, Settings, Textures, limit};
 
 /// How textures are baked and encoded.
 #[derive(Debug, Args)]
@@ -67,13 +67,17 @@ pub struct DocumentOptions {
     /// two, but a .glb would make every engine load both. [default: auto, or what --engine needs]
     #[arg(long, value_enum)]
     gltf: Option<Form>,
-    /// Preset of --target, --gltf, --glb, --model, --max-model and --scale-normals for an engine; the options
-    /// themselves win over it. A note names the engine's own limiter of roughness if that should be turned off.
+    /// Preset of --target, --gltf, --glb, --model, --max-model, --own-anisotropy and --scale-normals for an engine; the
+    /// options themselves win over it. A note names the engine's own limiter of roughness if that should be turned off.
     #[arg(long, value_enum)]
     engine: Option<Engine>,
     /// The model with the most parameters that --model auto may choose. [default: anisotropic]
     #[arg(long, value_enum)]
     max_model: Option<MaxModel>,
+    /// What becomes of the anisotropy that a material has of its own. --model anisotropic wins over it. [default: bake,
+    /// or what --engine needs]
+    #[arg(long, value_enum, value_name = "HOW")]
+    own_anisotropy: Option<OwnAnisotropy>,
     /// Write .glb files with everything inside, or with --glb=false .gltf files with external textures. [default: as
     /// each input, except .gltf for --engine bevy and godot and for --gltf dual]
     #[arg(long, num_args = 0..=1, require_equals = true, default_missing_value = "true", value_name = "BOOL")]
@@ -128,6 +132,7 @@ impl DocumentOptions {
             gltf: self.gltf,
             engine: self.engine,
             max_model: self.max_model,
+            own_anisotropy: self.own_anisotropy,
             glb: self.glb,
             scale_normals: self.scale_normals,
             frame: self.frame,

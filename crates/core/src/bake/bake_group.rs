@@ -72,7 +72,7 @@ impl GroupBake<'_> {
         let input = BaseInput {
             roughness: roughness.map(Cow::Owned),
             roughness_factor: layer.layer.roughness_factor,
-            anisotropy: layer.layer.anisotropy.as_ref().map(|source| AnisotropyInput {
+            anisotropy: layer.anisotropy.as_ref().map(|source| AnisotropyInput {
                 texture: anisotropy,
                 strength: source.strength,
                 rotation: source.rotation,

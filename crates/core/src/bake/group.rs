@@ -9,13 +9,13 @@ use super::geometry::Geometry;
 use crate::bump::Frame;
 use crate::gltf::geometry::Layout;
 use crate::gltf::layers::{LayerKind, LayerRow};
-use crate::gltf::material::{BumpSource, Layer, Material, ReflectanceFactors, TextureUse};
+use crate::gltf::material::{AnisotropySource, BumpSource, Layer, Material, ReflectanceFactors, TextureUse};
 use crate::gltf::rewrite::Slot;
 use crate::gltf::scene::animated_bumps;
 use crate::gltf::texture::{ImageLocation, TextureError, TextureSource, Textures};
 use crate::mip::Wrap;
 use crate::note::{self, Note, Unread};
-use crate::settings::{Model, Settings};
+use crate::settings::{Model, OwnAnisotropy, Settings};
 
 /// A bump map and all layers that use it.
 #[derive(Debug)]
@@ -59,6 +59,8 @@ pub struct GroupLayer {
     pub slope_scale: f32,
     /// How the material lies on its meshes, if a frame asks for it.
     pub layout: Option<Layout>,
+    /// The anisotropy of the base lobe; none if the bake ignores it.
+    pub anisotropy: Option<AnisotropySource>,
     /// The textures of the base lobe, or why bumps cannot be added to the base lobe texel by texel.
     pub base: Result<BaseTextures, Note>,
     /// Notes to the user.
@@ -157,7 +159,12 @@ fn group_layer(
         let compressed = |extension| note::compressed_mesh(extension, Unread::RepeatSize);
         notes.push(geometry.compression(material).map_or_else(note::unknown_repeat_size, compressed));
     });
-    let mut base = base_textures(textures, &layer, &source).map_err(failed("roughness or anisotropy texture"))?;
+    let anisotropy = layer.anisotropy.clone().filter(|_| settings.effective_own_anisotropy() != OwnAnisotropy::Ignore);
+    let mut base = base_textures(textures, &layer, anisotropy.as_ref(), &source)
+        .map_err(failed("roughness or anisotropy texture"))?;
+    if anisotropy.is_some() && settings.effective_own_anisotropy() == OwnAnisotropy::Keep {
+        base = Err(note::anisotropy_kept());
+    }
     if let (Ok(base), Some(reflectance)) = (&mut base, &layer.reflectance) {
         match reflectance {
             Ok(factors) => match reflectance_textures(textures, factors, &layer, &source) {
@@ -167,7 +174,8 @@ fn group_layer(
             Err(error) => notes.push(note::unknown_reflectance(error)),
         }
     }
-    Ok((source, kind, GroupLayer { material, name: name.to_owned(), layer, slope_scale, layout, base, notes }))
+    let name = name.to_owned();
+    Ok((source, kind, GroupLayer { material, name, layer, slope_scale, layout, anisotropy, base, notes }))
 }
 
 /// Returns a number by which equal textures can be found, among those that [`Textures`] returned.
@@ -219,11 +227,12 @@ fn kind_of(
     (BumpMapKind::Heights { slope_per_repeat, square_texels, wrap: source.wrap }, 1.0)
 }
 
-/// Returns the textures of the layer's base lobe. The inner error says why bumps cannot be added to the base lobe texel
-/// by texel.
+/// Returns the textures of the layer's base lobe, which has `anisotropy`. The inner error says why bumps cannot be
+/// added to the base lobe texel by texel.
 fn base_textures(
     textures: &mut Textures<'_>,
     layer: &Layer,
+    anisotropy: Option<&AnisotropySource>,
     bumps: &TextureSource,
 ) -> Result<Result<BaseTextures, Note>, TextureError> {
     let mapping = &layer.bumps.texture().mapping;
@@ -239,7 +248,7 @@ fn base_textures(
         Ok(Some(source))
     };
     let roughness = read("roughness", layer.roughness.as_ref())?;
-    let anisotropy = read("anisotropy", layer.anisotropy.as_ref().and_then(|a| a.texture.as_ref()))?;
+    let anisotropy = read("anisotropy", anisotropy.and_then(|a| a.texture.as_ref()))?;
     Ok(match reason {
         Some(reason) => Err(reason),
         None => Ok(BaseTextures { roughness, anisotropy, reflectance: None }),
@@ -325,7 +334,8 @@ impl GroupLayer {
 
     /// Returns the model with the most parameters that the layer can have.
     pub fn max_model(&self) -> Model {
-        if self.row().anisotropy.is_some() { Model::Anisotropic } else { Model::Isotropic }
+        let is_ignored = self.layer.anisotropy.is_some() && self.anisotropy.is_none();
+        if self.row().anisotropy.is_some() && !is_ignored { Model::Anisotropic } else { Model::Isotropic }
     }
 
     /// Returns the textures of the base lobe: roughness and anisotropy.
@@ -352,7 +362,7 @@ impl GroupLayer {
     /// Returns the key of the layer's roughened lobe; `None` if the base lobe cannot be roughened.
     fn lobe_key(&self) -> Option<LobeKey> {
         let base = self.base.as_ref().ok()?;
-        let anisotropy = self.layer.anisotropy.as_ref().map(|a| [bits(a.strength), bits(a.rotation)]);
+        let anisotropy = self.anisotropy.as_ref().map(|a| [bits(a.strength), bits(a.rotation)]);
         Some(LobeKey {
             kind: self.layer.kind,
             textures: [&base.roughness, &base.anisotropy].map(|texture| texture.as_ref().map(address)),

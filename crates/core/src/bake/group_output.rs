@@ -259,7 +259,7 @@ impl LayerPlacement<'_> {
                 rotation: layer.pointer(row.rotation),
                 extension: row.extension,
             },
-            Model::Isotropic if layer.layer.anisotropy.is_some() => {
+            Model::Isotropic if layer.anisotropy.is_some() => {
                 AnisotropyChange::Dropped { strength: layer.pointer(row.strength) }
             }
             _ => AnisotropyChange::Unchanged,

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::codec::Target;
 use crate::note::{self, Note};
-use crate::settings::{Form, MaxModel, Model, Profile};
+use crate::settings::{Form, MaxModel, Model, OwnAnisotropy, Profile};
 
 /// An engine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -125,6 +125,15 @@ impl Preset {
     /// material is baked. Offsets and D alone are for a plugin, which shows anisotropic lobes as they are.
     pub fn model(&self, profile: Profile) -> Model {
         if profile.is_portable() { Model::Isotropic } else { Model::Anisotropic }
+    }
+
+    /// Returns what becomes of the anisotropy that materials have of their own.
+    pub fn own_anisotropy(&self) -> OwnAnisotropy {
+        match self.anisotropy {
+            Anisotropy::Unread => OwnAnisotropy::Ignore,
+            // All of them take the axes of the highlight from the frame of the surface.
+            Anisotropy::Wrong => OwnAnisotropy::Keep,
+        }
     }
 
     /// Returns the model with the most parameters that the engine can show in a bake of `profile`.

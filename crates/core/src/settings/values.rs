@@ -8,7 +8,9 @@ use crate::codec::Target;
 use crate::codec::uastc::Effort;
 use crate::lobe::{Distribution, Family};
 use crate::settings::engines::Engine;
-use crate::settings::{DiffuseLight, Form, MaxModel, Model, Profile, Settings, SettingsError, Textures, View, limit};
+use crate::settings::{
+    DiffuseLight, Form, MaxModel, Model, OwnAnisotropy, Profile, Settings, SettingsError, Textures, View, limit,
+};
 
 /// Declares the settings, each once: the struct that holds them, and what is done with every one of them.
 macro_rules! values {
@@ -98,6 +100,7 @@ values! {
     profile: Profile,
     model: Model,
     max_model: MaxModel,
+    own_anisotropy: OwnAnisotropy,
     max_error: f64,
     quality: Effort,
     rdo: f64,
@@ -141,6 +144,7 @@ impl Values {
             profile: Some(defaults.profile),
             model: Some(defaults.model),
             max_model: Some(defaults.max_model),
+            own_anisotropy: Some(defaults.own_anisotropy),
             // 0.1 in single precision is another number in double precision.
             max_error: Some(0.1),
             quality: Some(defaults.quality),
@@ -172,6 +176,7 @@ impl Values {
             glb: preset.glb,
             model: Some(preset.model(profile)),
             max_model: preset.max_model(profile),
+            own_anisotropy: Some(preset.own_anisotropy()),
             scale_normals: Some(preset.reads_normal_scale),
             ..Self::default()
         }
@@ -194,6 +199,7 @@ impl Values {
         settings.profile = self.profile.unwrap_or_default();
         settings.model = self.model.unwrap_or_default();
         settings.max_model = self.max_model.unwrap_or_default();
+        settings.own_anisotropy = self.own_anisotropy.unwrap_or_default();
         settings.max_error = max_error.map_or(settings.max_error, |e| e as f32);
         settings.distribution = self.distribution.unwrap_or_default();
         settings.lobe = self.lobe.unwrap_or_default();

@@ -26,6 +26,7 @@ const TEXTURE = {
 export const DOCUMENT = {
   engine: text,
   'max-model': text,
+  'own-anisotropy': text,
   textures: text,
   'diffuse-light': text,
   gltf: text,

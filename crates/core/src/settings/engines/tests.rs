@@ -1,4 +1,5 @@
 use super::*;
+use crate::settings::OwnAnisotropy;
 
 #[test]
 fn every_engine_has_a_preset_of_its_own_name() {
@@ -17,6 +18,9 @@ fn presets_bake_isotropic_lobes_into_core_materials() {
         assert_eq!(preset.model(Profile::Both), Model::Isotropic, "{engine:?}");
         assert_eq!(preset.model(Profile::Pyramid), Model::Anisotropic, "{engine:?}");
         assert_eq!(preset.max_model(Profile::Pyramid), None, "{engine:?}");
+        let is_isotropic = preset.max_model(Profile::Portable) == Some(MaxModel::Isotropic);
+        let own = if is_isotropic { OwnAnisotropy::Ignore } else { OwnAnisotropy::Keep };
+        assert_eq!(preset.own_anisotropy(), own, "{engine:?}");
     }
 }
 

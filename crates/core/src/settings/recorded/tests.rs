@@ -19,6 +19,7 @@ fn appends_settings_that_have_no_default() {
         frame: Frame::MainDirection([0.6, 0.8, 0.0]),
         height_scale: Some(0.2),
         max_model: MaxModel::Isotropic,
+        own_anisotropy: OwnAnisotropy::Keep,
         rdo: Some(0.5),
         scale_normals: true,
         textures: Textures::All,
@@ -31,7 +32,8 @@ fn appends_settings_that_have_no_default() {
         r#"{"profile":"portable","model":"none","maxError":0.10000000149011612,"distribution":"auto","lobe":"ggx","#,
         r#""target":"basis","quality":"best","gltf":"auto","#,
         r#""frame":{"mainDirection":[0.6000000238418579,0.800000011920929,0.0]},"heightScale":0.20000000298023224,"#,
-        r#""asked":"auto","maxModel":"isotropic","rdo":0.5,"scaleNormals":true,"textures":"all","diffuseLight":"suns","#,
+        r#""asked":"auto","maxModel":"isotropic","ownAnisotropy":"keep","rdo":0.5,"scaleNormals":true,"textures":"all","#,
+        r#""diffuseLight":"suns","#,
         r#""view":{"nearest":2.0,"screenHeight":1080,"fov":45.0,"aspect":1.778,"trim":false}}"#
     );
     assert_eq!(text(&settings, Model::None), expected);

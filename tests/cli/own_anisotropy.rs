@@ -1,0 +1,70 @@
+//! Tests of anisotropy that a material has of its own: presets leave it as it is, and roughness follows the engine.
+
+use std::fs;
+
+use serde_json::{Value, json};
+use tempfile::tempdir;
+
+use super::process::{bake, fixtures};
+
+/// What a bake makes of the material `Brass`, whose strength is 0.5 and whose roughness factor is 0.8.
+struct Brass {
+    strength: f64,
+    has_texture: bool,
+    /// 1 if the roughness was baked.
+    roughness_factor: f64,
+    /// Kinds of the notes on its base layer.
+    notes: Vec<Value>,
+}
+
+fn brass(options: &[&str]) -> Brass {
+    let baked = tempdir().expect("a folder");
+    let options = [options, &["--glb=false", "--json"]].concat();
+    let run = bake(&fixtures().join("knobs/knobs.gltf"), baked.path(), &options);
+    let report: Value = serde_json::from_str(&run.out).expect("JSON");
+    let text = fs::read(baked.path().join("knobs.gltf")).expect("a document");
+    let document: Value = serde_json::from_slice(&text).expect("JSON");
+    let material = &document["materials"][0];
+    let anisotropy = &material["extensions"]["KHR_materials_anisotropy"];
+    let notes = report["assets"][0]["layers"][0]["notes"].as_array().cloned().unwrap_or_default();
+    Brass {
+        strength: anisotropy["anisotropyStrength"].as_f64().expect("a strength"),
+        has_texture: anisotropy.get("anisotropyTexture").is_some(),
+        roughness_factor: material["pbrMetallicRoughness"]["roughnessFactor"].as_f64().expect("a factor"),
+        notes: notes.into_iter().map(|note| note["kind"].clone()).collect(),
+    }
+}
+
+#[test]
+fn engines_that_read_anisotropy_get_anisotropy_and_roughness_of_the_source() {
+    for engine in ["three", "babylon", "playcanvas", "bevy"] {
+        let brass = brass(&["--engine", engine]);
+        assert_eq!((brass.strength, brass.has_texture, brass.roughness_factor), (0.5, false, 0.8), "{engine}");
+        assert!(brass.notes.contains(&json!("anisotropyKept")), "{engine}: {:?}", brass.notes);
+    }
+}
+
+#[test]
+fn engines_that_do_not_read_anisotropy_get_the_roughness_of_lost_bumps() {
+    for engine in ["filament", "godot"] {
+        let brass = brass(&["--engine", engine]);
+        assert_eq!((brass.strength, brass.has_texture, brass.roughness_factor), (0.5, false, 1.0), "{engine}");
+        assert!(!brass.notes.contains(&json!("anisotropyDropped")), "{engine}: {:?}", brass.notes);
+    }
+}
+
+#[test]
+fn explicit_settings_bake_anisotropy_for_every_engine() {
+    let anisotropic = brass(&["--engine", "three", "--model", "anisotropic"]);
+    assert_eq!((anisotropic.strength, anisotropic.has_texture), (1.0, true));
+    let isotropic = brass(&["--engine", "three", "--own-anisotropy", "bake"]);
+    assert_eq!((isotropic.strength, isotropic.roughness_factor), (0.0, 1.0));
+    assert!(isotropic.notes.contains(&json!("anisotropyDropped")), "{:?}", isotropic.notes);
+}
+
+#[test]
+fn the_pyramid_profile_alone_ignores_the_setting() {
+    let baked = brass(&["--engine", "three", "--profile", "pyramid"]);
+    assert_eq!((baked.strength, baked.roughness_factor), (0.5, 0.8));
+    assert!(!baked.notes.contains(&json!("anisotropyKept")), "{:?}", baked.notes);
+}
