@@ -4,9 +4,9 @@ import { cpSync, readFileSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import test from 'node:test';
 import * as reader from './extension_reader.js';
+import { halfFloats } from './half_floats.js';
 import { missing, repository, roughcast, temporary } from './roughcast.js';
 
-const EXTENSION = 'ROUGHCAST_materials_roughness_pyramid';
 const page = readFileSync(path.join(repository, 'docs/extension/README.md'), 'utf8');
 const [overview, example] = [...page.matchAll(/```json\n([^]*?)```/g)].map(([, text]) => JSON.parse(text));
 
@@ -20,7 +20,7 @@ function assertPrinted(found, printed, name) {
 }
 
 test('the worked example of the page is right', () => {
-  const extension = overview.materials[0].extensions[EXTENSION];
+  const extension = overview.materials[0].extensions[reader.EXTENSION];
   const { roughnessFactor } = overview.materials[0].pbrMetallicRoughness;
   const slopes = reader.slopes(extension, example.offsetTexel);
   assertPrinted(slopes, example.slopes, 'slopes');
@@ -38,30 +38,6 @@ test('the worked example of the page is right', () => {
     assertPrinted(found[name], example[name], name);
   }
 });
-
-/** Channels of half floats, by VkFormat. */
-const CHANNELS = { 76: 1, 83: 2, 97: 4 };
-
-/** Reads the levels of a KTX2 file of half floats without supercompression: of each texel all channels. */
-function halfFloats(file) {
-  const bytes = readFileSync(file);
-  const [format, , width, height] = [12, 16, 20, 24].map((at) => bytes.readUInt32LE(at));
-  const [count, scheme] = [40, 44].map((at) => bytes.readUInt32LE(at));
-  const channels = CHANNELS[format];
-  assert.ok(channels && scheme === 0, `half floats without supercompression: ${format}, ${scheme}`);
-  return Array.from({ length: count }, (_, level) => {
-    const start = Number(bytes.readBigUInt64LE(80 + 24 * level));
-    const texels = Math.max(width >> level, 1) * Math.max(height >> level, 1);
-    const half = (i) => fromHalf(bytes.readUInt16LE(start + 2 * i));
-    return Array.from({ length: texels }, (_, i) => Array.from({ length: channels }, (_, c) => half(channels * i + c)));
-  });
-}
-
-function fromHalf(bits) {
-  const [sign, exponent, fraction] = [bits & 0x8000 ? -1 : 1, (bits >> 10) & 31, bits & 1023];
-  if (exponent === 0) return sign * fraction * 2 ** -24;
-  return sign * (1 + fraction / 1024) * 2 ** (exponent - 15);
-}
 
 /** The surface of the plane in fixtures/real after it is stretched: p_u = 3 T and p_v = -B / 2, in units per repeat. */
 const STRETCH = [3, 1, 0.5];
@@ -81,12 +57,12 @@ function bake(folder, options) {
   const { materials, textures, images } = JSON.parse(readFileSync(path.join(output, 'gravel.gltf'), 'utf8'));
   const { normalTexture, pbrMetallicRoughness, extensions } = materials[0];
   const fileOf = (info) => path.join(output, decodeURIComponent(images[textures[info.index].source].uri));
-  const levels = (info) => info && halfFloats(fileOf(info));
+  const levels = (info) => info && halfFloats(fileOf(info)).map(({ texels }) => texels);
   return {
-    extension: extensions[EXTENSION],
-    roughness: extensions[EXTENSION].baseLobe.roughnessFactor,
-    offset: levels(extensions[EXTENSION].offsetTexture),
-    lost: levels(extensions[EXTENSION].roughnessTexture),
+    extension: extensions[reader.EXTENSION],
+    roughness: extensions[reader.EXTENSION].baseLobe.roughnessFactor,
+    offset: levels(extensions[reader.EXTENSION].offsetTexture),
+    lost: levels(extensions[reader.EXTENSION].roughnessTexture),
     core: {
       normal: levels(normalTexture),
       roughness: levels(pbrMetallicRoughness.metallicRoughnessTexture),

@@ -1,11 +1,9 @@
 // Shading by ROUGHCAST_materials_roughness_pyramid as docs/extension/README.md describes it, written from that page
 // alone. It shares no code with the plugin, so that a test can hold the page against what the tool writes.
 
-const dot = (a, b) => a.reduce((sum, value, i) => sum + value * b[i], 0);
-const scaled = (a, factor) => a.map((value) => value * factor);
-const normalised = (a) => scaled(a, 1 / Math.hypot(...a));
-const cross = ([a, b, c], [x, y, z]) => [b * z - c * y, c * x - a * z, a * y - b * x];
-const clamp = (value, low, high) => Math.min(Math.max(value, low), high);
+import { clamp, cross, dot, normalised, sum } from './vectors.js';
+
+export const EXTENSION = 'ROUGHCAST_materials_roughness_pyramid';
 
 /** Returns the slopes of a filtered texel of the offset texture ("From texel to slopes"). */
 export function slopes({ offsetChannels, offsetScale }, texel) {
@@ -24,13 +22,16 @@ export function covariance({ roughnessModel, roughnessMin: min, roughnessMax: ma
 
 /**
  * Returns the axes and the scale of slopes and K ("Frames") on a surface with unit normal n, tangent space T and B, and
- * derivatives of the position by the texture coordinates of lengths |p_u| and |p_v|.
+ * derivatives of the position by the texture coordinates of lengths |p_u| and |p_v|. `node` is the scale of the node,
+ * one factor for each axis.
  */
-export function frame({ frame: name, mainDirection }, { n, t, b, lengths }) {
-  const across = name === 'mainDirection' ? cross(mainDirection, n) : [0, 0, 0];
-  if (Math.hypot(...across) > 1e-4) {
-    const e1 = normalised(across);
-    return { e1, e2: cross(n, e1), n, scale: [1, 1] };
+export function frame({ frame: name, mainDirection }, { n, t, b, lengths, node = [1, 1, 1] }) {
+  const m = name === 'mainDirection' ? mainDirection.map((value, i) => value * node[i]) : [0, 0, 0];
+  const along = sum([m, 1], [n, -dot(m, n)]);
+  if (Math.hypot(...along) > 1e-4 * Math.hypot(...m)) {
+    const e2 = normalised(along);
+    const isMirrored = node[0] * node[1] * node[2] < 0;
+    return { e1: isMirrored ? cross(n, e2) : cross(e2, n), e2, n, scale: [1, 1] };
   }
   const scale = name === 'natural' ? lengths.map((length) => 1 / length) : [1, 1];
   return { e1: normalised(t), e2: normalised(b), n, scale };
@@ -70,4 +71,27 @@ export function parameters([uu, uv, vv], least) {
     roughness: Math.sqrt(alphaB),
     strength: alphaB < 1 ? Math.sqrt((alphaT - alphaB) / (1 - alphaB)) : 0,
   };
+}
+
+/** Returns L, the length of the mean normal of the bumps ("Lights"), of K along the axes of the frame. */
+export const meanNormal = ({ correctionFactor }, [uu, , vv]) => 1 / Math.sqrt(1 + correctionFactor * (uu + vv));
+
+/** Returns the axes t' and n' x t' of a lobe ("The lobe") about the normal n', from its axis in a frame. */
+export function axes({ e1, e2 }, normal, [along1, along2]) {
+  const t = sum([e1, along1], [e2, along2]);
+  const tangent = normalised(sum([t, 1], [normal, -dot(t, normal)]));
+  return [tangent, cross(normal, tangent)];
+}
+
+/**
+ * Returns D V, which is the specular lobe without Fresnel's factor ("Lights"), for the directions to the eye and to the
+ * light.
+ */
+export function specular({ normal: n, axes: [t, b], alphas: [alphaT, alphaB] }, eye, light) {
+  const h = normalised(sum([eye, 1], [light, 1]));
+  const stretched = Math.hypot(dot(t, h) / alphaT, dot(b, h) / alphaB, dot(n, h));
+  const density = 1 / (Math.PI * alphaT * alphaB * stretched ** 4);
+  const [nv, nl] = [eye, light].map((direction) => Math.max(dot(n, direction), 0));
+  const length = (w, nw) => Math.hypot(alphaT * dot(t, w), alphaB * dot(b, w), nw);
+  return density / (2 * (nl * length(eye, nv) + nv * length(light, nl)));
 }

@@ -1,0 +1,74 @@
+// A picture of a plane with ROUGHCAST_materials_roughness_pyramid, drawn as docs/extension/README.md describes it and
+// by glTF's equations. It shares no code with the plugin.
+import * as reader from './extension_reader.js';
+import { transformed, trilinear } from './extension_texture.js';
+import { met, ray, surface } from './plane.js';
+import { dot, normalised, sum } from './vectors.js';
+
+/** Returns the lobe that K is added to ("The lobe"), in a frame, and its roughness. */
+function baseLobe(material, { e1, e2 }, { t, b }, texel, leastRoughness) {
+  const { [reader.EXTENSION]: extension, KHR_materials_anisotropy: core } = material.extensions;
+  const base = extension.baseLobe ?? { ...material.pbrMetallicRoughness, anisotropy: core };
+  const { roughnessFactor = 1, metallicRoughnessTexture, anisotropy = {} } = base;
+  const { anisotropyStrength = 0, anisotropyRotation = 0, anisotropyTexture } = anisotropy;
+  const [red, green, blue] = anisotropyTexture ? texel(anisotropyTexture) : [1, 0.5, 1];
+  const [x, y] = normalised([2 * red - 1, 2 * green - 1]);
+  const [c, s] = [Math.cos(anisotropyRotation), Math.sin(anisotropyRotation)];
+  const direction = sum([t, x * c - y * s], [b, x * s + y * c]);
+  const factor = metallicRoughnessTexture ? texel(metallicRoughnessTexture)[1] : 1;
+  const roughness = Math.max(roughnessFactor * factor, leastRoughness);
+  const along = [dot(direction, e1), dot(direction, e2)];
+  return { roughness, lobe: reader.baseLobe(roughness, anisotropyStrength * blue, along) };
+}
+
+/** Returns what is lit at a point of a surface. `texel` samples the texture of a textureInfo there. */
+function point(material, surfaceThere, texel, leastRoughness) {
+  const extension = material.extensions[reader.EXTENSION];
+  const frame = reader.frame(extension, surfaceThere);
+  const normal = reader.normal(frame, reader.slopes(extension, texel(extension.offsetTexture)));
+  const k = reader.scaledCovariance(frame, reader.covariance(extension, texel(extension.roughnessTexture)));
+  const { roughness, lobe } = baseLobe(material, frame, surfaceThere, texel, leastRoughness);
+  const { alphas, axis } = reader.parameters(reader.roughened(extension, lobe, k), roughness ** 4);
+  const axes = reader.axes(frame, normal, axis);
+  return { normal, axes, alphas, baseRoughness: roughness, meanNormal: reader.meanNormal(extension, k) };
+}
+
+/** Returns the radiance of a lit point ("Lights"): RGB. */
+function radiance(lit, { baseColorFactor, metallicFactor: metalness }, eye, { direction, irradiance }, engine) {
+  const weight = engine.fresnelWeight(dot(normalised(sum([eye, 1], [direction, 1])), eye));
+  const fresnel = (f0) => f0 + (1 - f0) * weight;
+  const [towardsEye, towardsLight] = [eye, direction].map((w) => Math.max(dot(lit.normal, w), 0));
+  const lobe = reader.specular(lit, eye, direction);
+  return baseColorFactor.slice(0, 3).map((colour) => {
+    const f0 = 0.04 + metalness * (colour - 0.04);
+    const specular = fresnel(f0) * lobe * engine.betweenFacets(f0, lit.baseRoughness, towardsEye);
+    const diffuse = ((1 - metalness) * (1 - fresnel(0.04)) * colour) / Math.PI;
+    return irradiance * towardsLight * (specular + lit.meanNormal * diffuse);
+  });
+}
+
+/**
+ * Draws a plane under one directional light: RGB of each pixel, row by row from the bottom, or null where the plane is
+ * not seen. `textures` has the levels and the wrap mode of each texture of the document.
+ */
+export function picture({ material, plane, textures, engine }, { size, camera, light }) {
+  const surfaceThere = surface(plane, material.extensions[reader.EXTENSION].offsetTexture);
+  const sun = { ...light, direction: normalised(light.direction) };
+  const through = (i, j) => ray(camera, [(i + 0.5) / size, (j + 0.5) / size]);
+  const at = (i, j) => met(plane, camera.eye, through(i, j));
+  return Array.from({ length: size * size }, (_, pixel) => {
+    const [i, j] = [pixel % size, Math.floor(pixel / size)];
+    if (at(i, j).some((value) => value < 0 || value > plane.repeats)) return null;
+    const texel = (info) => {
+      // GPUs take derivatives between the pixels of a block of 2 x 2.
+      const block = [at(i & ~1, j & ~1), at(i | 1, j & ~1), at(i & ~1, j | 1)].map((uv) => transformed(info, uv));
+      const derivatives = [block[1], block[2]].map((end) => sum([end, 1], [block[0], -1]));
+      return trilinear(textures[info.index], transformed(info, at(i, j)), derivatives, engine.level);
+    };
+    const lit = point(material, surfaceThere, texel, engine.leastRoughness);
+    const eye = through(i, j).map((value) => -value);
+    const side = Math.sign(dot(surfaceThere.n, eye));
+    const seen = { ...lit, normal: lit.normal.map((value) => side * value) };
+    return radiance(seen, material.pbrMetallicRoughness, eye, sun, engine);
+  });
+}
