@@ -26,7 +26,8 @@ function point(material, surfaceThere, texel, leastRoughness) {
   const extension = material.extensions[reader.EXTENSION];
   const frame = reader.frame(extension, surfaceThere);
   const normal = reader.normal(frame, reader.slopes(extension, texel(extension.offsetTexture)));
-  const k = reader.scaledCovariance(frame, reader.covariance(extension, texel(extension.roughnessTexture)));
+  const lost = extension.roughnessTexture && texel(extension.roughnessTexture);
+  const k = reader.scaledCovariance(frame, reader.covariance(extension, lost));
   const { roughness, lobe } = baseLobe(material, frame, surfaceThere, texel, leastRoughness);
   const { alphas, axis } = reader.parameters(reader.roughened(extension, lobe, k), roughness ** 4);
   const axes = reader.axes(frame, normal, axis);

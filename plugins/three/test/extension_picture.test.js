@@ -66,6 +66,22 @@ const CASES = {
     lobe: ANISOTROPIC,
     wrong: (drawn) => (extension(drawn).baseLobe.anisotropy.anisotropyRotation *= -1),
   },
+  'an anisotropic base lobe without tangents': {
+    lobe: ANISOTROPIC,
+    plane: { tangent: null },
+    wrong: (drawn) => (extension(drawn).baseLobe.anisotropy.anisotropyRotation *= -1),
+  },
+  'an anisotropic base lobe without tangents, on a stretched map': {
+    lobe: ANISOTROPIC,
+    plane: { tangent: null },
+    transforms: [{ scale: [3, 1] }],
+    wrong: (drawn) => (extension(drawn).baseLobe.anisotropy.anisotropyRotation = Math.atan2(Math.tan(0.7), 3)),
+  },
+  'an anisotropic base lobe and no K': {
+    lobe: { ...ANISOTROPIC, roughnessFactor: 0.5 },
+    members: { roughnessModel: undefined, roughnessTexture: undefined },
+    wrong: (drawn) => (extension(drawn).baseLobe.anisotropy.anisotropyRotation *= -1),
+  },
   'an anisotropic base lobe of the core material': {
     lobe: ANISOTROPIC,
     isCore: true,

@@ -162,46 +162,49 @@ export const baseLostLight = 'vec2( roughcastBase, dotNVms )';
 export const roughen = /* glsl */ `
   float roughcastBase = material.roughness;
   #if defined( ROUGHCAST_FACTOR ) || defined( ROUGHCAST_DEVIATION )
-  float roughcastMeanNormal;
-  {
     // D or lambda_1, filtered by the sampler.
-    vec3 d = mix( roughcastRoughnessMin, roughcastRoughnessMax, texture2D( bumpMap, vBumpMapUv ).rgb );
+    vec3 roughcastD = mix( roughcastRoughnessMin, roughcastRoughnessMax, texture2D( bumpMap, vBumpMapUv ).rgb );
     #ifdef ROUGHCAST_FACTOR
       // K = D D^T with D = [[d1, d2], [0, d3]].
-      vec3 k = vec3( d.x * d.x + d.y * d.y, d.y * d.z, d.z * d.z );
+      vec3 roughcastK = vec3( dot( roughcastD.xy, roughcastD.xy ), roughcastD.y * roughcastD.z, pow2( roughcastD.z ) );
     #else
-      vec3 k = vec3( d.x * d.x, 0.0, d.x * d.x );
+      vec3 roughcastK = vec3( pow2( roughcastD.x ), 0.0, pow2( roughcastD.x ) );
     #endif
-    k *= roughcastScale.xxy * roughcastScale.xyy;
+    roughcastK *= roughcastScale.xxy * roughcastScale.xyy;
     // The length of the mean of the unit normals of the bumps, whose slopes have the variance c tr K.
-    roughcastMeanNormal = inversesqrt( 1.0 + roughcastCorrection * ( k.x + k.z ) );
-    #if defined( USE_ANISOTROPY )
-      // The base lobe, in the frame of K.
-      float across = pow2( pow2( material.roughness ) ), along = pow2( material.alphaT );
-      vec2 axis = vec2( dot( material.anisotropyT, roughcastE1 ), dot( material.anisotropyT, roughcastE2 ) );
-      axis /= max( length( axis ), 1e-6 );
-      vec3 a = vec3( across, 0.0, across ) + ( along - across ) * axis.xxy * axis.xyy;
-      a += 2.0 * roughcastCorrection * k;
-      // Eigenvalues, and the axis of the larger one.
-      float mean = 0.5 * ( a.x + a.z ), difference = 0.5 * ( a.x - a.z ), radius = length( vec2( difference, a.y ) );
-      float major = min( mean + radius, 1.0 ), minor = clamp( mean - radius, across, 1.0 );
-      vec2 e = difference > 0.0 ? vec2( radius + difference, a.y ) : vec2( a.y, radius - difference );
-      float size = length( e );
-      e = size > 1e-9 ? e / size : axis;
-      material.alphaT = sqrt( major );
-      float alphaB = sqrt( minor );
-      material.roughness = sqrt( alphaB );
-      // The strength that gives these alphas in KHR_materials_anisotropy.
-      material.anisotropy = sqrt( saturate( ( material.alphaT - alphaB ) / max( 1.0 - alphaB, 1e-6 ) ) );
-      vec3 t = e.x * roughcastE1 + e.y * roughcastE2;
-      material.anisotropyT = normalize( t - dot( t, normal ) * normal );
-      material.anisotropyB = cross( normal, material.anisotropyT );
-    #else
-      // Different scales of u and v make the lobe anisotropic; this shader has isotropic lobes only, so it takes the
-      // mean.
-      float squared = pow2( pow2( material.roughness ) ) + roughcastCorrection * ( k.x + k.z );
-      material.roughness = sqrt( sqrt( min( squared, 1.0 ) ) );
-    #endif
+    float roughcastMeanNormal = inversesqrt( 1.0 + roughcastCorrection * ( roughcastK.x + roughcastK.z ) );
+  #else
+    const vec3 roughcastK = vec3( 0.0 );
+  #endif
+  #ifdef USE_ANISOTROPY
+  {
+    // The base lobe, in the frame of K. Without tangents, the B of three.js points down the image, and the shorter of
+    // its T and B is not normalised.
+    float across = pow2( pow2( material.roughness ) ), along = pow2( material.alphaT );
+    vec3 t = anisotropyV.x * normalize( tbn[ 0 ] ) + sign( normalScale.y ) * anisotropyV.y * normalize( tbn[ 1 ] );
+    vec2 axis = vec2( dot( t, roughcastE1 ), dot( t, roughcastE2 ) );
+    axis /= max( length( axis ), 1e-6 );
+    vec3 a = vec3( across, 0.0, across ) + ( along - across ) * axis.xxy * axis.xyy;
+    a += 2.0 * roughcastCorrection * roughcastK;
+    // Eigenvalues, and the axis of the larger one.
+    float mean = 0.5 * ( a.x + a.z ), difference = 0.5 * ( a.x - a.z ), radius = length( vec2( difference, a.y ) );
+    float major = min( mean + radius, 1.0 ), minor = clamp( mean - radius, across, 1.0 );
+    vec2 e = difference > 0.0 ? vec2( radius + difference, a.y ) : vec2( a.y, radius - difference );
+    float size = length( e );
+    e = size > 1e-9 ? e / size : axis;
+    material.alphaT = sqrt( major );
+    float alphaB = sqrt( minor );
+    material.roughness = sqrt( alphaB );
+    // The strength that gives these alphas in KHR_materials_anisotropy.
+    material.anisotropy = sqrt( saturate( ( material.alphaT - alphaB ) / max( 1.0 - alphaB, 1e-6 ) ) );
+    t = e.x * roughcastE1 + e.y * roughcastE2;
+    material.anisotropyT = normalize( t - dot( t, normal ) * normal );
+    material.anisotropyB = cross( normal, material.anisotropyT );
   }
+  #elif defined( ROUGHCAST_DEVIATION )
+    // Different scales of u and v make the lobe anisotropic; this shader has isotropic lobes only, so it takes the mean.
+    float roughcastSquared =
+      pow2( pow2( material.roughness ) ) + roughcastCorrection * ( roughcastK.x + roughcastK.z );
+    material.roughness = sqrt( sqrt( min( roughcastSquared, 1.0 ) ) );
   #endif
 `;
