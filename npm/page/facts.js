@@ -16,8 +16,25 @@ export function headline(before, { bytes, report, seconds }) {
   return `${size(before)} before, ${size(bytes.byteLength)} baked, with ${textures}, in ${seconds.toFixed(1)} s.`;
 }
 
+/** Returns the sentence on the texels that a pixel covers, and on the samples of the truth. */
+export function footprint(texels, samples) {
+  const side = texels.toFixed(texels < 10 ? 1 : 0);
+  const covered = texels > 0 ? `A pixel covers about ${side} x ${side} texels. ` : '';
+  return covered + (samples > 0 ? `The truth has ${samples} samples per pixel.` : '');
+}
+
+/** Returns a row for each texture that was written: name, content, size in texels, and bytes. */
+export function textureRows({ textures }) {
+  return textures.map(({ path, content, width, height, bytes }) => [
+    path.replace(/^.*\/|\.ktx2$/g, ''),
+    content,
+    `${width} x ${height}`,
+    size(bytes),
+  ]);
+}
+
 /** Returns a row for each baked layer: material, model, and the largest lobe errors of plain mips and of the bake. */
-export function rows({ layers }) {
+export function layerRows({ layers }) {
   return layers
     .filter((layer) => layer.model)
     .map(({ material, layer, model, choice }) => {

@@ -1,4 +1,4 @@
-// Pointer, wheel and keyboard on the picture: the divider, the camera.
+// Pointer, wheel and keyboard on the picture: the divider, the layout, the camera.
 
 const clamp = (value, low, high) => Math.min(high, Math.max(low, value));
 const NEAREST = 2;
@@ -7,18 +7,14 @@ const FARTHEST = 60;
 const GRIP = 24;
 
 /**
- * Lets a person move the divider and the camera.
+ * Lets a person move the divider and the camera, and change the layout.
  *
  * @param {HTMLCanvasElement} canvas
  * @param {import('./stage.js').Stage} stage
- * @param {() => void} onChange after each change of the view
+ * @param {(change: object) => void} set changes members of the view
  */
-export function control(canvas, stage, onChange) {
-  const set = (change) => {
-    stage.set(change);
-    onChange();
-  };
-  const zoom = (factor) => set({ distance: clamp(stage.view.distance * factor, NEAREST, FARTHEST) });
+export function control(canvas, stage, set) {
+  const zoom = (factor) => set({ radius: clamp(stage.view.radius * factor, NEAREST, FARTHEST) });
   const turn = (azimuth, elevation) =>
     set({
       azimuth: stage.view.azimuth + azimuth,
@@ -34,7 +30,10 @@ export function control(canvas, stage, onChange) {
   canvas.addEventListener('pointerdown', (event) => {
     canvas.setPointerCapture(event.pointerId);
     pointers.set(event.pointerId, event);
-    takesDivider = pointers.size === 1 && Math.abs(shareOf(event) - stage.view.split) * canvas.clientWidth < GRIP;
+    takesDivider =
+      stage.view.layout === 'divider' &&
+      pointers.size === 1 &&
+      Math.abs(shareOf(event) - stage.view.split) * canvas.clientWidth < GRIP;
   });
   canvas.addEventListener('pointermove', (event) => {
     const last = pointers.get(event.pointerId);
@@ -68,6 +67,7 @@ export function control(canvas, stage, onChange) {
     '+': () => zoom(0.9),
     '=': () => zoom(0.9),
     '-': () => zoom(1 / 0.9),
+    l: () => set({ layout: stage.view.layout === 'all' ? 'divider' : 'all' }),
     '[': () => slide(stage.view.split - 0.05),
     ']': () => slide(stage.view.split + 0.05),
   };

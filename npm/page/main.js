@@ -1,61 +1,72 @@
 // The page: takes a .glb, bakes it, shows both, and offers the result.
 import { Baker } from './baker.js';
-import { headline, notes, rows } from './facts.js';
+import { footprint, headline, layerRows, notes, size, textureRows } from './facts.js';
 import { control } from './input.js';
+import { label } from './labels.js';
+import { nameOf, settingsOf } from './settings.js';
 import { Stage } from './stage.js';
 
 const element = (id) => document.getElementById(id);
 const form = element('form');
 const status = element('status');
 const baker = new Baker();
-const stage = new Stage(element('canvas'), (samples, errors) => {
-  const measured = Object.entries(errors).filter(([, error]) => error !== null);
-  const text = measured.map(([name, error]) => `${name} ${error.toFixed(3)}`).join(', ');
-  element('samples').textContent = samples ? `${samples} samples per pixel${text && `; error: ${text}`}` : '';
+
+/** Members of the view that the form has. */
+const VIEW = ['distance', 'layout', 'left', 'right', 'kind', 'light'];
+/** Fields that change the bake. */
+const OPTIONS = ['engine', 'textures', 'maxSize', 'quality', 'rdo'];
+
+const view = { azimuth: 20, elevation: 35, split: 0.5 };
+for (const name of VIEW) view[name] = form.elements[name].value;
+const stage = new Stage(element('canvas'), view, ({ places, samples, errors, texels }) => {
+  label(element('labels'), places, errors, element('frame').clientHeight);
+  element('measured').textContent = footprint(texels, samples);
 });
 
 /** The file that is shown: its name without extension, and its bytes. */
 let file = null;
+/** Counts what has begun, so that what ends after a newer beginning is left out. */
+let begun = 0;
 let link = '';
-
-/** Returns the settings that the form has. */
-function settings() {
-  const { engine, quality } = Object.fromEntries(new FormData(form));
-  return { quality, ...(engine && { engine }), gltf: 'strict' };
-}
 
 /** Bakes the file that is shown. */
 async function bake() {
   if (!file) return;
   const { name, bytes } = file;
+  const mine = ++begun;
+  const settings = settingsOf(form);
   document.body.dataset.state = 'busy';
   element('download').hidden = true;
   status.textContent = `Baking ${name}.glb …`;
   element('progress').value = 0;
   try {
-    const baked = await baker.bake(bytes, name, settings(), (share) => (element('progress').value = share));
-    if (!baked) return;
-    await stage.show({ before: bytes, baked: baked.bytes });
+    const baked = await baker.bake(bytes, name, settings, (share) => (element('progress').value = share));
+    const scene = baked && (await stage.load(baked.bytes));
+    if (mine !== begun) return;
+    stage.show('baked', scene);
     report(baked);
-    offer(baked.bytes, `${name}.baked.glb`);
+    offer(baked.bytes, nameOf(name, settings));
     document.body.dataset.state = 'done';
   } catch (error) {
-    fail(error);
+    if (mine === begun) fail(error);
   }
 }
 
 /** Takes a new file, shows it, and bakes it. */
 async function take(name, bytes) {
+  const mine = ++begun;
   try {
     if (String.fromCharCode(...bytes.subarray(0, 4)) !== 'glTF') {
       throw new Error(`${name}: expected a .glb, found something else; pack a .gltf with its files into a .glb first`);
     }
+    const scene = await stage.load(bytes);
+    if (mine !== begun) return;
     file = { name: name.replace(/\.glb$/i, ''), bytes };
     element('facts').hidden = true;
-    await stage.show({ before: bytes });
+    stage.show('before', scene);
     await bake();
   } catch (error) {
-    fail(error);
+    if (mine === begun) fail(error);
   }
 }
 
@@ -64,27 +75,32 @@ function fail(error) {
   status.textContent = error.message;
 }
 
+/** Returns a row of a table, whose first cell is its header. */
+function row(cells) {
+  const line = document.createElement('tr');
+  const cell = (text, index) => Object.assign(document.createElement(index ? 'td' : 'th'), { textContent: text });
+  line.append(...cells.map(cell));
+  line.firstChild.scope = 'row';
+  return line;
+}
+
 function report(baked) {
   status.textContent = headline(file.bytes.byteLength, baked);
-  const cell = (text, index) => Object.assign(document.createElement(index ? 'td' : 'th'), { textContent: text });
-  const row = (cells) => {
-    const line = document.createElement('tr');
-    line.append(...cells.map(cell));
-    line.firstChild.scope = 'row';
-    return line;
-  };
-  const lines = rows(baked.report);
+  const lines = layerRows(baked.report);
   element('rows').replaceChildren(...lines.map(row));
+  element('layers').hidden = lines.length === 0;
+  element('textures').replaceChildren(...textureRows(baked.report).map(row));
   const items = notes(baked.report).map((text) => Object.assign(document.createElement('li'), { textContent: text }));
   element('notes').replaceChildren(...items);
   element('asks').hidden = items.length === 0;
-  element('facts').hidden = lines.length === 0;
+  element('facts').hidden = baked.report.textures.length === 0;
 }
 
 function offer(bytes, name) {
   URL.revokeObjectURL(link);
   link = URL.createObjectURL(new Blob([bytes], { type: 'model/gltf-binary' }));
-  Object.assign(element('download'), { href: link, download: name, hidden: false });
+  const textContent = `Download the .glb, ${size(bytes.byteLength)}`;
+  Object.assign(element('download'), { href: link, download: name, textContent, hidden: false });
 }
 
 async function takeSample(name) {
@@ -95,42 +111,31 @@ async function takeSample(name) {
 
 async function takeFile(chosen) {
   if (!chosen) return;
-  // A person wants to see the own model first, and a sample is clearest on a plane.
   form.elements.sample.value = '';
-  form.elements.kind.value = 'asset';
-  stage.set({ kind: 'asset' });
+  // A person wants to see the own model first, as large as the picture.
+  change({ kind: 'asset', distance: 'near' });
   await take(chosen.name, new Uint8Array(await chosen.arrayBuffer()));
 }
 
-/** Names of the variants for a person. */
-const NAMES = { before: 'Before', baked: 'Baked', supersampled: 'Truth (supersampled)' };
-
-/** Shows where the divider is and what is on its sides. */
-function label() {
-  const { split, left, right } = stage.view;
-  element('split').value = Math.round(split * 1000);
-  element('left-label').textContent = NAMES[left];
-  element('right-label').textContent = NAMES[right];
-  element('left-label').style.opacity = split > 0.12 ? 1 : 0;
-  element('right-label').style.opacity = split < 0.88 ? 1 : 0;
-  element('frame').style.setProperty('--split', split);
+/** Changes members of the view, and the fields of the form with them. */
+function change(members) {
+  // The size of the picture depends on the layout.
+  document.body.dataset.layout = members.layout ?? view.layout;
+  stage.set(members);
+  for (const name of VIEW) form.elements[name].value = view[name];
+  element('split').value = Math.round(view.split * 1000);
+  element('frame').style.setProperty('--split', view.split);
 }
 
-control(element('canvas'), stage, label);
-element('split').addEventListener('input', (event) => {
-  stage.set({ split: event.target.value / 1000 });
-  label();
+control(element('canvas'), stage, change);
+element('split').addEventListener('input', ({ target }) => change({ split: target.value / 1000 }));
+form.addEventListener('change', ({ target: { name, value } }) => {
+  if (VIEW.includes(name)) change({ [name]: value });
+  if (OPTIONS.includes(name)) bake();
+  if (name === 'sample' && value) takeSample(value);
 });
-for (const name of ['left', 'right', 'kind']) {
-  form.elements[name].addEventListener('change', (event) => {
-    stage.set({ [name]: event.target.value });
-    label();
-  });
-}
-for (const name of ['engine', 'quality']) form.elements[name].addEventListener('change', bake);
 form.addEventListener('submit', (event) => event.preventDefault());
 element('file').addEventListener('change', (event) => takeFile(event.target.files[0]));
-form.elements.sample.addEventListener('change', (event) => event.target.value && takeSample(event.target.value));
 addEventListener('dragover', (event) => {
   event.preventDefault();
   document.body.classList.add('over');
@@ -142,5 +147,5 @@ addEventListener('drop', (event) => {
   takeFile(event.dataTransfer.files[0]);
 });
 
-label();
+change({});
 await takeSample(form.elements.sample.value || 'brushed');

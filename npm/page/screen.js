@@ -1,46 +1,51 @@
-// Puts two pictures of linear radiance on the screen, on both sides of a divider.
+// What is on the screen: two pictures on both sides of a divider, or all three side by side.
 import * as THREE from 'three';
+import { Composer } from './viewer/compose.js';
 
-const FRAGMENT = /* glsl */ `
-uniform sampler2D left, right;
-uniform float leftSamples, rightSamples, split, line;
-varying vec2 at;
-void main() {
-  vec4 picture = at.x < split ? texture2D( left, at ) / leftSamples : texture2D( right, at ) / rightSamples;
-  // Pixels that nothing covers are transparent.
-  vec3 c = picture.rgb + ( 1.0 - picture.a ) * vec3( 0.02, 0.02, 0.022 );
-  c *= 1.6 / ( 1.0 + max( max( c.r, c.g ), c.b ) );
-  c = sRGBTransferOETF( vec4( c, 1.0 ) ).rgb;
-  gl_FragColor = vec4( abs( at.x - split ) < line ? vec3( 1.0 ) : c, 1.0 );
-}`;
+/** The pictures, in the order in which they are shown. */
+export const NAMES = ['before', 'baked', 'supersampled'];
+/** The composer's view that shows colours as they are. */
+const SHADED = 0;
 
-const UNIFORMS = ['left', 'leftSamples', 'right', 'rightSamples', 'split', 'line'];
+/**
+ * @typedef {{ layout: 'all' | 'divider', left: string, right: string, split: number }} Look
+ * @typedef {{ name: string, box: number[], window: number[] }} Place
+ *   A picture fills `box` and is clipped by `window`: [x, y, width, height] in CSS pixels from the lower left.
+ */
+
+/**
+ * Returns where each picture is on a screen of `width` times `height` CSS pixels.
+ *
+ * @param {Look} look
+ * @returns {Place[]}
+ */
+export function places({ layout, left, right, split }, width, height) {
+  if (layout === 'divider') {
+    const box = [0, 0, width, height];
+    const x = Math.round(width * split);
+    return [
+      { name: left, box, window: [0, 0, x, height] },
+      { name: right, box, window: [x, 0, width - x, height] },
+    ];
+  }
+  const isWide = width > height;
+  const [w, h] = isWide ? [Math.floor(width / NAMES.length), height] : [width, Math.floor(height / NAMES.length)];
+  return NAMES.map((name, i) => {
+    const box = isWide ? [i * w, 0, w, h] : [0, height - (i + 1) * h, w, h];
+    return { name, box, window: box };
+  });
+}
 
 export class Screen {
-  #material = new THREE.ShaderMaterial({
-    uniforms: Object.fromEntries(UNIFORMS.map((name) => [name, { value: null }])),
-    vertexShader: 'varying vec2 at; void main() { at = uv; gl_Position = vec4(position.xy, 0.0, 1.0); }',
-    fragmentShader: FRAGMENT,
-    depthTest: false,
-    toneMapped: false,
-  });
-  #quad = new THREE.Mesh(new THREE.PlaneGeometry(2, 2), this.#material);
-  #camera = new THREE.Camera();
-
   constructor(renderer) {
-    this.renderer = renderer;
-    this.#quad.frustumCulled = false;
+    this.composer = new Composer(renderer, new THREE.Color(0.02, 0.02, 0.022));
   }
 
-  /** Shows two pictures, each a texture and the number of samples of its sum. `split` is in [0, 1]. */
-  show(left, right, split) {
-    const { uniforms } = this.#material;
-    const values = [left.texture, Math.max(left.samples, 1), right.texture, Math.max(right.samples, 1)];
-    // A line two pixels wide.
-    [...values, split, 1 / this.renderer.domElement.width].forEach((value, i) => {
-      uniforms[UNIFORMS[i]].value = value;
-    });
-    this.renderer.setRenderTarget(null);
-    this.renderer.render(this.#quad, this.#camera);
+  /** Draws pictures at their places. `pictureOf` returns the texture of a name and the samples in its sum. */
+  show(places, pictureOf) {
+    for (const { name, box, window } of places) {
+      const picture = pictureOf(name);
+      if (window[2] > 0) this.composer.draw(picture, picture, SHADED, { box, window });
+    }
   }
 }

@@ -1,7 +1,11 @@
 // One scene, drawn from one camera: before, baked, and the supersampled truth.
 import * as THREE from 'three';
+import { texelsPerUnit } from './density.js';
+import { direction } from './direction.js';
+import { lamps } from './lights.js';
 import { newLoader } from './loader.js';
-import { Screen } from './screen.js';
+import { Screen, places } from './screen.js';
+import { texturesOf } from './viewer/bytes.js';
 import { Meter } from './viewer/measure.js';
 import { subject } from './viewer/subject.js';
 import { Accumulator, unfiltered } from './viewer/supersample.js';
@@ -15,61 +19,125 @@ const MULTISAMPLES = 4;
 const MEASURED_AT = [32, ENOUGH];
 /** Milliseconds without a change before several samples are drawn at once. */
 const PAUSE = 150;
+/**
+ * What the distances mean. Maps repeat so often on a plane or a sphere that a pixel covers so many `texels`. The camera
+ * is so many units away from a `model`, which is about 2 units large.
+ */
+const DISTANCES = {
+  near: { texels: 0.5, model: 5 },
+  middle: { texels: 6, model: 10 },
+  far: { texels: 24, model: 20 },
+};
+/** Distance of the camera from the other subjects, in units: they fill the picture. */
+const CAMERA = { plane: 4, sphere: 4.5 };
+/** Tangent of half of the field of view along the shorter side: 30 degrees in all. */
+const HALF = Math.tan(THREE.MathUtils.degToRad(15));
+
+/** Members of the view that need no new pictures, and those that change what is in the scene. */
+const ONLY_SHOWN = ['split', 'left', 'right'];
+const ARRANGED = ['kind', 'distance', 'light', 'layout'];
 
 export class Stage {
   #scene = new THREE.Scene();
   #camera = new THREE.PerspectiveCamera(30, 1, 0.01, 1000);
+  #lamps = new THREE.Group();
   #assets = new Map();
   #subjects = new Map();
   #pictures = new Map();
+  #density = 0;
   #isStale = true;
   #changedAt = 0;
   #isRequested = false;
   #errors = {};
   #measuredAt = 0;
 
-  /** `onFrame` takes the number of samples of the truth, and the error of each other picture once it is measured. */
-  constructor(canvas, onFrame) {
-    this.onFrame = onFrame;
+  /**
+   * `onFrame` takes the places of the pictures, the number of samples of the truth, the error of each other picture
+   * once it is measured, and how many texels a pixel covers.
+   */
+  constructor(canvas, view, onFrame) {
+    Object.assign(this, { view, onFrame });
+    this.view.radius = this.#radius;
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: false });
     this.screen = new Screen(this.renderer);
     this.renderer.setClearColor(0x000000, 0);
     this.truth = new Accumulator(this.renderer);
     this.meter = new Meter(this.renderer);
     this.load = newLoader(this.renderer);
-    this.view = { kind: 'plane', distance: 6, azimuth: 20, elevation: 20, split: 0.5, left: 'before', right: 'baked' };
-    const lamp = new THREE.DirectionalLight(0xffffff, 3);
-    lamp.position.copy(direction(160, 40));
-    this.#scene.add(lamp);
     this.#scene.environment = surroundings(this.renderer, 'room');
     new ResizeObserver(() => this.set({})).observe(canvas);
-  }
-
-  /** Takes the assets: `before`, and `baked` where it is there. */
-  async show({ before, baked }) {
-    this.#assets = new Map();
-    if (before) this.#assets.set('before', await this.load(before));
-    if (baked) this.#assets.set('baked', await this.load(baked));
     this.#arrange();
   }
 
-  /** Changes members of the view. */
-  set(change) {
-    Object.assign(this.view, change);
-    if ('kind' in change) this.#arrange();
-    // A divider that moves needs no new pictures; an empty change means another size.
-    const names = Object.keys(change);
-    if (names.length === 0 || names.some((name) => !['split', 'left', 'right'].includes(name)))
-      [this.#isStale, this.#changedAt] = [true, performance.now()];
-    this.#request();
+  /** Takes what the loader returned for the document `before` the bake, which drops the other one, or `baked`. */
+  show(name, scene) {
+    const names = name === 'before' ? [...this.#assets.keys()] : [name];
+    for (const old of names) this.#remove(old);
+    this.#assets.set(name, scene);
+    this.#arrange();
   }
 
+  /** Frees the memory that an asset has on the GPU. */
+  #remove(name) {
+    const scene = this.#assets.get(name);
+    if (!scene) return;
+    for (const texture of texturesOf(scene)) texture.dispose();
+    scene.traverse((object) => object.geometry?.dispose());
+    this.#assets.delete(name);
+  }
+
+  /** Changes members of the view. An empty change means another size. */
+  set(change) {
+    Object.assign(this.view, change);
+    const names = Object.keys(change);
+    if (names.includes('kind') || names.includes('distance')) this.view.radius = this.#radius;
+    if (names.some((name) => ARRANGED.includes(name))) this.#arrange();
+    else if (names.length === 0 || !names.every((name) => ONLY_SHOWN.includes(name))) this.#expire();
+    else this.#request();
+  }
+
+  /** Puts the subjects and lamps of the view into the scene. */
   #arrange() {
+    const { kind, distance, light } = this.view;
+    this.#lamps.removeFromParent();
+    this.#lamps = lamps(light);
+    this.#scene.add(this.#lamps);
     for (const object of this.#subjects.values()) object.removeFromParent();
-    this.#subjects = new Map([...this.#assets].map(([name, scene]) => [name, subject(scene, this.view.kind)]));
-    const before = this.#subjects.get('before');
-    if (before) this.#subjects.set('supersampled', unfiltered(before));
-    for (const object of this.#subjects.values()) this.#scene.add(object);
+    this.#subjects.clear();
+    const before = this.#assets.get('before');
+    if (before) {
+      const once = texelsPerUnit(subject(before, kind, 1));
+      const repeats = once > 0 ? DISTANCES[distance].texels / (once * this.#pixel(this.#radius)) : undefined;
+      this.#subjects = new Map([...this.#assets].map(([name, scene]) => [name, subject(scene, kind, repeats)]));
+      this.#density = texelsPerUnit(this.#subjects.get('before'));
+      this.#subjects.set('supersampled', unfiltered(this.#subjects.get('before')));
+      this.#scene.add(...this.#subjects.values());
+    }
+    this.#expire();
+  }
+
+  /** The distance of the camera from the subject's centre before a person zooms, in units. */
+  get #radius() {
+    return CAMERA[this.view.kind] ?? DISTANCES[this.view.distance].model;
+  }
+
+  /** Returns the width of a pixel at a distance from the camera, in units. */
+  #pixel(radius) {
+    const [, , width, height] = this.#places()[0].box;
+    return (2 * HALF * radius) / (Math.min(width, height) * this.#ratio);
+  }
+
+  get #ratio() {
+    return Math.min(devicePixelRatio, 2);
+  }
+
+  #places() {
+    const { clientWidth, clientHeight } = this.renderer.domElement;
+    return places(this.view, clientWidth, clientHeight);
+  }
+
+  /** Notes that the pictures do not show the scene any more. */
+  #expire() {
     [this.#isStale, this.#changedAt] = [true, performance.now()];
     this.#request();
   }
@@ -84,21 +152,27 @@ export class Stage {
   }
 
   #frame() {
-    const { view, truth } = this;
-    if (this.#isStale) this.#draw();
-    const isNeeded = [view.left, view.right].includes('supersampled') && this.#subjects.has('supersampled');
+    const { truth } = this;
+    const shown = this.#places();
+    if (this.#isStale) this.#draw(shown[0].box);
+    const isNeeded = shown.some(({ name }) => name === 'supersampled') && this.#subjects.has('supersampled');
     const isRunning = isNeeded && truth.count < ENOUGH;
     if (isRunning) {
       this.#only('supersampled');
       truth.add(this.#scene, this.#camera, performance.now() - this.#changedAt < PAUSE ? 1 : AT_ONCE);
       this.#measure();
     }
-    const picture = (name) =>
+    this.screen.show(shown, (name) =>
       name === 'supersampled'
-        ? { texture: truth.texture, samples: truth.count }
-        : { texture: (this.#pictures.get(name) ?? this.#pictures.get('before')).texture, samples: 1 };
-    this.screen.show(picture(view.left), picture(view.right), view.split);
-    this.onFrame(isNeeded ? truth.count : 0, this.#errors);
+        ? { texture: truth.texture, samples: Math.max(truth.count, 1) }
+        : { texture: this.#pictures.get(name).texture, samples: 1 },
+    );
+    this.onFrame({
+      places: shown,
+      samples: isNeeded ? truth.count : 0,
+      errors: this.#errors,
+      texels: this.#density * this.#pixel(this.view.radius),
+    });
     if (isRunning) this.#request();
   }
 
@@ -114,21 +188,18 @@ export class Stage {
     }
   }
 
-  /** Draws the variants again. */
-  #draw() {
+  /** Draws the variants again, each as large as `box`. */
+  #draw([, , boxWidth, boxHeight]) {
     [this.#isStale, this.#errors, this.#measuredAt] = [false, {}, 0];
     const { clientWidth, clientHeight } = this.renderer.domElement;
-    const ratio = Math.min(devicePixelRatio, 2);
-    this.renderer.setPixelRatio(ratio);
+    this.renderer.setPixelRatio(this.#ratio);
     this.renderer.setSize(clientWidth, clientHeight, false);
-    const [width, height] = [clientWidth, clientHeight].map((size) => Math.max(1, Math.round(size * ratio)));
-    const { distance, azimuth, elevation } = this.view;
-    // 30 degrees along the shorter side.
-    const half = Math.tan(THREE.MathUtils.degToRad(15)) * Math.max(1, height / width);
-    this.#camera.fov = THREE.MathUtils.radToDeg(2 * Math.atan(half));
+    const [width, height] = [boxWidth, boxHeight].map((size) => Math.max(1, Math.round(size * this.#ratio)));
+    const { radius, azimuth, elevation } = this.view;
+    this.#camera.fov = THREE.MathUtils.radToDeg(2 * Math.atan(HALF * Math.max(1, height / width)));
     this.#camera.aspect = width / height;
     this.#camera.updateProjectionMatrix();
-    this.#camera.position.copy(direction(azimuth, elevation)).multiplyScalar(distance);
+    this.#camera.position.copy(direction(azimuth, elevation)).multiplyScalar(radius);
     this.#camera.lookAt(0, 0, 0);
     for (const name of ['before', 'baked']) {
       if (!this.#pictures.has(name)) {
@@ -147,9 +218,4 @@ export class Stage {
   #only(name) {
     for (const [key, object] of this.#subjects) object.visible = key === name;
   }
-}
-
-function direction(azimuth, elevation) {
-  const [a, e] = [azimuth, elevation].map(THREE.MathUtils.degToRad);
-  return new THREE.Vector3(Math.sin(a) * Math.cos(e), Math.sin(e), Math.cos(a) * Math.cos(e));
 }

@@ -6,6 +6,7 @@ import path from 'node:path';
 import process from 'node:process';
 import test, { after, before } from 'node:test';
 import { chromium } from 'playwright-core';
+import { PNG } from 'pngjs';
 import { bake } from 'roughcast';
 import { serve } from '../../plugins/three/server.js';
 import { fixtures, noModule, npm, repository, run } from './common.js';
@@ -75,31 +76,102 @@ async function download(page) {
   return { name: event.suggestedFilename(), bytes: readFileSync(await event.path()) };
 }
 
-test('bakes a sample, shows the truth, and offers the file that Node bakes', options, async () => {
+/** Returns the labels of the pictures: name, error where it is known, and box. */
+const labels = (page) =>
+  page.locator('#labels span').evaluateAll((spans) =>
+    spans.map((span) => ({
+      name: span.dataset.name,
+      error: Number(/error (\S+)/.exec(span.textContent)?.[1]),
+      box: span.getBoundingClientRect().toJSON(),
+    })),
+  );
+
+/** Returns the pixels of each third of the picture, as text. */
+async function columnsOf(page) {
+  const { data, width, height } = PNG.sync.read(await page.locator('#canvas').screenshot());
+  const third = Math.floor(width / 3);
+  return [0, 1, 2].map((column) => {
+    const rows = Array.from({ length: height }, (_, y) =>
+      data.subarray(4 * (y * width + column * third), 4 * (y * width + (column + 1) * third)),
+    );
+    return Buffer.concat(rows.slice(height >> 1)).toString('base64');
+  });
+}
+
+/** Khronos' number of UASTC in the data format descriptor of a KTX2 file. */
+const UASTC = 166;
+
+/** Returns what the images of a .glb are: their media type or, for KTX2, the codec and the width of level 0. */
+function codecsOf(glb) {
+  const length = glb.readUInt32LE(12);
+  const { images, bufferViews } = JSON.parse(glb.subarray(20, 20 + length));
+  const binary = glb.subarray(28 + length);
+  return images
+    .map(({ mimeType, bufferView }) => {
+      if (mimeType !== 'image/ktx2') return mimeType;
+      const ktx2 = binary.subarray(bufferViews[bufferView].byteOffset);
+      const model = ktx2.readUInt8(ktx2.readUInt32LE(48) + 12);
+      return `KTX2 ${model === UASTC ? 'UASTC' : model} ${ktx2.readUInt32LE(20)}`;
+    })
+    .sort();
+}
+
+test('bakes a sample, shows all three pictures with errors, and offers the file that Node bakes', options, async () => {
   const page = await open();
   await finished(page);
   assert.deepEqual(modulesOf(page), ['roughcast.wasm']);
   assert.match(await status(page), /kB before, .* baked, with \d+ KTX2 textures/);
-  await page.screenshot({ path: path.join(SHOTS, 'before-baked.png'), fullPage: true });
-
-  await choose(page, 'right', 'supersampled');
-  await page.waitForFunction(() =>
-    /(3[2-9]|[4-9]\d|\d{3}) samples/.test(document.getElementById('samples').textContent),
-  );
-  const measured = /error: before (\S+), baked (\S+)/.exec(await page.locator('#samples').textContent());
-  for (const error of measured.slice(1)) assert.ok(0.01 < Number(error) && Number(error) < 0.5, measured[0]);
-  await page.screenshot({ path: path.join(SHOTS, 'before-truth.png') });
-  await choose(page, 'left', 'baked');
-  await page.screenshot({ path: path.join(SHOTS, 'baked-truth.png') });
+  await page.waitForFunction(() => document.querySelector('[data-name=baked]').textContent.includes('error'));
+  const [before, baked, truth] = await labels(page);
+  assert.deepEqual([before, baked, truth].map(({ name }) => name), ['before', 'baked', 'supersampled']);
+  assert.match(await page.locator('#measured').textContent(), /about 6\.0 x 6\.0 texels\. The truth has \d+ samples/);
+  // The default view is one at which bakes pay: several texels in a pixel, and light from many sides.
+  assert.ok(0.01 < baked.error && baked.error < before.error && before.error < 1, `${before.error} ${baked.error}`);
+  // Side by side: three columns.
+  assert.equal(new Set([before, baked, truth].map(({ box }) => box.y)).size, 1);
+  await page.screenshot({ path: path.join(SHOTS, 'all.png'), fullPage: true });
+  const columns = await columnsOf(page);
+  assert.equal(new Set(columns).size, 3, 'the three pictures differ');
 
   const { name, bytes } = await download(page);
-  assert.equal(name, 'brushed.baked.glb');
+  assert.equal(name, 'brushed-baked.glb');
   const sample = readFileSync(path.join(folder, 'page/samples/brushed.glb'));
   const settings = { engine: 'three', quality: 'fast', gltf: 'strict' };
   const { document } = await bake(sample, { name: 'brushed', settings, backend: 'wasm' });
   assert.ok(bytes.equals(document.bytes), 'the bytes of the page are those of Node');
   assert.deepEqual(page.problems, []);
   assert.deepEqual([...page.hosts], [new URL(server.url).host], 'nothing leaves the machine');
+});
+
+test('bakes again with other options, without the file being opened again', options, async () => {
+  const page = await open();
+  await finished(page);
+  assert.deepEqual(codecsOf((await download(page)).bytes), ['KTX2 UASTC 128', 'KTX2 UASTC 128', 'image/png']);
+
+  await page.locator('#canvas').focus();
+  await page.keyboard.press('+');
+  await page.getByText('about 5.4 x 5.4 texels').waitFor();
+  await choose(page, 'textures', 'all');
+  await page.locator('#download[download="brushed-baked-all.glb"]').waitFor();
+  const all = await download(page);
+  assert.deepEqual(codecsOf(all.bytes), Array(3).fill('KTX2 UASTC 128'));
+  assert.equal(await page.locator('#textures tr').count(), 3);
+  await page.getByText('about 5.4 x 5.4 texels').waitFor();
+
+  await choose(page, 'maxSize', '64');
+  await page.locator('#download[download="brushed-baked-all-64.glb"]').waitFor();
+  const small = await download(page);
+  assert.deepEqual(codecsOf(small.bytes), Array(3).fill('KTX2 UASTC 64'));
+  assert.ok(small.bytes.length < all.bytes.length);
+
+  await choose(page, 'rdo', '2');
+  await page.locator('#download[download="brushed-baked-all-64-rdo2.glb"]').waitFor();
+  const smaller = await download(page);
+  assert.ok(smaller.bytes.length < small.bytes.length);
+  const kilobytes = `${(smaller.bytes.length / 1e3).toFixed(1)} kB`;
+  assert.ok((await page.locator('#download').textContent()).includes(kilobytes));
+  assert.ok((await status(page)).includes(`${kilobytes} baked, with 3 KTX2 textures`));
+  assert.deepEqual(page.problems, []);
 });
 
 test('bakes with threads on an isolated page, to the same bytes', options, async () => {
@@ -123,14 +195,14 @@ test('takes a file, a dropped file, and says why another is refused', options, a
   const page = await open();
   await finished(page);
   await openFile(page, 'lake.glb', readFileSync(path.join(fixtures, 'waves/waves.glb')));
-  await page.locator('#download[download="lake.baked.glb"]').waitFor();
+  await page.locator('#download[download="lake-baked.glb"]').waitFor();
   await page.evaluate(async () => {
     const bytes = await (await fetch('samples/knobs.glb')).arrayBuffer();
     const data = new DataTransfer();
     data.items.add(new File([bytes], 'stones.glb'));
     dispatchEvent(new DragEvent('drop', { dataTransfer: data }));
   });
-  await page.locator('#download[download="stones.baked.glb"]').waitFor();
+  await page.locator('#download[download="stones-baked.glb"]').waitFor();
   await openFile(page, 'model.gltf', Buffer.from('{}'));
   await finished(page, 'failed');
   assert.match(await status(page), /model\.gltf: expected a \.glb/);
@@ -143,7 +215,10 @@ test('follows keyboard and pointer', options, async () => {
   const page = await open();
   await finished(page);
   const split = async () => Number(await page.locator('#split').inputValue());
+  assert.equal(await page.locator('#split').isVisible(), false);
   await page.locator('#canvas').focus();
+  await page.keyboard.press('l');
+  await page.locator('#split').waitFor();
   await page.keyboard.press(']');
   assert.equal(await split(), 550);
   const box = await page.locator('#canvas').boundingBox();
@@ -153,16 +228,33 @@ test('follows keyboard and pointer', options, async () => {
   await page.mouse.move(x - box.width * 0.3, y, { steps: 4 });
   await page.mouse.up();
   assert.ok(Math.abs((await split()) - 250) < 5, `${await split()}`);
+  await page.screenshot({ path: path.join(SHOTS, 'divider.png') });
   const picture = () => page.locator('#canvas').screenshot();
   const first = await picture();
   await page.locator('#canvas').focus();
   for (const key of ['ArrowRight', 'ArrowUp', '+', '+']) await page.keyboard.press(key);
   await page.waitForTimeout(300);
   assert.ok(!first.equals(await picture()), 'the camera moved');
-  for (const kind of ['asset', 'sphere']) {
-    await choose(page, 'kind', kind);
-    await page.waitForTimeout(300);
-    await page.locator('#frame').screenshot({ path: path.join(SHOTS, `${kind}.png`) });
+  assert.deepEqual(page.problems, []);
+});
+
+test('reaches the near view by one key, and shows each shape and light', options, async () => {
+  const page = await open();
+  await finished(page);
+  const covers = (texels) =>
+    page.waitForFunction((s) => document.getElementById('measured').textContent.includes(s), `about ${texels} texels`);
+  await page.locator('[name=distance]:checked').focus();
+  await page.keyboard.press('ArrowLeft');
+  await covers('0.5 x 0.5');
+  await page.locator('#frame').screenshot({ path: path.join(SHOTS, 'near.png') });
+  await page.getByText('Far', { exact: true }).click();
+  await covers('24 x 24');
+  for (const [name, values] of Object.entries({ kind: ['plane', 'asset'], light: ['lamp', 'room'] })) {
+    for (const value of values) {
+      await choose(page, name, value);
+      await page.waitForTimeout(300);
+      await page.locator('#frame').screenshot({ path: path.join(SHOTS, `${value}.png`) });
+    }
   }
   assert.deepEqual(page.problems, []);
 });
@@ -171,7 +263,13 @@ test('fits a phone, light and dark', options, async () => {
   for (const colorScheme of ['light', 'dark']) {
     const page = await open({ viewport: { width: 360, height: 740 }, colorScheme, hasTouch: true, isMobile: true });
     await finished(page);
-    assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 360);
+    // One below the other.
+    const boxes = (await labels(page)).map(({ box }) => box);
+    assert.deepEqual([new Set(boxes.map(({ x }) => x)).size, new Set(boxes.map(({ y }) => y)).size], [1, 3]);
+    for (const layout of ['divider', 'all']) {
+      await choose(page, 'layout', layout);
+      assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 360);
+    }
     await page.screenshot({ path: path.join(SHOTS, `phone-${colorScheme}.png`), fullPage: true });
     await page.context().close();
   }
