@@ -1,16 +1,23 @@
-// The recipes that docs/sizes.md compares: each makes the textures of a document and returns their bytes.
-import { execFileSync } from 'node:child_process';
-import { mkdtempSync, rmSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+// The recipes that docs/sizes.md compares: each makes the textures of an asset and returns its document.
+import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
+import process from 'node:process';
+import { fileURLToPath } from 'node:url';
 
 import { NodeIO } from '@gltf-transform/core';
 import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
-import { listTextureSlots, textureCompress } from '@gltf-transform/functions';
+import { listTextureSlots } from '@gltf-transform/functions';
 import { encodeToKTX2 } from 'ktx2-encoder';
+import { MeshoptDecoder } from 'meshoptimizer';
 import sharp from 'sharp';
 
-export const io = new NodeIO().registerExtensions(ALL_EXTENSIONS);
+import { inFolder, run } from './programs.mjs';
+
+export const io = new NodeIO()
+  .registerExtensions(ALL_EXTENSIONS)
+  .registerDependencies({ 'meshopt.decoder': MeshoptDecoder });
+
+const GLTF_TRANSFORM = fileURLToPath(new URL('node_modules/@gltf-transform/cli/bin/cli.js', import.meta.url));
 
 /** Slots whose images are sRGB colours. */
 const COLOURS = new Set(['baseColorTexture', 'emissiveTexture', 'specularColorTexture', 'sheenColorTexture']);
@@ -21,16 +28,36 @@ export async function decode(image) {
   return { data: new Uint8Array(data), width: info.width, height: info.height };
 }
 
-/** Bakes with the tool and reads its .glb. */
-const roughcast = (...options) => async (input, tool) => {
-  const folder = mkdtempSync(join(tmpdir(), 'sizes-'));
-  try {
+/** Runs `command`, which takes the paths of an input and of a .glb, and reads that .glb. */
+const converted = (command) => (input, tool) =>
+  inFolder((folder) => {
     const output = join(folder, 'out.glb');
-    execFileSync(tool, ['bake', input, '-o', output, '--quiet', ...options]);
-    return await io.read(output);
-  } finally {
-    rmSync(folder, { recursive: true });
+    command(input, output, tool);
+    return io.read(output);
+  });
+
+const roughcast = (...options) =>
+  converted((input, output, tool) => run(tool, 'bake', input, '-o', output, '--quiet', ...options));
+
+/** Keeps meshes and materials as they are, so that only the textures are measured. */
+const gltfpack = (...options) =>
+  converted((input, output) => run('gltfpack', '-i', input, '-o', output, '-noq', '-km', ...options));
+
+const optimize = (...options) =>
+  converted((input, output) => run(process.execPath, GLTF_TRANSFORM, 'optimize', input, output, ...options));
+
+/** Encodes every image with `encode`, in the format that `format` returns for colours or data. */
+const encoded = (encode, format) => async (input) => {
+  const document = await io.read(input);
+  for (const texture of document.getRoot().listTextures()) {
+    if (texture.getMimeType() === 'image/ktx2') continue;
+    const slots = listTextureSlots(texture);
+    const isColour = slots.some((slot) => COLOURS.has(slot));
+    const isNormal = slots.some((slot) => /normalTexture/i.test(slot));
+    const image = await encode(texture.getImage(), { isColour, isNormal, ...format(isColour) });
+    texture.setImage(image).setMimeType('image/ktx2');
   }
+  return document;
 };
 
 /** Runs `work` without the messages of the encoder. */
@@ -44,61 +71,81 @@ async function silently(work) {
   }
 }
 
-/**
- * Encodes every image with basis_universal, whose encoder the `ktx` commands of glTF-Transform and gltfpack call. The
- * encoder is WebAssembly on one thread here.
- */
-const basis = (options) => async (input) => {
-  const document = await io.read(input);
-  for (const texture of document.getRoot().listTextures()) {
-    if (texture.getMimeType() === 'image/ktx2') continue;
-    const slots = listTextureSlots(texture);
-    const isColour = slots.some((slot) => COLOURS.has(slot));
-    const isNormal = slots.some((slot) => /normalTexture/i.test(slot));
-    const settings = options({ isColour });
-    const image = await silently(() => encodeToKTX2(texture.getImage(), {
+/** Encodes with the WebAssembly of basis_universal, on one thread. */
+const webAssembly = (image, { isColour, isNormal, isUastc, quality, rdo }) =>
+  silently(() =>
+    encodeToKTX2(image, {
       generateMipmap: true,
       isPerceptual: isColour,
       isSetKTX2SRGBTransferFunc: isColour,
-      isNormalMap: isNormal && !settings.isUASTC,
-      needSupercompression: settings.isUASTC,
+      isNormalMap: isNormal && !isUastc,
+      needSupercompression: isUastc,
       imageDecoder: decode,
-      ...settings,
-    }));
-    texture.setImage(image).setMimeType('image/ktx2');
-  }
-  return document;
-};
+      isUASTC: isUastc,
+      ...(isUastc
+        ? { uastcLDRQualityLevel: quality, enableRDO: rdo > 0, ...(rdo > 0 && { rdoQualityLevel: rdo }) }
+        : { qualityLevel: quality, compressionLevel: 1 }),
+    }),
+  );
 
-/** The image step of `gltf-transform optimize --texture-compress webp`. */
-const webp = async (input) => {
-  const document = await io.read(input);
-  await document.transform(textureCompress({ encoder: sharp, targetFormat: 'webp', resize: [2048, 2048] }));
-  return document;
-};
+/** Encodes with the command of basis_universal, on all cores. */
+const basisu = (image, { isColour, isNormal, isUastc, quality, rdo }) =>
+  inFolder((folder) => {
+    // The first byte of a PNG, which is none of a JPEG.
+    const isPng = image[0] === 0x89;
+    const [source, output] = [join(folder, isPng ? 'image.png' : 'image.jpg'), join(folder, 'image.ktx2')];
+    writeFileSync(source, image);
+    run(
+      'basisu',
+      ...['-ktx2', '-mipmap', '-file', source, '-output_file', output],
+      ...(isColour ? [] : ['-linear']),
+      ...(isNormal && !isUastc ? ['-normal_map'] : []),
+      ...(isUastc ? ['-uastc', '-uastc_level', quality] : ['-q', quality, '-comp_level', 1]),
+      ...(rdo > 0 ? ['-uastc_rdo_l', rdo] : []),
+    );
+    return new Uint8Array(readFileSync(output));
+  });
 
-const uastc = (level, rdo) => ({
-  isUASTC: true,
-  uastcLDRQualityLevel: level,
-  enableRDO: rdo !== undefined,
-  ...(rdo !== undefined && { rdoQualityLevel: rdo }),
-});
-const etc1s = (quality) => ({ isUASTC: false, qualityLevel: quality, compressionLevel: 1 });
+const uastc = (quality, rdo = 0) => ({ isUastc: true, quality, rdo });
+const etc1s = (quality) => ({ isUastc: false, quality, rdo: 0 });
 
-const RDO_2 = ['--textures', 'all', '--rdo', '2'];
+const UASTC = ['uastc, level 2', () => uastc(2)];
+const UASTC_RDO = ['uastc, level 2, RDO 1', () => uastc(2, 1)];
+const ETC1S = ['etc1s, quality 128', () => etc1s(128)];
+const MIXED = ['colours etc1s 255, data uastc 2 with RDO 1', (isColour) => (isColour ? etc1s(255) : uastc(2, 1))];
 
-/** The rows of the table. */
+/** A row for each line of options of a command, named by both. */
+const rows = (name, recipe, program, lines) =>
+  lines.map((line) => ({ name: `${name} \`${line}\``, make: recipe(...line.split(' ')), program }));
+
+/** A row for each format of an encoder. */
+const encoders = (title, encode, program, formats) =>
+  formats.map(([name, format]) => ({ name: `${title}: ${name}`, make: encoded(encode, format), program }));
+
+/** Marks rows that take minutes for each asset. */
+const slow = (recipes) => recipes.map((recipe) => ({ ...recipe, isSlow: true }));
+
+/** The rows of the table, with the program of `install` that each needs. */
 export const RECIPES = [
-  ['source', async (input) => io.read(input)],
-  ['roughcast (`--textures bumps`; other images stay PNG and JPEG)', roughcast()],
-  ['roughcast `--textures all`', roughcast('--textures', 'all')],
-  ['roughcast `--textures all --rdo 0.5`', roughcast('--textures', 'all', '--rdo', '0.5')],
-  ['roughcast `--textures all --rdo 2`', roughcast(...RDO_2)],
-  ['roughcast `--textures all --rdo 2 --quality best`', roughcast(...RDO_2, '--quality', 'best')],
-  ['roughcast `--textures all --rdo 2 --max-size 512`', roughcast(...RDO_2, '--max-size', '512')],
-  ['uastc, level 2', basis(() => uastc(2))],
-  ['uastc, level 2, RDO 1', basis(() => uastc(2, 1))],
-  ['etc1s, quality 128', basis(() => etc1s(128))],
-  ['colours etc1s 255, data uastc 2 with RDO 1', basis(({ isColour }) => (isColour ? etc1s(255) : uastc(2, 1)))],
-  ['optimize (WebP, without mips)', webp],
+  { name: 'source', make: (input) => io.read(input) },
+  { name: 'roughcast (`--textures bumps`; other images stay PNG and JPEG)', make: roughcast() },
+  ...rows('roughcast', roughcast, undefined, [
+    '--textures all',
+    '--textures all --rdo 0.5',
+    '--textures all --rdo 2',
+    '--textures all --rdo 2 --quality best',
+    '--textures all --rdo 2 --max-size 512',
+  ]),
+  ...rows('gltfpack', gltfpack, 'gltfpack', [
+    '-tu',
+    '-tu -tq 5',
+    '-tc',
+    '-tc color -tu normal,attrib',
+    '-tc color -tu normal,attrib -tl 512',
+  ]),
+  ...encoders('basisu', basisu, 'basisu', [UASTC, UASTC_RDO, ETC1S, MIXED]),
+  ...rows('gltf-transform optimize', optimize, undefined, ['--texture-compress webp']),
+  ...encoders('basisu as WebAssembly', webAssembly, undefined, [UASTC, ETC1S]),
+  ...slow(encoders('basisu as WebAssembly', webAssembly, undefined, [UASTC_RDO, MIXED])),
+  ...slow(rows('gltf-transform optimize', optimize, 'ktx', ['--texture-compress ktx2'])),
 ];

@@ -1,12 +1,13 @@
-// Prints the table of docs/sizes.md: bytes of textures, seconds of CPU time, and the quality of base colours. Needs
-// Linux, whose /proc counts the time of finished child processes.
+// Prints the table of docs/sizes.md: bytes of textures, CPU and wall-clock seconds, and the quality of base colours.
+// Needs Linux, whose /proc counts the CPU time of finished child processes.
+// Slow rows are measured only if --only names them.
 // usage: node run.mjs [--tool ROUGHCAST] [--only TEXT] ASSET...
-import { execFileSync } from 'node:child_process';
-import { mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { basename, join } from 'node:path';
-import { tmpdir } from 'node:os';
+import process from 'node:process';
 import { parseArgs } from 'node:util';
 
+import { inFolder, missingPrograms, run } from './programs.mjs';
 import { decode, io, RECIPES } from './recipes.mjs';
 
 const { values, positionals } = parseArgs({
@@ -27,26 +28,24 @@ function textureBytes(document) {
 /** Returns the RGBA8 texels of level 0 of an image: KTX2 by the tool's decoder, others by sharp. */
 async function level0(texture) {
   if (texture.getMimeType() !== 'image/ktx2') return decode(texture.getImage());
-  const folder = mkdtempSync(join(tmpdir(), 'sizes-'));
-  try {
+  return inFolder((folder) => {
     const file = join(folder, 'texture.ktx2');
     writeFileSync(file, texture.getImage());
-    execFileSync(values.tool, ['inspect', file, '--extract', join(folder, 'levels')]);
+    run(values.tool, 'inspect', file, '--extract', join(folder, 'levels'));
     const [first] = readdirSync(join(folder, 'levels')).sort();
-    return await decode(readFileSync(join(folder, 'levels', first)));
-  } finally {
-    rmSync(folder, { recursive: true });
-  }
+    return decode(readFileSync(join(folder, 'levels', first)));
+  });
 }
 
 /** Returns the squared errors of the base colours of all materials, summed over RGB, and the number of samples. */
 async function colourError(document, source) {
-  const of = (root) => root.getRoot().listMaterials().map((material) => material.getBaseColorTexture());
-  const sources = of(source);
+  const byName = new Map(source.getRoot().listMaterials().map((material) => [material.getName(), material]));
   let [sum, count] = [0, 0];
-  for (const [index, texture] of of(document).entries()) {
-    if (!texture || sources[index].getMimeType() === 'image/ktx2') continue;
-    const [found, wanted] = [await level0(texture), await level0(sources[index])];
+  for (const material of document.getRoot().listMaterials()) {
+    const texture = material.getBaseColorTexture();
+    const original = byName.get(material.getName()).getBaseColorTexture();
+    if (!texture || original.getMimeType() === 'image/ktx2') continue;
+    const [found, wanted] = [await level0(texture), await level0(original)];
     if (found.width !== wanted.width || found.height !== wanted.height) return null;
     for (let i = 0; i < wanted.data.length; i += 1) {
       if (i % 4 === 3) continue;
@@ -64,24 +63,47 @@ function cpuSeconds() {
   return fields.slice(11, 15).reduce((sum, ticks) => sum + Number(ticks), 0) / 100;
 }
 
+/** Runs a recipe on an asset; returns the document with the seconds of CPU time and of wall-clock time. */
+async function timed(make, input) {
+  const [cpu, wall] = [cpuSeconds(), performance.now()];
+  const document = await make(input, values.tool);
+  return { document, cpu: cpuSeconds() - cpu, wall: (performance.now() - wall) / 1000 };
+}
+
+/** Returns the peak signal-to-noise ratio in dB, or nothing where images have another size or no error. */
+const decibels = (error) =>
+  error && error.sum > 0 ? (10 * Math.log10((65025 * error.count) / error.sum)).toFixed(1) : '';
+
 const megabytes = (bytes) => (bytes / 1e6).toFixed(2);
-const names = positionals.map((path) => basename(path).replace(/\.(gltf|glb)$/, ''));
-const sources = await Promise.all(positionals.map((path) => io.read(path)));
-console.log(`| textures by | ${names.join(' | ')} | all, MB | CPU seconds | base colour, dB |`);
-console.log(`|---|${'---|'.repeat(names.length + 3)}`);
-for (const [name, make] of RECIPES.filter(([name]) => name.includes(values.only))) {
-  const cells = [];
-  let [total, seconds, error] = [0, 0, { sum: 0, count: 0 }];
+
+/** Measures a recipe on all assets and returns the cells of its row. */
+async function measure(make) {
+  const bytes = [];
+  let [cpu, wall, error] = [0, 0, { sum: 0, count: 0 }];
   for (const [index, input] of positionals.entries()) {
-    const start = cpuSeconds();
-    const document = await make(input, values.tool);
-    seconds += cpuSeconds() - start;
-    const bytes = textureBytes(document);
-    total += bytes;
-    cells.push(megabytes(bytes));
-    const own = error && (await colourError(document, sources[index]));
+    const result = await timed(make, input);
+    cpu += result.cpu;
+    wall += result.wall;
+    bytes.push(textureBytes(result.document));
+    const own = error && (await colourError(result.document, sources[index]));
     error = own && { sum: error.sum + own.sum, count: error.count + own.count };
   }
-  const psnr = error && error.sum > 0 ? (10 * Math.log10((65025 * error.count) / error.sum)).toFixed(1) : '';
-  console.log(`| ${name} | ${cells.join(' | ')} | ${megabytes(total)} | ${seconds.toFixed(1)} | ${psnr} |`);
+  const total = bytes.reduce((sum, own) => sum + own, 0);
+  return [...[...bytes, total].map(megabytes), cpu.toFixed(1), wall.toFixed(1), decibels(error)];
+}
+
+const isChosen = ({ name, isSlow }) => (values.only ? name.includes(values.only) : !isSlow);
+
+const printRow = (cells) => console.log(`| ${cells.join(' | ')} |`);
+
+const names = positionals.map((path) => basename(path).replace(/\.(gltf|glb)$/, ''));
+const sources = await Promise.all(positionals.map((path) => io.read(path)));
+const missing = await missingPrograms();
+for (const program of missing) {
+  console.error(`${program} is missing or has no Basis: its rows are left out. \`benches/sizes/install\` builds it.`);
+}
+printRow(['textures by', ...names, 'all, MB', 'CPU seconds', 'wall-clock seconds', 'base colour, dB']);
+console.log(`|${'---|'.repeat(names.length + 5)}`);
+for (const { name, make, program } of RECIPES.filter(isChosen)) {
+  if (!missing.includes(program)) printRow([name, ...(await measure(make))]);
 }
