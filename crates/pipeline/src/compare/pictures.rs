@@ -47,7 +47,7 @@ pub fn picture_errors(
     let mut views = Vec::new();
     for (done, distance) in distances.iter().enumerate() {
         let scene = SCENE.scene(width, *distance)?;
-        let shader = Shader { reflection: Reflection::Ggx, filter: EnvironmentFilter::Ellipse, f0: scene.f0 };
+        let shader = Shader { reflection: Reflection::Ggx, filter: EnvironmentFilter::Facets, f0: scene.f0 };
         let advance = |share: f32| advance((done as f32 + share) / distances.len() as f32);
         let truth = supersampled(&scene, truth, &shader, SAMPLES, &advance);
         views.push((scene, shader, truth));
