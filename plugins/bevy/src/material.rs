@@ -106,7 +106,7 @@ impl MaterialExtension for Pyramid {
             // D needs the anisotropic lobe. The base lobe of a material without anisotropy is isotropic.
             (model == Some(Model::CovarianceFactor), "STANDARD_MATERIAL_ANISOTROPY"),
             (model == Some(Model::CovarianceFactor), "ROUGHCAST_FACTOR"),
-            (model == Some(Model::StandardDeviation), "ROUGHCAST_DEVIATION"),
+            (model.is_some(), "ROUGHCAST_MODEL"),
             (frame == Frame::Natural, "ROUGHCAST_FRAME_NATURAL"),
             (frame == Frame::MainDirection, "ROUGHCAST_FRAME_MAIN"),
             (rebuilds_z, "ROUGHCAST_REBUILT_Z"),

@@ -100,17 +100,21 @@ fn tilt(input: ptr<function, PbrInput>, frame: Frame, uv: vec2<f32>, is_front: b
     (*input).N = select(n, -n, is_double_sided && !is_front);
 }
 
-// Roughens the base lobe: A' = A + 2 c K, with K from the filtered D or lambda_1.
-fn roughen(input: ptr<function, PbrInput>, frame: Frame, uv: vec2<f32>) {
+// Returns K (uu, uv, vv), the covariance of the slopes of the lost bumps.
+fn covariance(frame: Frame, uv: vec2<f32>) -> vec3<f32> {
     let texel = textureSampleBias(roughness_texture, roughness_sampler, uv, view.mip_bias).rgb;
     let d = mix(pyramid.roughness_min, pyramid.roughness_max, texel);
 #ifdef ROUGHCAST_FACTOR
     // K = D D^T with D = [[d1, d2], [0, d3]].
-    var k = vec3(d.x * d.x + d.y * d.y, d.y * d.z, d.z * d.z);
+    let k = vec3(d.x * d.x + d.y * d.y, d.y * d.z, d.z * d.z);
 #else
-    var k = vec3(d.x * d.x, 0.0, d.x * d.x);
+    let k = vec3(d.x * d.x, 0.0, d.x * d.x);
 #endif
-    k *= frame.scale.xxy * frame.scale.xyy;
+    return k * frame.scale.xxy * frame.scale.xyy;
+}
+
+// Roughens the base lobe: A' = A + 2 c K. The axes of the lobe follow the tilted normal, also if K is 0.
+fn roughen(input: ptr<function, PbrInput>, frame: Frame, k: vec3<f32>) {
     // The slopes of the bumps have the variance c tr K.
     mean_normal = inverseSqrt(1.0 + pyramid.correction_factor * (k.x + k.z));
     let alpha = lighting::perceptualRoughnessToRoughness((*input).material.perceptual_roughness);
@@ -164,11 +168,10 @@ fn bumps(in: VertexOutput, is_front: bool, input: ptr<function, PbrInput>) {
     roughness_uv = (pyramid.roughness_uv * vec3(roughness_uv, 1.0)).xy;
     let frame = frame_at(in, uv);
     tilt(input, frame, uv, is_front);
-#ifdef ROUGHCAST_FACTOR
-    roughen(input, frame, roughness_uv);
-#endif
-#ifdef ROUGHCAST_DEVIATION
-    roughen(input, frame, roughness_uv);
+#ifdef ROUGHCAST_MODEL
+    roughen(input, frame, covariance(frame, roughness_uv));
+#else
+    roughen(input, frame, vec3(0.0));
 #endif
 }
 

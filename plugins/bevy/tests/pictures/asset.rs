@@ -79,6 +79,17 @@ impl Asset {
         self.write_matt(document, "plane.gltf");
     }
 
+    /// Writes the asset again with the same slope in all texels, and a lobe that is anisotropic along u.
+    pub fn make_tilted(&self, slope: Vec2, strength: f32) {
+        let normal = (-slope).extend(1.0).normalize().to_array().map(|c| (127.5 * (c + 1.0)).round() as u8);
+        image::RgbImage::from_pixel(SIZE, SIZE, image::Rgb(normal)).save(self.folder.join("normal.png")).unwrap();
+        let (mut document, _) = plane();
+        document["materials"][0]["extensions"] =
+            json!({ "KHR_materials_anisotropy": { "anisotropyStrength": strength } });
+        document["extensionsUsed"] = json!(["KHR_materials_anisotropy"]);
+        fs::write(self.folder.join("plane.gltf"), document.to_string()).unwrap();
+    }
+
     /// Writes a plane of a matt dielectric without bumps, and returns its path.
     pub fn matt(&self, roughness: f32) -> String {
         let (mut document, _) = plane();

@@ -109,6 +109,18 @@ fn a_pyramid_shades_with_the_lobe_of_the_extension() {
 }
 
 #[test]
+fn axes_of_anisotropic_lobes_follow_the_normal_where_no_bumps_are_lost() {
+    let Some((folder, asset)) = setup() else { return };
+    let (slope, strength) = (Vec2::new(0.4, 0.2), 0.8_f32);
+    asset.make_tilted(slope, strength);
+    let baked = asset.bake("tilted", "--profile pyramid --model none");
+    let across = ROUGHNESS * ROUGHNESS;
+    let along = across + (1.0 - across) * strength * strength;
+    let lobe = Lobe { a: Mat2::from_diagonal(Vec2::new(along * along, across * across)), slope };
+    assert_close(&Renderer::new(folder.path(), true).draw(&baked.path), &lobe.picture(), 0.02, "tilted lobe");
+}
+
+#[test]
 fn a_roughened_core_material_is_not_roughened_again() {
     let Some((folder, asset)) = setup() else { return };
     let mut renderer = Renderer::new(folder.path(), true);
