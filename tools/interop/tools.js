@@ -13,7 +13,7 @@ const folder = fileURLToPath(new URL('.', import.meta.url));
 export const repository = fileURLToPath(new URL('../../', import.meta.url));
 
 /** Path of the tool: $ROUGHCAST, which `cargo test` sets, else the newest that Cargo built here. */
-const tool =
+export const tool =
   process.env.ROUGHCAST ??
   ['release', 'debug']
     .map((profile) => path.join(repository, 'target', profile, 'roughcast'))

@@ -8,6 +8,13 @@ pub const LABEL: u32 = 15;
 /// Height of a title in pixels. Letters are 11.4 pixels wide.
 pub const TITLE: u32 = 22;
 
+/// Returns how many pixels wide `text` is in letters that are `height` pixels high.
+pub fn width(text: &str, height: u32) -> u32 {
+    let Ok(font) = FontRef::try_from_slice(HACK_REGULAR) else { return 0 };
+    let font = font.as_scaled(height as f32);
+    text.chars().map(|letter| font.h_advance(font.glyph_id(letter))).sum::<f32>().ceil() as u32
+}
+
 /// Calls `ink` with each pixel of `text` that has ink, and the share of the pixel that the ink covers. Letters are
 /// `height` pixels high. The text begins at the origin and ends before the letter that would need more than `width`
 /// pixels.

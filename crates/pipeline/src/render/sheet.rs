@@ -56,33 +56,37 @@ impl Sheet {
         Some(sheet)
     }
 
-    /// Makes a sheet of `rows` of panels of equal size below a title and a line of text. Returns `None` if there are no
-    /// panels, or more pixels than a file can address.
+    /// Makes a sheet of `rows` of panels of equal size below a title and a line of text. Columns are as wide as their
+    /// pictures and texts. Returns `None` if there are no panels, or more pixels than a file can address.
     pub fn from_rows(title: &str, subtitle: &str, rows: &[Vec<Panel<'_>>]) -> Option<Self> {
         let panels = || rows.iter().flatten();
         let columns = rows.iter().map(Vec::len).max()? as u32;
-        let [width, height] = rows.first()?.first()?.picture.size;
+        let [picture_width, height] = rows.first()?.first()?.picture.size;
+        let texts = panels().flat_map(|panel| panel.labels.iter().chain([&panel.heading]));
+        let width = texts.map(|text| font::width(text, font::LABEL)).max()?.max(picture_width);
         let lines = panels().map(|panel| panel.labels.len()).max()? as u32;
         let enlarged = panels().filter_map(|panel| panel.crop).map(|crop| crop.height * MAGNIFICATION + GAP / 2).max();
         let header = GAP + font::TITLE + GAP / 2 + LINE;
         let row_height = GAP + LINE + height + enlarged.unwrap_or(0) + GAP / 2 + lines * LINE;
+        let title_width = font::width(title, font::TITLE).max(font::width(subtitle, font::LABEL));
+        let text_width = columns.checked_mul(width.checked_add(GAP)?)?.checked_sub(GAP)?.max(title_width);
         let mut sheet = Self::new(
-            columns.checked_mul(width.checked_add(GAP)?)?.checked_add(GAP)?,
+            text_width.checked_add(2 * GAP)?,
             row_height.checked_mul(rows.len() as u32)?.checked_add(header + GAP)?,
         )?;
-        let text_width = sheet.width.saturating_sub(2 * GAP);
         sheet.write(title, font::TITLE, [GAP, GAP], text_width);
         sheet.write(subtitle, font::LABEL, [GAP, GAP + font::TITLE + GAP / 2], text_width);
         for (row, panels) in (0..).zip(rows) {
             for (column, panel) in (0..).zip(panels) {
-                sheet.draw(panel, [GAP + column * (width + GAP), header + row * row_height + GAP]);
+                sheet.draw(panel, [GAP + column * (width + GAP), header + row * row_height + GAP], width);
             }
         }
         Some(sheet)
     }
 
-    fn draw(&mut self, panel: &Panel<'_>, [left, top]: [u32; 2]) {
-        let [width, height] = panel.picture.size;
+    /// Draws `panel` at (`left`, `top`), with texts of at most `width` pixels.
+    fn draw(&mut self, panel: &Panel<'_>, [left, top]: [u32; 2], width: u32) {
+        let [_, height] = panel.picture.size;
         self.write(&panel.heading, font::LABEL, [left, top], width);
         let mut below = top + LINE;
         self.place(panel.picture, &panel.tone, [left, below]);

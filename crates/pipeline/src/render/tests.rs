@@ -187,6 +187,12 @@ fn sheets_have_their_panels_and_labels() {
     let label = 94..109;
     assert!(has_ink(8..20, 8..30) && has_ink(8..16, 34..49) && has_ink(8..16, 61..76));
     assert!(has_ink(8..16, label.clone()) && has_ink(16..24, label.clone()) && !has_ink(24..48, label));
+    // Texts that are wider than the picture widen their columns, and a title widens the sheet.
+    let heading = "supersampled".to_owned();
+    let wide = || Panel { picture: &picture, tone, heading: heading.clone(), crop: None, labels: labels() };
+    let width = |title: &str| Sheet::from_rows(title, "s", &[vec![panel(None), wide()]]).expect("a sheet").width;
+    assert_eq!(width("T"), 2 * (12.0 * 7.8_f32).ceil() as u32 + 3 * 8);
+    assert_eq!(width("a title that is wider than both"), (31.0 * 11.385_f32).ceil() as u32 + 2 * 8);
     assert_eq!(Sheet::from_rows("T", "", &[]), None);
     assert_eq!(Sheet::from_rows("T", "", &[Vec::new()]), None);
 }
