@@ -202,7 +202,8 @@ export const roughen = /* glsl */ `
     material.anisotropyB = cross( normal, material.anisotropyT );
   }
   #elif defined( ROUGHCAST_DEVIATION )
-    // Different scales of u and v make the lobe anisotropic; this shader has isotropic lobes only, so it takes the mean.
+    // Different scales of u and v make the lobe anisotropic. This shader has isotropic lobes only, so it takes the
+    // mean.
     float roughcastSquared =
       pow2( pow2( material.roughness ) ) + roughcastCorrection * ( roughcastK.x + roughcastK.z );
     material.roughness = sqrt( sqrt( min( roughcastSquared, 1.0 ) ) );
