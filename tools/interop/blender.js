@@ -1,19 +1,18 @@
-// What Blender keeps of a baked asset. $BLENDER_PYTHON is a Python with the package `bpy`, which takes a gigabyte.
+// What Blender keeps of a baked asset.
 import { execFile } from 'node:child_process';
 import { existsSync } from 'node:fs';
 import path from 'node:path';
-import process from 'node:process';
 import { fileURLToPath } from 'node:url';
 import { promisify } from 'node:util';
 import { COLUMNS, compare } from './survival.js';
 import { validity } from './tools.js';
 
 const run = promisify(execFile);
-const python = process.env.BLENDER_PYTHON;
+const python = fileURLToPath(new URL('venv/bin/python', import.meta.url));
 const script = fileURLToPath(new URL('blender.py', import.meta.url));
 
 /** False, or the reason why the test of Blender cannot run. */
-export const missing = python ? false : 'the test of Blender needs $BLENDER_PYTHON, a Python with the package bpy';
+export const missing = !existsSync(python) && 'the test of Blender needs `bash tools/interop/install-blender`';
 
 /** Returns the table of what Blender's importer and exporter keep. `baked` are the files of bakeForms. */
 export async function blender(baked, folder) {

@@ -11,9 +11,10 @@ import { missing, repository } from '../tools.js';
 
 const PAGE = path.join(repository, 'docs/interop.md');
 
-if (missing && process.env.CI === 'true') throw new Error(missing);
-if (missing) console.log(`skipped: ${missing}`);
-if (blenderMissing) console.log(`skipped: ${blenderMissing}`);
+for (const reason of [missing, blenderMissing].filter(Boolean)) {
+  if (process.env.CI === 'true') throw new Error(reason);
+  console.log(`skipped: ${reason}`);
+}
 
 function temporary(t) {
   const folder = mkdtempSync(path.join(os.tmpdir(), 'roughcast-interop-'));
