@@ -1,11 +1,12 @@
 //! Tests of anisotropy that a material has of its own: presets leave it as it is, and roughness follows the engine.
 
 use std::fs;
+use std::path::Path;
 
 use serde_json::{Value, json};
 use tempfile::tempdir;
 
-use super::process::{bake, fixtures};
+use super::process::{bake, copy, fixtures};
 
 /// What a bake makes of the material `Brass`, whose strength is 0.5 and whose roughness factor is 0.8.
 struct Brass {
@@ -18,9 +19,13 @@ struct Brass {
 }
 
 fn brass(options: &[&str]) -> Brass {
+    baked_brass(&fixtures().join("knobs/knobs.gltf"), options)
+}
+
+fn baked_brass(source: &Path, options: &[&str]) -> Brass {
     let baked = tempdir().expect("a folder");
     let options = [options, &["--glb=false", "--json"]].concat();
-    let run = bake(&fixtures().join("knobs/knobs.gltf"), baked.path(), &options);
+    let run = bake(source, baked.path(), &options);
     let report: Value = serde_json::from_str(&run.out).expect("JSON");
     let text = fs::read(baked.path().join("knobs.gltf")).expect("a document");
     let document: Value = serde_json::from_slice(&text).expect("JSON");
@@ -67,4 +72,19 @@ fn the_pyramid_profile_alone_ignores_the_setting() {
     let baked = brass(&["--engine", "three", "--profile", "pyramid"]);
     assert_eq!((baked.strength, baked.roughness_factor), (0.5, 0.8));
     assert!(!baked.notes.contains(&json!("anisotropyKept")), "{:?}", baked.notes);
+}
+
+#[test]
+fn a_strength_of_0_is_no_anisotropy() {
+    let source = tempdir().expect("a folder");
+    copy(&fixtures().join("knobs"), source.path());
+    let document = source.path().join("knobs.gltf");
+    let text = fs::read_to_string(&document).expect("a document");
+    let without = text.replace("\"anisotropyStrength\": 0.5", "\"anisotropyStrength\": 0");
+    assert_ne!(without, text);
+    fs::write(&document, without).expect("a file");
+    let baked = baked_brass(&document, &["--engine", "three"]);
+    assert_eq!((baked.strength, baked.roughness_factor), (0.0, 1.0));
+    let is_on_anisotropy = |kind: &Value| kind == "anisotropyKept" || kind == "anisotropyDropped";
+    assert!(!baked.notes.iter().any(is_on_anisotropy), "{:?}", baked.notes);
 }

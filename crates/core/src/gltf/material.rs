@@ -246,17 +246,19 @@ impl<'a> RawMaterial<'a> {
         Ok(normal.map(RawTexture::normals).or_else(|| height.map(RawTexture::heights)))
     }
 
+    /// Returns the anisotropy. A strength of 0, which is the default, is none.
     fn anisotropy(&self, row: &AnisotropyRow) -> Result<Option<AnisotropySource>, MaterialError> {
         let object = self.part(row.object).object()?;
         if object.is_absent() {
             return Ok(None);
         }
         let texture: Option<RawTexture> = object.read(row.texture)?;
-        Ok(Some(AnisotropySource {
+        let source = AnisotropySource {
             strength: object.read(row.strength)?.unwrap_or(0.0),
             rotation: object.read(row.rotation)?.unwrap_or(0.0),
             texture: texture.map(RawTexture::into_use),
-        }))
+        };
+        Ok(Some(source).filter(|source| source.strength > 0.0))
     }
 
     fn reflectance(&self, row: &ReflectanceRow) -> Result<ReflectanceFactors, MaterialError> {
