@@ -1,4 +1,4 @@
-// Prints the table of docs/sizes.md: bytes of textures, CPU and wall-clock seconds, and the quality of base colours.
+// Prints the table of docs/sizes.md: bytes of textures, CPU seconds, and the quality of base colours.
 // Needs Linux, whose /proc counts the CPU time of finished child processes.
 // Slow rows are measured only if --only names them.
 // usage: node run.mjs [--tool ROUGHCAST] [--only TEXT] ASSET...
@@ -63,11 +63,11 @@ function cpuSeconds() {
   return fields.slice(11, 15).reduce((sum, ticks) => sum + Number(ticks), 0) / 100;
 }
 
-/** Runs a recipe on an asset; returns the document with the seconds of CPU time and of wall-clock time. */
+/** Runs a recipe on an asset; returns the document with the seconds of CPU time. */
 async function timed(make, input) {
-  const [cpu, wall] = [cpuSeconds(), performance.now()];
+  const cpu = cpuSeconds();
   const document = await make(input, values.tool);
-  return { document, cpu: cpuSeconds() - cpu, wall: (performance.now() - wall) / 1000 };
+  return { document, cpu: cpuSeconds() - cpu };
 }
 
 /** Returns the peak signal-to-noise ratio in dB, or nothing where images have another size or no error. */
@@ -79,17 +79,16 @@ const megabytes = (bytes) => (bytes / 1e6).toFixed(2);
 /** Measures a recipe on all assets and returns the cells of its row. */
 async function measure(make) {
   const bytes = [];
-  let [cpu, wall, error] = [0, 0, { sum: 0, count: 0 }];
+  let [cpu, error] = [0, { sum: 0, count: 0 }];
   for (const [index, input] of positionals.entries()) {
     const result = await timed(make, input);
     cpu += result.cpu;
-    wall += result.wall;
     bytes.push(textureBytes(result.document));
     const own = error && (await colourError(result.document, sources[index]));
     error = own && { sum: error.sum + own.sum, count: error.count + own.count };
   }
   const total = bytes.reduce((sum, own) => sum + own, 0);
-  return [...[...bytes, total].map(megabytes), cpu.toFixed(1), wall.toFixed(1), decibels(error)];
+  return [...[...bytes, total].map(megabytes), cpu.toFixed(1), decibels(error)];
 }
 
 const isChosen = ({ name, isSlow }) => (values.only ? name.includes(values.only) : !isSlow);
@@ -102,7 +101,7 @@ const missing = await missingPrograms();
 for (const program of missing) {
   console.error(`${program} is missing or has no Basis: its rows are left out. \`benches/sizes/install\` builds it.`);
 }
-printRow(['textures by', ...names, 'all, MB', 'CPU seconds', 'wall-clock seconds', 'base colour, dB']);
+printRow(['textures by', ...names, 'all, MB', 'CPU seconds', 'base colour, dB']);
 console.log(`|${'---|'.repeat(names.length + 5)}`);
 for (const { name, make, program } of RECIPES.filter(isChosen)) {
   if (!missing.includes(program)) printRow([name, ...(await measure(make))]);

@@ -1,10 +1,13 @@
 // How many texels of a normal map lie on a surface.
 import { Triangle, Vector2 } from 'three';
 
+/** Returns the name that three.js gives to a set of texture coordinates. */
+const attribute = (channel) => (channel ? `uv${channel}` : 'uv');
+
 /** Returns the areas of the triangles of a mesh: [in square units, in texels of its normal map]. */
 function areas({ geometry, material, matrixWorld }) {
   const { channel, repeat, image } = material.normalMap;
-  const { position, [channel ? `uv${channel}` : 'uv']: uv } = geometry.attributes;
+  const { position, [attribute(channel)]: uv } = geometry.attributes;
   const texels = new Vector2(image.width, image.height).multiply(repeat);
   const [inSpace, inMap] = [new Triangle(), new Triangle()];
   const corners = ['a', 'b', 'c'];
@@ -27,7 +30,8 @@ export function texelsPerUnit(object) {
   let [units, texels] = [0, 0];
   object.updateWorldMatrix(true, true);
   object.traverse((mesh) => {
-    if (!mesh.material?.normalMap) return;
+    const { channel } = mesh.material?.normalMap ?? {};
+    if (channel === undefined || !mesh.geometry.attributes[attribute(channel)]) return;
     const [inSpace, inMap] = areas(mesh);
     [units, texels] = [units + inSpace, texels + inMap];
   });

@@ -56,9 +56,6 @@ async function bake() {
 async function take(name, bytes) {
   const mine = ++begun;
   try {
-    if (String.fromCharCode(...bytes.subarray(0, 4)) !== 'glTF') {
-      throw new Error(`${name}: expected a .glb, found something else; pack a .gltf with its files into a .glb first`);
-    }
     const scene = await stage.load(bytes);
     if (mine !== begun) return;
     file = { name: name.replace(/\.glb$/i, ''), bytes };
@@ -111,10 +108,15 @@ async function takeSample(name) {
 
 async function takeFile(chosen) {
   if (!chosen) return;
+  const bytes = new Uint8Array(await chosen.arrayBuffer());
+  if (String.fromCharCode(...bytes.subarray(0, 4)) !== 'glTF') {
+    const remedy = 'pack a .gltf with its files into a .glb first';
+    return fail(new Error(`${chosen.name}: expected a .glb, found something else; ${remedy}`));
+  }
   form.elements.sample.value = '';
   // A person wants to see the own model first, as large as the picture.
   change({ kind: 'asset', distance: 'near' });
-  await take(chosen.name, new Uint8Array(await chosen.arrayBuffer()));
+  return take(chosen.name, bytes);
 }
 
 /** Changes members of the view, and the fields of the form with them. */

@@ -26,7 +26,10 @@ export interface Settings {
   maxTexels?: number;
   /** Whether version, settings and source digests are written into each KTX2. Default: true. */
   provenance?: boolean;
-  /** Preset of `target`, `gltf`, `model` and `maxModel` for an engine; explicit settings win over it. */
+  /**
+   * Preset of `target`, `gltf`, `glb`, `model`, `maxModel`, `ownAnisotropy` and `scaleNormals` for an engine;
+   * explicit settings win over it.
+   */
   engine?: 'three' | 'babylon' | 'playcanvas' | 'filament' | 'bevy' | 'godot';
   /** Which textures are written: normals, roughness and anisotropy, or also base colour and others. Default: bumps. */
   textures?: 'bumps' | 'all';

@@ -16,6 +16,8 @@ struct Brass {
     roughness_factor: f64,
     /// Kinds of the notes on its base layer.
     notes: Vec<Value>,
+    /// The extension of the pyramid profile.
+    pyramid: Value,
 }
 
 fn brass(options: &[&str]) -> Brass {
@@ -37,6 +39,7 @@ fn baked_brass(source: &Path, options: &[&str]) -> Brass {
         has_texture: anisotropy.get("anisotropyTexture").is_some(),
         roughness_factor: material["pbrMetallicRoughness"]["roughnessFactor"].as_f64().expect("a factor"),
         notes: notes.into_iter().map(|note| note["kind"].clone()).collect(),
+        pyramid: material["extensions"]["ROUGHCAST_materials_roughness_pyramid"].clone(),
     }
 }
 
@@ -72,6 +75,21 @@ fn the_pyramid_profile_alone_ignores_the_setting() {
     let baked = brass(&["--engine", "three", "--profile", "pyramid"]);
     assert_eq!((baked.strength, baked.roughness_factor), (0.5, 0.8));
     assert!(!baked.notes.contains(&json!("anisotropyKept")), "{:?}", baked.notes);
+}
+
+#[test]
+fn the_pyramid_has_the_lobes_of_the_material_whatever_becomes_of_the_core() {
+    let options = |own| ["--engine", "three", "--profile", "both", "--own-anisotropy", own];
+    let [baked, kept, ignored] = ["bake", "keep", "ignore"].map(|own| brass(&options(own)));
+    assert_eq!((kept.strength, kept.roughness_factor), (0.5, 0.8));
+    assert!(kept.notes.contains(&json!("anisotropyKept")), "{:?}", kept.notes);
+    for member in ["correctionFactor", "roughnessModel", "roughnessMin", "roughnessMax", "offsetScale"] {
+        assert_eq!(kept.pyramid[member], baked.pyramid[member], "{member}");
+    }
+    // The core material still has the base lobe.
+    assert!(kept.pyramid.get("baseLobe").is_none(), "{}", kept.pyramid);
+    assert_eq!(baked.pyramid["baseLobe"]["anisotropy"]["anisotropyStrength"], 0.5);
+    assert!(ignored.pyramid["baseLobe"].get("anisotropy").is_none(), "{}", ignored.pyramid);
 }
 
 #[test]

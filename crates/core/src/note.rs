@@ -319,9 +319,9 @@ pub fn anisotropy_dropped(setting: &str, is_seen: bool) -> Note {
 
 /// Returns the note on a material whose anisotropy and roughness stay as they are.
 pub fn anisotropy_kept() -> Note {
-    let text = "the material's anisotropy and its roughness were left unchanged, as `--own-anisotropy keep` asks: most \
-                engines take the axes of anisotropic highlights from the surface, so that lost bumps do not widen \
-                these highlights";
+    let text = "the material's anisotropy and roughness were left unchanged (`--own-anisotropy keep`, which `--engine` \
+                sets for engines that read anisotropy): these engines take the axes of the highlight from the surface, \
+                so that bumps hardly move it";
     note(NoteKind::AnisotropyKept, text)
 }
 

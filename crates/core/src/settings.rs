@@ -105,7 +105,10 @@ pub enum OwnAnisotropy {
     Bake,
     /// It stays as it is, and so does the roughness. For engines that take the axes of anisotropic highlights from the
     /// surface instead of its bumps: such highlights hardly follow the bumps, so that lost bumps do not widen them.
-    #[cfg_attr(feature = "cli", value(help = "Leave it and the roughness: anisotropic highlights hardly follow bumps"))]
+    #[cfg_attr(
+        feature = "cli",
+        value(help = "Leave it and the roughness, for engines whose anisotropic highlights hardly follow bumps")
+    )]
     Keep,
     /// It stays as it is, and bumps widen the roughness as if there was none. For engines that do not read it.
     #[cfg_attr(feature = "cli", value(help = "Leave it, and bake the roughness as for a material without it"))]
@@ -184,7 +187,7 @@ pub struct Settings {
     /// it.
     pub max_model: MaxModel,
     /// What becomes of the anisotropy that a core material has of its own. An explicit [`Model::Anisotropic`] overrides
-    /// it.
+    /// it, and [`Profile::Pyramid`] ignores it.
     pub own_anisotropy: OwnAnisotropy,
     /// Largest mean lobe error at any level, in [0, 1], that [`Model::Auto`] accepts.
     pub max_error: f32,

@@ -74,8 +74,8 @@ pub struct DocumentOptions {
     /// The model with the most parameters that --model auto may choose. [default: anisotropic]
     #[arg(long, value_enum)]
     max_model: Option<MaxModel>,
-    /// What becomes of the anisotropy that a material has of its own. --model anisotropic wins over it. [default: bake,
-    /// or what --engine needs]
+    /// What becomes of the anisotropy that a core material has of its own. --model anisotropic wins over it, and the
+    /// profile pyramid ignores it. [default: bake, or what --engine needs]
     #[arg(long, value_enum, value_name = "HOW")]
     own_anisotropy: Option<OwnAnisotropy>,
     /// Write .glb files with everything inside, or with --glb=false .gltf files with external textures. [default: as

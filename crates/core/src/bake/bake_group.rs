@@ -102,6 +102,7 @@ impl GroupBake<'_> {
                 base,
                 size,
                 can_be_roughened: layer.base.is_ok(),
+                keeps_core_lobe: layer.keeps_core_lobe,
                 slope_scale: layer.slope_scale,
                 is_in_pyramid: layer.row().is_in_pyramid,
                 max_model: layer.max_model().min(self.settings.model_limit()),

@@ -89,25 +89,25 @@ pub fn bake_layer<'m>(
     let model = LayerModel::new(choice, &layer, map.settings);
     let is_held = layer.can_be_roughened || map.settings.profile.has_pyramid();
     let reported_model = if is_held { model.model } else { Model::None };
-    let mut products = layer_products(map, model, reported_model, lobes, layer.first)?;
+    let is_stored = map.settings.profile.is_portable() && model.model != Model::None && !layer.keeps_core_lobe;
+    let mut products = layer_products(map, model, reported_model, lobes, (layer.first, is_stored))?;
     products.notes.extend(layer.base.note.take());
     Ok((products, Decided { normals, pyramid }))
 }
 
 /// Makes the textures of a layer under `model` and frees its lobes. `first` is the finest level that is written of a
-/// base lobe.
+/// base lobe, and `is_stored` says whether the core material gets the roughened lobe.
 fn layer_products(
     map: &MapOffsets<'_>,
     model: LayerModel,
     reported_model: Model,
     lobes: LayerLobes<'_>,
-    first: usize,
+    (first, is_stored): (usize, bool),
 ) -> Result<LayerProducts, EncodeError> {
     let base_roughness = lobes.with_base_texture().filter(|_| model.model != Model::None);
     let base_roughness = base_roughness.map(|roughening| base_roughness_texture(map, roughening, first)).transpose()?;
     let LayerLobes { roughening, needed_variance, .. } = lobes;
     let mut notes: Vec<Note> = model.choice.as_ref().and_then(|choice| choice.note(map.settings)).into_iter().collect();
-    let is_stored = map.settings.profile.is_portable() && model.model != Model::None;
     let mut textures = Vec::new();
     if let Some(roughening) = roughening.filter(|_| is_stored) {
         let roughening = roughening.with_base_levels(model.base_levels());

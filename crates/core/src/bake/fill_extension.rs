@@ -2,6 +2,7 @@
 
 use serde_json::Map;
 
+use crate::bake::group::GroupLayer;
 use crate::bump::Frame;
 use crate::gltf::material::{Layer, Mapping, TextureUse};
 use crate::gltf::roughness_pyramid::{Anisotropy, FORMAT_VERSION, RoughnessModel, RoughnessPyramid, TextureInfo};
@@ -36,10 +37,11 @@ pub struct RangedTexture {
 impl BaseLobe {
     /// Returns the base lobe of `layer`, whose textures stay in the document. If `is_baked`, a baked texture will take
     /// the place of roughness and its factor.
-    pub fn new(layer: &Layer, is_baked: bool) -> Self {
+    pub fn new(layer: &GroupLayer, is_baked: bool) -> Self {
+        let GroupLayer { layer: Layer { roughness_factor, roughness, .. }, .. } = layer;
         Self {
-            roughness_factor: Some(if is_baked { 1.0 } else { layer.roughness_factor }),
-            metallic_roughness_texture: layer.roughness.as_ref().filter(|_| !is_baked).map(TextureInfo::of),
+            roughness_factor: Some(if is_baked { 1.0 } else { *roughness_factor }),
+            metallic_roughness_texture: roughness.as_ref().filter(|_| !is_baked).map(TextureInfo::of),
             anisotropy: layer.anisotropy.as_ref().map(|anisotropy| Anisotropy {
                 anisotropy_strength: Some(anisotropy.strength),
                 anisotropy_rotation: Some(anisotropy.rotation),

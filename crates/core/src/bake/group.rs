@@ -61,6 +61,8 @@ pub struct GroupLayer {
     pub layout: Option<Layout>,
     /// The anisotropy of the base lobe; none if the bake ignores it.
     pub anisotropy: Option<AnisotropySource>,
+    /// Whether the core material keeps its lobe: only the pyramid profile may roughen it.
+    pub keeps_core_lobe: bool,
     /// The textures of the base lobe, or why bumps cannot be added to the base lobe texel by texel.
     pub base: Result<BaseTextures, Note>,
     /// Notes to the user.
@@ -162,7 +164,10 @@ fn group_layer(
     let anisotropy = layer.anisotropy.clone().filter(|_| settings.effective_own_anisotropy() != OwnAnisotropy::Ignore);
     let mut base = base_textures(textures, &layer, anisotropy.as_ref(), &source)
         .map_err(failed("roughness or anisotropy texture"))?;
-    if anisotropy.is_some() && settings.effective_own_anisotropy() == OwnAnisotropy::Keep {
+    let keeps_core_lobe = anisotropy.is_some() && settings.effective_own_anisotropy() == OwnAnisotropy::Keep;
+    if keeps_core_lobe && settings.profile.has_pyramid() {
+        notes.push(note::anisotropy_kept());
+    } else if keeps_core_lobe {
         base = Err(note::anisotropy_kept());
     }
     if let (Ok(base), Some(reflectance)) = (&mut base, &layer.reflectance) {
@@ -175,7 +180,8 @@ fn group_layer(
         }
     }
     let name = name.to_owned();
-    Ok((source, kind, GroupLayer { material, name, layer, slope_scale, layout, anisotropy, base, notes }))
+    let layer = GroupLayer { material, name, layer, slope_scale, layout, anisotropy, keeps_core_lobe, base, notes };
+    Ok((source, kind, layer))
 }
 
 /// Returns a number by which equal textures can be found, among those that [`Textures`] returned.

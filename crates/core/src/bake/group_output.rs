@@ -276,7 +276,7 @@ impl LayerPlacement<'_> {
             mapping: layer.layer.bumps.texture().mapping.clone(),
             frame: in_pyramid.frame,
             correction: in_pyramid.correction,
-            base_lobe: self.is_roughened().then(|| BaseLobe::new(&layer.layer, self.base.is_some())),
+            base_lobe: self.is_roughened().then(|| BaseLobe::new(layer, self.base.is_some())),
             base_roughness: self.base.filter(|_| self.is_roughened()),
         }
     }

@@ -90,6 +90,8 @@ pub struct LayerInput<'a> {
     pub size: (u32, u32),
     /// Whether bumps can be added to the base lobe texel by texel.
     pub can_be_roughened: bool,
+    /// Whether the core material keeps its lobe.
+    pub keeps_core_lobe: bool,
     /// Multiplies offsets.
     pub slope_scale: f32,
     /// Whether the pyramid profile describes the layer.

@@ -83,6 +83,7 @@ fn layer_input<'a>(
         size,
         base: PreparedBase { input, levels: None, note: None },
         can_be_roughened: base_roughness.is_some(),
+        keeps_core_lobe: false,
         slope_scale: 1.0,
         is_in_pyramid: base_roughness.is_some(),
         max_model: map.settings.model_limit(),

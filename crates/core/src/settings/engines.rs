@@ -127,13 +127,13 @@ impl Preset {
         if profile.is_portable() { Model::Isotropic } else { Model::Anisotropic }
     }
 
-    /// Returns what becomes of the anisotropy that materials have of their own.
-    pub fn own_anisotropy(&self) -> OwnAnisotropy {
-        match self.anisotropy {
+    /// Returns what becomes of the anisotropy that materials have of their own in a bake of `profile`.
+    pub fn own_anisotropy(&self, profile: Profile) -> Option<OwnAnisotropy> {
+        profile.is_portable().then_some(match self.anisotropy {
             Anisotropy::Unread => OwnAnisotropy::Ignore,
             // All of them take the axes of the highlight from the frame of the surface.
             Anisotropy::Wrong => OwnAnisotropy::Keep,
-        }
+        })
     }
 
     /// Returns the model with the most parameters that the engine can show in a bake of `profile`.

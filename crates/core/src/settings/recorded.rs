@@ -41,7 +41,7 @@ pub struct RecordedSettings {
     /// [`Settings::max_model`]; absent if every model is allowed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub max_model: Option<MaxModel>,
-    /// [`Settings::own_anisotropy`]; absent if it is baked.
+    /// [`Settings::own_anisotropy`]; absent if anisotropy is baked.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub own_anisotropy: Option<OwnAnisotropy>,
     /// [`Settings::rdo`]; absent if it is not set.
@@ -81,7 +81,7 @@ impl RecordedSettings {
             height_scale: settings.height_scale.map(f64::from),
             asked: (model != settings.model).then_some(settings.model),
             max_model: Some(settings.max_model).filter(|max_model| *max_model != MaxModel::Anisotropic),
-            own_anisotropy: Some(settings.own_anisotropy).filter(|own| *own != OwnAnisotropy::Bake),
+            own_anisotropy: Some(settings.effective_own_anisotropy()).filter(|own| *own != OwnAnisotropy::Bake),
             rdo: settings.rdo,
             scale_normals: settings.scale_normals,
             textures: Some(settings.textures).filter(|textures| *textures != Textures::Bumps),

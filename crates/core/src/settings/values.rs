@@ -176,7 +176,7 @@ impl Values {
             glb: preset.glb,
             model: Some(preset.model(profile)),
             max_model: preset.max_model(profile),
-            own_anisotropy: Some(preset.own_anisotropy()),
+            own_anisotropy: preset.own_anisotropy(profile),
             scale_normals: Some(preset.reads_normal_scale),
             ..Self::default()
         }

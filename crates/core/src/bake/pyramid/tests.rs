@@ -117,6 +117,7 @@ fn layer(factor: f32, can_be_roughened: bool) -> LayerInput<'static> {
         base: PreparedBase { input, levels: None, note: None },
         size: (SIDE, SIDE),
         can_be_roughened,
+        keeps_core_lobe: false,
         slope_scale: 1.0,
         is_in_pyramid: true,
         max_model: Model::Anisotropic,

@@ -20,7 +20,8 @@ fn presets_bake_isotropic_lobes_into_core_materials() {
         assert_eq!(preset.max_model(Profile::Pyramid), None, "{engine:?}");
         let is_isotropic = preset.max_model(Profile::Portable) == Some(MaxModel::Isotropic);
         let own = if is_isotropic { OwnAnisotropy::Ignore } else { OwnAnisotropy::Keep };
-        assert_eq!(preset.own_anisotropy(), own, "{engine:?}");
+        assert_eq!(preset.own_anisotropy(Profile::Both), Some(own), "{engine:?}");
+        assert_eq!(preset.own_anisotropy(Profile::Pyramid), None, "{engine:?}");
     }
 }
 
