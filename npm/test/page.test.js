@@ -60,6 +60,9 @@ async function open(settings = {}, { url } = server) {
 }
 
 const finished = (page, state = 'done') => page.waitForFunction((s) => document.body.dataset.state === s, state);
+/** Waits until the errors are measured: then all pictures are at their places. */
+const measured = (page) =>
+  page.waitForFunction(() => document.querySelector('[data-name=baked]')?.textContent.includes('error'));
 const status = (page) => page.locator('#status').textContent();
 const choose = (page, name, value) => page.locator(`[name=${name}]`).selectOption(value);
 
@@ -121,7 +124,7 @@ test('bakes a sample, shows all three pictures with errors, and offers the file 
   await finished(page);
   assert.deepEqual(modulesOf(page), ['roughcast.wasm']);
   assert.match(await status(page), /kB before, .* baked, with \d+ KTX2 textures/);
-  await page.waitForFunction(() => document.querySelector('[data-name=baked]').textContent.includes('error'));
+  await measured(page);
   const [before, baked, truth] = await labels(page);
   assert.deepEqual([before, baked, truth].map(({ name }) => name), ['before', 'baked', 'supersampled']);
   assert.match(await page.locator('#measured').textContent(), /about 6\.0 x 6\.0 texels\. The truth has \d+ samples/);
@@ -263,6 +266,7 @@ test('fits a phone, light and dark', options, async () => {
   for (const colorScheme of ['light', 'dark']) {
     const page = await open({ viewport: { width: 360, height: 740 }, colorScheme, hasTouch: true, isMobile: true });
     await finished(page);
+    await measured(page);
     // One below the other.
     const boxes = (await labels(page)).map(({ box }) => box);
     assert.deepEqual([new Set(boxes.map(({ x }) => x)).size, new Set(boxes.map(({ y }) => y)).size], [1, 3]);
