@@ -81,8 +81,9 @@ async function download(page) {
 
 /** Returns the labels of the pictures: name, error where it is known, and box. */
 const labels = (page) =>
-  page.locator('#labels span').evaluateAll((spans) =>
-    spans.map((span) => ({
+  // In one call, since each frame makes new labels.
+  page.evaluate(() =>
+    [...document.querySelectorAll('#labels span')].map((span) => ({
       name: span.dataset.name,
       error: Number(/error (\S+)/.exec(span.textContent)?.[1]),
       box: span.getBoundingClientRect().toJSON(),
