@@ -57,7 +57,15 @@ const LIBRARY = [
 const MODULES = ['roughcast.wasm', 'roughcast.threads.wasm'];
 
 /** Modules of the viewer that the page shares. */
-const VIEWER = ['bytes.js', 'compose.js', 'measure.js', 'subject.js', 'supersample.js', 'surroundings.js'];
+const VIEWER = [
+  'bytes.js',
+  'compose.js',
+  'direction.js',
+  'measure.js',
+  'subject.js',
+  'supersample.js',
+  'surroundings.js',
+];
 
 /** Samples, by the names that they have on the page. */
 const SAMPLES = { waves: 'waves/waves.glb', brushed: 'brushed/brushed.gltf', knobs: 'knobs/knobs.gltf' };

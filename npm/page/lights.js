@@ -1,6 +1,6 @@
 // The lights of the scene: a room, and lamps in it.
 import * as THREE from 'three';
-import { direction } from './direction.js';
+import { direction } from './viewer/direction.js';
 
 /** Irradiance of all lamps together. */
 const INTENSITY = 3;

@@ -1,11 +1,11 @@
 // One scene, drawn from one camera: before, baked, and the supersampled truth.
 import * as THREE from 'three';
 import { texelsPerUnit } from './density.js';
-import { direction } from './direction.js';
 import { lamps } from './lights.js';
 import { newLoader } from './loader.js';
 import { Screen, places } from './screen.js';
 import { texturesOf } from './viewer/bytes.js';
+import { direction } from './viewer/direction.js';
 import { Meter } from './viewer/measure.js';
 import { subject } from './viewer/subject.js';
 import { Accumulator, unfiltered } from './viewer/supersample.js';

@@ -184,3 +184,16 @@ fn bad_input_gives_one_clear_error() {
     assert_eq!(roughcast(["compare", "missing.png", "-o", out, "--texels", "0"]).code, 2);
     assert!(!Path::new(out).exists());
 }
+
+/// A flat surface has the same lobe in all textures: its picture error is the noise, and what the renderer's filter of
+/// the surroundings adds. The approximate filters add 0.2 at this roughness.
+#[test]
+fn picture_errors_do_not_measure_the_filter_of_the_surroundings() {
+    let folder = tempdir().expect("a folder");
+    let flat = ["--height", "--height-scale", "0", "--roughness", "0.8"];
+    compare(&fixtures().join("maps/dunes_height.exr"), folder.path(), &flat);
+    let report = report(folder.path());
+    let entries = report["materials"][0]["entries"].as_array().expect("entries");
+    let errors: Vec<f64> = entries.iter().filter_map(|entry| entry["pictureError"].as_f64()).collect();
+    assert!(errors.len() > 10 && errors.iter().all(|error| *error < 0.06), "{errors:?}");
+}

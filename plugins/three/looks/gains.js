@@ -1,5 +1,6 @@
-// usage: npm run gains -- FOLDER [--only NAME,...] [--output DIR] [--pixels N]
-// Prints the tables of docs/engines.md on the reachable gain. FOLDER holds materials as <name>/<name>.gltf.
+// usage: npm run gains -- FOLDER [--only NAME,...] [--output DIR] [--pixels N] [--stock=OPTIONS]
+// Prints the tables of docs/engines.md on the reachable gain. FOLDER holds materials as <name>/<name>.gltf, and
+// OPTIONS are added to those of the bakes for three.js without the plugin.
 import { createHash } from 'node:crypto';
 import { existsSync, mkdirSync, readFileSync, readdirSync, statSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
@@ -17,27 +18,10 @@ const LEVELS = [
 /** Directions of the lights, one at a time, from all around and from three elevations. */
 const LIGHTS = Array.from({ length: 12 }, (_, i) => ({ azimuth: 30 * i, elevation: [25, 40, 60][i % 3] }));
 
-const STOCK = ['--engine', 'three'];
-const PYRAMID = ['--engine', 'three', '--profile', 'pyramid'];
-const BEST = ['--quality', 'best'];
-const FLOAT = ['--target', 'float'];
-/** Options of each bake. `reflected` draws `anisotropic` with the reflections of the plugin. */
-export const BAKES = {
-  portable: STOCK,
-  'portable best': [...STOCK, ...BEST],
-  'portable float': [...STOCK, ...FLOAT],
-  'portable float best': [...STOCK, ...FLOAT, ...BEST],
-  anisotropic: [],
-  pyramid: PYRAMID,
-  'pyramid best': [...PYRAMID, ...BEST],
-  'pyramid float': [...PYRAMID, ...FLOAT],
-  'pyramid float best': [...PYRAMID, ...FLOAT, ...BEST],
-};
-const NAMES = ['original', ...Object.keys(BAKES), 'reflected'].filter((name) => name !== 'anisotropic');
 /** Changes of these files make new truths. */
 const PROGRAMS = [
   path.join(example, 'looks/lights.js'),
-  ...['debug.js', 'stage.js', 'subject.js', 'supersample.js', 'surroundings.js'].map((name) =>
+  ...['debug.js', 'direction.js', 'stage.js', 'subject.js', 'supersample.js', 'surroundings.js'].map((name) =>
     path.join(example, 'page', name),
   ),
   path.join(example, 'package-lock.json'),
@@ -49,12 +33,31 @@ const { values, positionals } = parseArgs({
     only: { type: 'string' },
     output: { type: 'string', default: path.join(repository, 'target/gains') },
     pixels: { type: 'string', default: '48' },
+    stock: { type: 'string', default: '' },
   },
 });
 if (positionals.length !== 1) {
-  console.error('usage: npm run gains -- FOLDER [--only NAME,...] [--output DIR] [--pixels N]');
+  console.error('usage: npm run gains -- FOLDER [--only NAME,...] [--output DIR] [--pixels N] [--stock=OPTIONS]');
   process.exit(2);
 }
+const STOCK = ['--engine', 'three', ...values.stock.split(' ').filter(Boolean)];
+const PYRAMID = ['--engine', 'three', '--profile', 'pyramid'];
+const BEST = ['--quality', 'best'];
+const FLOAT = ['--target', 'float'];
+/** Options of each bake. `reflected` draws `anisotropic` with the reflections of the plugin. */
+const BAKES = {
+  portable: STOCK,
+  'portable best': [...STOCK, ...BEST],
+  'portable float': [...STOCK, ...FLOAT],
+  'portable float best': [...STOCK, ...FLOAT, ...BEST],
+  anisotropic: [],
+  pyramid: PYRAMID,
+  'pyramid best': [...PYRAMID, ...BEST],
+  'pyramid float': [...PYRAMID, ...FLOAT],
+  'pyramid float best': [...PYRAMID, ...FLOAT, ...BEST],
+};
+const NAMES = ['original', ...Object.keys(BAKES), 'reflected'].filter((name) => name !== 'anisotropic');
+
 const only = values.only?.split(',');
 const chosen = found(positionals[0]).filter(([name]) => !only || only.includes(name));
 const views = KINDS.flatMap((kind) =>

@@ -2,6 +2,7 @@
 import * as THREE from 'three';
 import { texturesOf } from './bytes.js';
 import { debuggable } from './debug.js';
+import { direction } from './direction.js';
 import { Loader } from './loader.js';
 import { surroundings } from './surroundings.js';
 import { bumpy, subject } from './subject.js';
@@ -122,9 +123,4 @@ export class Stage {
   #only(name) {
     for (const [key, object] of this.#subjects) object.visible = key === name;
   }
-}
-
-function direction(azimuth, elevation) {
-  const [a, e] = [azimuth, elevation].map(THREE.MathUtils.degToRad);
-  return new THREE.Vector3(Math.sin(a) * Math.cos(e), Math.sin(e), Math.cos(a) * Math.cos(e));
 }
