@@ -23,6 +23,7 @@ mod rdo;
 mod real;
 mod render;
 mod scale_normals;
+mod shared_bump_map;
 #[path = "../common/skip.rs"]
 mod skip;
 mod survival;

@@ -10,7 +10,7 @@ use super::frame::{OffsetFrame, offset_frame};
 use super::geometry::Geometry;
 use super::group::{BumpMapGroup, GroupLayer};
 use super::group_output::GroupOutput;
-use super::lobes::{AnisotropyInput, BaseInput, LayerInput, PreparedBase};
+use super::lobes::{AnisotropyInput, BaseInput, LayerInput, PreparedBase, mean_alpha};
 use super::offsets::MapOffsets;
 use super::pyramid::PyramidInput;
 use super::reader::Reader;
@@ -32,12 +32,11 @@ pub fn bake_group(
 ) -> Result<GroupOutput, BakeError> {
     let bake = GroupBake { group, images: Images::new(reader, settings.max_texels), settings, geometry };
     // Decoders have one thread each, and the bump map takes the longest.
-    let (bump_map, first_base) = rayon::join(|| bake.images.bump_map(group), || bake.first_base());
-    let ((bump_map, mut map_notes), first_base) = (bump_map?, first_base?);
+    let (bump_map, lobes) = rayon::join(|| bake.images.bump_map(group), || bake.lobe_groups());
+    let ((bump_map, mut map_notes), (lobe_groups, first_base)) = (bump_map?, lobes?);
     let map = MapOffsets::new(&bump_map, settings, group.source.sampling())?;
     let map = if group.may_scale_normals { map.scaling_normals() } else { map };
     map_notes.extend(notes::of_bump_map(&bump_map, map.bumps.size()));
-    let lobe_groups = group.lobe_groups();
     let first = bake.first_level(&group.layers, map.bumps.size());
     let products = bake_bump_map(&map, first, bake.inputs(&map, &lobe_groups, first_base), || {
         bake.pyramid_inputs(&map, &lobe_groups)
@@ -59,10 +58,34 @@ struct GroupBake<'a> {
 }
 
 impl GroupBake<'_> {
-    /// Decodes the base lobe of the first layer and builds its levels.
-    fn first_base(&self) -> Result<Option<PreparedBase<'static>>, BakeError> {
-        let Some(layer) = self.group.layers.first() else { return Ok(None) };
-        Ok(Some(self.base(layer)?.with_levels(self.settings)?))
+    /// Groups the layers by lobe, in the order in which they are baked. Returns also the base lobe of the first group,
+    /// with its levels.
+    fn lobe_groups(&self) -> Result<(Vec<Vec<usize>>, Option<PreparedBase<'static>>), BakeError> {
+        let mut lobe_groups = self.group.lobe_groups();
+        if lobe_groups.len() > 1 {
+            lobe_groups = self.narrowest_first(lobe_groups)?;
+        }
+        let Some(users) = lobe_groups.first() else { return Ok((lobe_groups, None)) };
+        let base = self.base(&self.group.layers[users[0]])?.with_levels(self.settings)?;
+        Ok((lobe_groups, Some(base)))
+    }
+
+    /// Sorts `lobe_groups` so that the base lobe comes first that is narrowest beside its bumps: it decides the
+    /// directions for all, and an error of a direction counts by its ratio to the width of the lobe. Lobes that cannot
+    /// decide come last, and before them those that are not seen. The images of roughness are dropped again, since
+    /// together they may be large.
+    fn narrowest_first(&self, lobe_groups: Vec<Vec<usize>>) -> Result<Vec<Vec<usize>>, BakeError> {
+        let mut keyed = Vec::with_capacity(lobe_groups.len());
+        for users in lobe_groups {
+            let layer = &self.group.layers[users[0]];
+            let is_seen = users.iter().any(|user| self.group.layers[*user].layer.is_seen);
+            let roughness = self.images.roughness(layer)?;
+            let alpha = mean_alpha(roughness.as_ref(), layer.layer.roughness_factor);
+            let width = alpha / f64::from(layer.slope_scale.abs());
+            keyed.push((!layer.can_decide_directions(), !is_seen, width, users));
+        }
+        keyed.sort_by(|a, b| (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2)));
+        Ok(keyed.into_iter().map(|(.., users)| users).collect())
     }
 
     /// Decodes the base lobe of `layer` and its reflectance.

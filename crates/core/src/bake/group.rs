@@ -333,6 +333,11 @@ impl GroupLayer {
         self.row().anisotropy.as_ref().map(|anisotropy| self.slot(anisotropy.texture))
     }
 
+    /// Returns whether the layer can decide the directions of the bump map's texels.
+    pub fn can_decide_directions(&self) -> bool {
+        self.base.is_ok() && self.slope_scale != 0.0
+    }
+
     /// Returns a JSON pointer into the material.
     pub fn pointer(&self, member: &str) -> String {
         format!("/materials/{}/{member}", self.material)

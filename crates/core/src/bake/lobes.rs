@@ -63,6 +63,20 @@ impl BaseInput<'_> {
     }
 }
 
+/// Returns the mean alpha of base lobes, which is that of the narrower axis if they are anisotropic. `roughness` is
+/// the texture whose green is the roughness, which is 1 without a texture.
+pub fn mean_alpha(roughness: Option<&Image>, roughness_factor: f32) -> f64 {
+    let mean_square = roughness.map_or(1.0, |image| {
+        let mut greens = vec![0.0; image.width as usize];
+        let squares = (0..image.height).map(|y| {
+            Rgba(image).green(y, &mut greens);
+            greens.iter().map(|green| f64::from(*green).powi(2)).sum::<f64>()
+        });
+        squares.sum::<f64>() / (f64::from(image.width) * f64::from(image.height))
+    });
+    f64::from(roughness_factor).powi(2) * mean_square
+}
+
 /// A base lobe with levels that were built while the bump map was decoded.
 pub struct PreparedBase<'a> {
     /// The textures and factors.

@@ -28,6 +28,8 @@ pub struct LayerRow {
     pub name: &'static str,
     /// The extension without which a material does not have the layer; none for the base layer.
     pub extension: Option<&'static str>,
+    /// The number that the light of the layer is multiplied by, 0 by default; none for the base layer.
+    pub strength: Option<Pointer>,
     /// The normal texture. The scale of its bumps is its member `scale`.
     pub normal_texture: Pointer,
     /// The height texture, which is read where there is no normal texture. Its scale is its member `scale`.
@@ -96,6 +98,7 @@ const BASE: LayerRow = LayerRow {
     kind: LayerKind::Base,
     name: "base",
     extension: None,
+    strength: None,
     normal_texture: "normalTexture",
     height_texture: Some("extras/roughcast/heightTexture"),
     roughness_texture: "pbrMetallicRoughness/metallicRoughnessTexture",
@@ -128,6 +131,7 @@ const CLEARCOAT: LayerRow = LayerRow {
     kind: LayerKind::Clearcoat,
     name: "clearcoat",
     extension: Some("KHR_materials_clearcoat"),
+    strength: Some("extensions/KHR_materials_clearcoat/clearcoatFactor"),
     normal_texture: "extensions/KHR_materials_clearcoat/clearcoatNormalTexture",
     height_texture: None,
     roughness_texture: "extensions/KHR_materials_clearcoat/clearcoatRoughnessTexture",

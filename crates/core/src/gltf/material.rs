@@ -139,6 +139,8 @@ pub struct ReflectanceFactors {
 pub struct Layer {
     /// Which lobe.
     pub kind: LayerKind,
+    /// Whether the layer reflects any light.
+    pub is_seen: bool,
     /// Its bumps.
     pub bumps: BumpSource,
     /// Texture whose green channel is the roughness.
@@ -226,8 +228,10 @@ impl<'a> RawMaterial<'a> {
         let roughness: Option<RawTexture> = surface.read(row.roughness_texture)?;
         let roughness_factor: Option<f32> = surface.read(row.roughness_factor)?;
         let anisotropy = row.anisotropy.as_ref().map(|row| self.anisotropy(row)).transpose()?.flatten();
+        let is_seen = row.strength.map_or(Ok(true), |pointer| self.is_positive(pointer))?;
         Ok(bumps.map(|bumps| Layer {
             kind: row.kind,
+            is_seen,
             bumps,
             roughness: roughness.map(RawTexture::into_use),
             roughness_factor: roughness_factor.unwrap_or(row.default_roughness_factor),
@@ -236,6 +240,12 @@ impl<'a> RawMaterial<'a> {
             reflectance: row.reflectance.as_ref().map(|row| self.reflectance(row)),
             has_other_workflow: row.other_workflow.is_some_and(|pointer| self.part(pointer).value.is_some()),
         }))
+    }
+
+    /// Returns whether the number at `pointer`, which is 0 by default, is above 0.
+    fn is_positive(&self, pointer: &'static str) -> Result<bool, MaterialError> {
+        let (object, _) = split(pointer);
+        Ok(self.part(object).object()?.read::<f32>(pointer)?.unwrap_or(0.0) > 0.0)
     }
 
     /// Reads the bumps of a layer: the normal texture, else the height texture.
