@@ -37,7 +37,10 @@ export interface Settings {
   diffuseLight?: 'environment' | 'suns';
   /** What becomes of the anisotropy that a material has of its own. Default: bake, or what `engine` needs. */
   ownAnisotropy?: 'bake' | 'keep' | 'ignore';
-  /** Whether low bumps are stretched in their texture, and `normalTexture.scale` shrinks them. Default: false. */
+  /**
+   * Whether low bumps are stretched in their texture, and `normalTexture.scale` shrinks them. Default: true where
+   * `gltf` is strict, or what `engine` needs.
+   */
   scaleNormals?: boolean;
   /** How the document refers to textures. Default: auto, which is strict in a .glb and fallback in a .gltf. */
   gltf?: 'auto' | 'fallback' | 'strict' | 'dual';

@@ -6,7 +6,7 @@ use std::path::Path;
 use serde_json::{Value, json};
 use tempfile::tempdir;
 
-use super::process::bake;
+use super::process::{bake, roughcast};
 
 /// Slopes of the bumps along u, which alternate their signs.
 const SLOPE: f64 = 0.02;
@@ -41,15 +41,20 @@ fn scale_and_slope(extras: &[(&str, Value)], options: &[&str]) -> (f64, f64) {
     write_asset(source.path(), extras);
     let options = [&["--gltf", "fallback"], options].concat();
     bake(&source.path().join("low.gltf"), baked.path(), &options);
-    let text = fs::read(baked.path().join("low.gltf")).expect("a document");
-    let document: Value = serde_json::from_slice(&text).expect("JSON");
     let picture = image::open(baked.path().join("low.roughcast/low_normal.normal.png")).expect("a picture").to_rgb8();
     let slope = |texel: &image::Rgb<u8>| {
         let [x, _, z] = texel.0.map(|c| 2.0 * f64::from(c) / 255.0 - 1.0);
         (x / z).abs()
     };
     let steepest = picture.pixels().map(slope).fold(0.0, f64::max);
-    (document["materials"][0]["normalTexture"]["scale"].as_f64().expect("a scale"), steepest)
+    (scale_in(baked.path()), steepest)
+}
+
+/// Returns the scale of the document in the folder `baked`.
+fn scale_in(baked: &Path) -> f64 {
+    let text = fs::read(baked.join("low.gltf")).expect("a document");
+    let document: Value = serde_json::from_slice(&text).expect("JSON");
+    document["materials"][0]["normalTexture"]["scale"].as_f64().expect("a scale")
 }
 
 #[test]
@@ -68,6 +73,29 @@ fn engines_that_ignore_the_scale_get_the_slopes_of_the_source() {
         assert!(slope < 2.0 * SLOPE, "{options:?}: {slope}");
     }
     assert_eq!(scale_and_slope(&[], &["--engine", "three", "--scale-normals=false"]).0, 0.5);
+}
+
+#[test]
+fn the_form_decides_without_an_engine() {
+    for (options, is_scaled) in [
+        (&["--gltf", "strict"][..], true),
+        (&["--gltf", "strict", "--scale-normals=false"], false),
+        (&["--gltf", "strict", "--engine", "playcanvas"], false),
+        (&["--gltf", "fallback"], false),
+        (&["--gltf", "fallback", "--scale-normals"], true),
+        (&["--gltf", "dual"], false),
+        (&[], false),
+    ] {
+        let (source, baked) = (tempdir().expect("a folder"), tempdir().expect("a folder"));
+        write_asset(source.path(), &[]);
+        bake(&source.path().join("low.gltf"), baked.path(), options);
+        let scale = scale_in(baked.path());
+        assert_eq!(scale < 0.05, is_scaled, "{options:?}: {scale}");
+        // `check` expects the scale where the same options ask for it.
+        let [source, baked] = [&source, &baked].map(|folder| folder.path().to_str().expect("UTF-8"));
+        let checked = roughcast([&["check", baked, "--source", source, "--deny", "RC1507"], options].concat());
+        assert_eq!(checked.code, 0, "{options:?}: {}", checked.out);
+    }
 }
 
 #[test]

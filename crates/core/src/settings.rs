@@ -216,8 +216,9 @@ pub struct Settings {
     /// the source document, unless [`Form::Dual`] needs external files.
     pub glb: Option<bool>,
     /// Whether `normalTexture.scale` may change, so that the slopes of low bumps use all values of their texture. An
-    /// engine that ignores the scale shows such bumps too strong.
-    pub scale_normals: bool,
+    /// engine that ignores the scale shows such bumps too strong. `None` leaves it to [`Self::gltf`]: scales may change
+    /// under [`Form::Strict`].
+    pub scale_normals: Option<bool>,
     /// Frame of the pyramid profile's offsets.
     pub frame: Frame,
     /// Scale of height maps in widths of a repeat (in mesh units under [`Frame::Natural`]). It overrides the asset's
@@ -249,7 +250,7 @@ impl Default for Settings {
             max_size: None,
             gltf: Form::default(),
             glb: None,
-            scale_normals: false,
+            scale_normals: None,
             frame: Frame::default(),
             height_scale: None,
             view: None,
@@ -285,7 +286,6 @@ impl Settings {
         with_textures: textures, Textures;
         with_diffuse_light: diffuse_light, DiffuseLight;
         with_gltf: gltf, Form;
-        with_scale_normals: scale_normals, bool;
         with_max_texels: max_texels, u64;
         with_provenance: provenance, bool;
     }

@@ -83,7 +83,7 @@ pub struct DocumentOptions {
     #[arg(long, num_args = 0..=1, require_equals = true, default_missing_value = "true", value_name = "BOOL")]
     glb: Option<bool>,
     /// Divide the slopes of low bumps in their texture and multiply normalTexture.scale, so that they lose less to the
-    /// encoding. Only for engines that apply the scale as glTF says: Bevy ignores it. [default: false]
+    /// encoding. Bevy ignores the scale. [default: true under --gltf strict, or what --engine needs]
     #[arg(long, num_args = 0..=1, require_equals = true, default_missing_value = "true", value_name = "BOOL")]
     scale_normals: Option<bool>,
     /// Frame of the offsets of the pyramid profile. [default: unit]

@@ -47,7 +47,7 @@ pub fn bake_map(
     settings: &Settings,
 ) -> Result<EncodedMap, BakeError> {
     // PNG fallbacks are for documents, which refer to both files, and only documents have a scale of normals.
-    let settings = &Settings { gltf: Form::Strict, scale_normals: false, ..*settings };
+    let settings = &Settings { gltf: Form::Strict, scale_normals: Some(false), ..*settings };
     let sampler = Sampler { wrap: bump_map.wrap(), magnification: Magnification::Linear };
     let map = MapOffsets::new(bump_map, settings, sampler)?;
     let mut notes = notes::of_bump_map(bump_map, map.bumps.size());

@@ -1,4 +1,4 @@
-//! The container of the output document, and the form of its references to textures.
+//! The container of the output document, the form of its references to textures, and what goes by that form.
 
 use super::{Form, Settings};
 use crate::gltf::document::Container;
@@ -10,8 +10,14 @@ impl Settings {
         Self { glb: Some(glb), ..self }
     }
 
-    /// Returns the settings for a source document in the container `source`, with explicit values of [`Settings::glb`]
-    /// and [`Settings::gltf`].
+    /// Sets [`Settings::scale_normals`].
+    #[must_use]
+    pub fn with_scale_normals(self, scale_normals: bool) -> Self {
+        Self { scale_normals: Some(scale_normals), ..self }
+    }
+
+    /// Returns the settings for a source document in the container `source`, with explicit values of
+    /// [`Settings::glb`], [`Settings::gltf`] and [`Settings::scale_normals`].
     #[must_use]
     pub fn resolved_for(&self, source: Container) -> Self {
         let container = self.container(source);
@@ -22,7 +28,9 @@ impl Settings {
             (Form::Auto, Container::Gltf) => Form::Fallback,
             (explicit, _) => explicit,
         };
-        Self { gltf, ..self.with_glb(container == Container::Glb) }
+        // Bevy, which ignores the scale, refuses the strict form and loads all others.
+        let scale_normals = self.scale_normals.unwrap_or(gltf == Form::Strict);
+        Self { gltf, ..self.with_glb(container == Container::Glb).with_scale_normals(scale_normals) }
     }
 
     /// Returns the container of the output for a source document in the container `source`.
@@ -55,6 +63,11 @@ mod tests {
         ] {
             let resolved = settings.resolved_for(source);
             assert_eq!((resolved.glb, resolved.gltf), expected, "{:?} {:?} {source:?}", settings.glb, settings.gltf);
+            assert_eq!(resolved.scale_normals, Some(resolved.gltf == Form::Strict), "scales follow the form");
+            for explicit in [false, true] {
+                let resolved = settings.with_scale_normals(explicit).resolved_for(source);
+                assert_eq!(resolved.scale_normals, Some(explicit));
+            }
             assert_eq!(resolved.validate(), Ok(()));
         }
     }

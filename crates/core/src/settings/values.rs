@@ -157,7 +157,7 @@ impl Values {
             diffuse_light: Some(defaults.diffuse_light),
             gltf: Some(defaults.gltf),
             glb: defaults.glb,
-            scale_normals: Some(defaults.scale_normals),
+            scale_normals: defaults.scale_normals,
             frame: Some(defaults.frame.kind()),
             main_direction: Some([0.0, 1.0, 0.0]),
             fov: Some(View::DEFAULT_FOV),
@@ -211,7 +211,7 @@ impl Values {
         settings.diffuse_light = self.diffuse_light.unwrap_or_default();
         settings.gltf = form;
         settings.glb = self.glb;
-        settings.scale_normals = self.scale_normals.unwrap_or(defaults.scale_normals);
+        settings.scale_normals = self.scale_normals;
         settings.frame = self.frame()?;
         settings.height_scale = height_scale.map(|s| s as f32);
         settings.view = self.view()?;

@@ -82,7 +82,7 @@ pub fn check_document(name: &str, bytes: &[u8], files: &dyn Files, scope: &Scope
 /// wrong, that is a finding of its own, and the form is still that of the container.
 fn expected_settings(settings: &Settings, container: Container) -> Settings {
     let form = settings.with_glb(container == Container::Glb).resolved_for(container).gltf;
-    settings.resolved_for(container).with_gltf(form)
+    settings.with_gltf(form).resolved_for(container)
 }
 
 /// Parses the document with our reader, and with the typed reader of crate `gltf`: engines refuse what that reader

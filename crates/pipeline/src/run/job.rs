@@ -264,7 +264,7 @@ fn command(source: &Path, output: &Path, settings: &Values) -> Vec<String> {
     words.push("--no-config".to_owned());
     for (name, text) in settings.texts() {
         match (name.as_str(), text.as_str()) {
-            ("provenance", "true") | ("scale-normals" | "trim", "false") => {}
+            ("provenance", "true") | ("trim", "false") => {}
             ("provenance", _) => words.push("--no-provenance".to_owned()),
             ("fov" | "aspect", _) if settings.nearest.is_none() => {}
             // Flags take names and lists without the quotes and brackets of JSON.

@@ -21,7 +21,7 @@ fn appends_settings_that_have_no_default() {
         max_model: MaxModel::Isotropic,
         own_anisotropy: OwnAnisotropy::Keep,
         rdo: Some(0.5),
-        scale_normals: true,
+        scale_normals: Some(true),
         textures: Textures::All,
         diffuse_light: DiffuseLight::Suns,
         view: Some(View::new(2.0, 1080)),
