@@ -45,9 +45,9 @@ export function layerRows({ layers }) {
     });
 }
 
-/** Returns the notes that ask for something. */
+/** Returns the notes that ask for something, and those on layers whose row shows no error. */
 export function notes({ layers }) {
-  return layers.flatMap(({ material, notes }) =>
-    notes.filter((note) => note.asksForAction).map((note) => `${material}: ${note.text}`),
+  return layers.flatMap(({ material, model, choice, notes }) =>
+    notes.filter((note) => note.asksForAction || (model && !choice)).map((note) => `${material}: ${note.text}`),
   );
 }

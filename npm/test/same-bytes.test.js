@@ -51,6 +51,7 @@ for (const settings of [
   { profile: 'both', gltf: 'fallback', glb: false },
   { profile: 'both', model: 'anisotropic', quality: 'best', glb: true },
   { engine: 'bevy', rdo: 0.5, glb: false },
+  { ownAnisotropy: 'keep', scaleNormals: false, glb: true },
   { target: 'float', profile: 'both', frame: 'natural', distribution: 'normal', lobe: 'beckmann' },
 ]) {
   test(`documents with ${JSON.stringify(settings)}`, options, async (t) => {
