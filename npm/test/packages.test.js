@@ -85,6 +85,8 @@ test('WebAssembly bakes folders, names files, and refuses what it cannot do', op
     ['baked', 'baked'],
   );
 
+  npx(folder, 'bake', 'model.glb', '-o', 'split', '--glb=false', '--scale-normals=false');
+  assert.ok(existsSync(path.join(folder, 'split/model.gltf')));
   npx(folder, 'bake', 'model.glb', '-o', 'named.glb');
   assert.ok(jsonOf(path.join(folder, 'named.glb')).images.some((image) => image.mimeType === 'image/ktx2'));
   npx(folder, 'map', 'assets/heights.png', '--height', '-o', 'map/heights.ktx2');
@@ -102,6 +104,7 @@ test('WebAssembly bakes folders, names files, and refuses what it cannot do', op
   fails(/nosuch/, 1, 'bake', 'nosuch.glb', '-o', 'out');
   fails(/max-error/, 1, 'bake', 'model.glb', '-o', 'out', '--max-error', '2');
   fails(/expected a number/, 2, 'bake', 'model.glb', '-o', 'out', '--max-error', 'x');
+  fails(/expected true or false/, 2, 'bake', 'model.glb', '-o', 'out', '--scale-normals=x');
   fails(/\.ktx2/, 2, 'map', 'assets/heights.png', '-o', 'heights.png');
   assert.ok(readFileSync(path.join(folder, 'model.glb')).equals(before));
 });

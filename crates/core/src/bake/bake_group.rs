@@ -10,7 +10,7 @@ use super::frame::{OffsetFrame, offset_frame};
 use super::geometry::Geometry;
 use super::group::{BumpMapGroup, GroupLayer};
 use super::group_output::GroupOutput;
-use super::lobes::{AnisotropyInput, BaseInput, LayerInput, PreparedBase, mean_alpha};
+use super::lobes::{AnisotropyInput, BaseInput, LayerInput, PreparedBase};
 use super::offsets::MapOffsets;
 use super::pyramid::PyramidInput;
 use super::reader::Reader;
@@ -31,16 +31,25 @@ pub fn bake_group(
     settings: &Settings,
 ) -> Result<GroupOutput, BakeError> {
     let bake = GroupBake { group, images: Images::new(reader, settings.max_texels), settings, geometry };
+    let lobe_groups = group.lobe_groups();
+    let only = if let [users] = &*lobe_groups { Some(users) } else { None };
     // Decoders have one thread each, and the bump map takes the longest.
-    let (bump_map, lobes) = rayon::join(|| bake.images.bump_map(group), || bake.lobe_groups());
-    let ((bump_map, mut map_notes), (lobe_groups, first_base)) = (bump_map?, lobes?);
+    let prepare = || only.map(|users| bake.prepared(users)).transpose();
+    let (bump_map, only_base) = rayon::join(|| bake.images.bump_map(group), prepare);
+    let ((bump_map, mut map_notes), only_base) = (bump_map?, only_base?);
     let map = MapOffsets::new(&bump_map, settings, group.source.sampling())?;
     let map = if group.may_scale_normals { map.scaling_normals() } else { map };
     map_notes.extend(notes::of_bump_map(&bump_map, map.bumps.size()));
+    let lobe_groups = if only_base.is_some() { lobe_groups } else { bake.narrowest_first(lobe_groups, &map)? };
     let first = bake.first_level(&group.layers, map.bumps.size());
-    let products = bake_bump_map(&map, first, bake.inputs(&map, &lobe_groups, first_base), || {
+    let mut products = bake_bump_map(&map, first, bake.inputs(&map, &lobe_groups, only_base), || {
         bake.pyramid_inputs(&map, &lobe_groups)
     })?;
+    // The order of the document, so that names of textures do not depend on the widths of lobes.
+    let mut placed: Vec<_> = products.layers.into_iter().zip(lobe_groups).collect();
+    placed.sort_by_key(|(_, users)| users[0]);
+    let lobe_groups: Vec<Vec<usize>>;
+    (products.layers, lobe_groups) = placed.into_iter().unzip();
     let notes = |layer: &GroupLayer| bake.notes(layer, &map_notes, map.bumps.size());
     let output = GroupOutput::new(group, &bake.images, settings, products, &lobe_groups, notes);
     drop(map);
@@ -58,31 +67,29 @@ struct GroupBake<'a> {
 }
 
 impl GroupBake<'_> {
-    /// Groups the layers by lobe, in the order in which they are baked. Returns also the base lobe of the first group,
-    /// with its levels.
-    fn lobe_groups(&self) -> Result<(Vec<Vec<usize>>, Option<PreparedBase<'static>>), BakeError> {
-        let mut lobe_groups = self.group.lobe_groups();
-        if lobe_groups.len() > 1 {
-            lobe_groups = self.narrowest_first(lobe_groups)?;
-        }
-        let Some(users) = lobe_groups.first() else { return Ok((lobe_groups, None)) };
-        let base = self.base(&self.group.layers[users[0]])?.with_levels(self.settings)?;
-        Ok((lobe_groups, Some(base)))
+    /// Decodes the base lobe of the layers `users` and builds its levels.
+    fn prepared(&self, users: &[usize]) -> Result<PreparedBase<'static>, BakeError> {
+        Ok(self.base(&self.group.layers[users[0]])?.with_levels(self.settings)?)
     }
 
     /// Sorts `lobe_groups` so that the base lobe comes first that is narrowest beside its bumps: it decides the
     /// directions for all, and an error of a direction counts by its ratio to the width of the lobe. Lobes that cannot
-    /// decide come last, and before them those that are not seen. The images of roughness are dropped again, since
-    /// together they may be large.
-    fn narrowest_first(&self, lobe_groups: Vec<Vec<usize>>) -> Result<Vec<Vec<usize>>, BakeError> {
+    /// decide come last, and before them those that are not seen. Each image is dropped again, since together they may
+    /// be large.
+    fn narrowest_first(
+        &self,
+        lobe_groups: Vec<Vec<usize>>,
+        map: &MapOffsets<'_>,
+    ) -> Result<Vec<Vec<usize>>, BakeError> {
         let mut keyed = Vec::with_capacity(lobe_groups.len());
         for users in lobe_groups {
             let layer = &self.group.layers[users[0]];
+            let input = self.input(layer, self.images.base(layer)?, None);
+            let is_on_grid = input.grid(self.settings, Some(map.bump_map))? == map.bumps.size();
+            let can_decide = layer.can_decide_directions() && is_on_grid;
             let is_seen = users.iter().any(|user| self.group.layers[*user].layer.is_seen);
-            let roughness = self.images.roughness(layer)?;
-            let alpha = mean_alpha(roughness.as_ref(), layer.layer.roughness_factor);
-            let width = alpha / f64::from(layer.slope_scale.abs());
-            keyed.push((!layer.can_decide_directions(), !is_seen, width, users));
+            let width = input.mean_alpha() / f64::from(layer.slope_scale.abs());
+            keyed.push((!can_decide, !is_seen, width, users));
         }
         keyed.sort_by(|a, b| (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2)));
         Ok(keyed.into_iter().map(|(.., users)| users).collect())
@@ -90,9 +97,20 @@ impl GroupBake<'_> {
 
     /// Decodes the base lobe of `layer` and its reflectance.
     fn base(&self, layer: &GroupLayer) -> Result<PreparedBase<'static>, BakeError> {
-        let BaseImages { roughness, anisotropy } = self.images.base(layer)?;
-        let (reflectance, note) = ReflectanceInput::new(&self.images, layer, roughness.as_ref())?;
-        let input = BaseInput {
+        let images = self.images.base(layer)?;
+        let (reflectance, note) = ReflectanceInput::new(&self.images, layer, images.roughness.as_ref())?;
+        Ok(PreparedBase { input: self.input(layer, images, reflectance), levels: None, note })
+    }
+
+    /// Returns the base lobe of `layer`, whose `images` are decoded.
+    fn input(
+        &self,
+        layer: &GroupLayer,
+        images: BaseImages,
+        reflectance: Option<ReflectanceInput>,
+    ) -> BaseInput<'static> {
+        let BaseImages { roughness, anisotropy } = images;
+        BaseInput {
             roughness: roughness.map(Cow::Owned),
             roughness_factor: layer.layer.roughness_factor,
             anisotropy: layer.anisotropy.as_ref().map(|source| AnisotropyInput {
@@ -102,20 +120,20 @@ impl GroupBake<'_> {
             }),
             reflectance,
             wrap: self.group.source.wrap,
-        };
-        Ok(PreparedBase { input, levels: None, note })
+        }
     }
 
-    /// Returns the inputs of all lobes. Images are decoded when the iterator reaches them.
+    /// Returns the inputs of all lobes. Images are decoded when the iterator reaches them, unless there is one lobe
+    /// only, whose base is `only_base`.
     fn inputs<'i>(
         &'i self,
         map: &'i MapOffsets<'_>,
         lobe_groups: &'i [Vec<usize>],
-        mut first_base: Option<PreparedBase<'static>>,
+        mut only_base: Option<PreparedBase<'static>>,
     ) -> impl ExactSizeIterator<Item = Result<LayerInput<'static>, BakeError>> + 'i {
         lobe_groups.iter().map(move |users| {
             let layer = &self.group.layers[users[0]];
-            let base = match first_base.take() {
+            let base = match only_base.take() {
                 Some(base) => base,
                 None => self.base(layer)?,
             };

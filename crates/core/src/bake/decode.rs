@@ -55,15 +55,9 @@ impl<'a> Images<'a> {
 
     /// Decodes the images of the base lobe of `layer`.
     pub fn base(&self, layer: &GroupLayer) -> Result<BaseImages, ImageError> {
-        let [_, anisotropy] = layer.base_textures();
-        let anisotropy = anisotropy.map(|texture| self.colours(texture, &layer.name));
-        Ok(BaseImages { roughness: self.roughness(layer)?, anisotropy: anisotropy.transpose()? })
-    }
-
-    /// Decodes the roughness texture of `layer`.
-    pub fn roughness(&self, layer: &GroupLayer) -> Result<Option<Image>, ImageError> {
-        let [roughness, _] = layer.base_textures();
-        roughness.map(|texture| self.colours(texture, &layer.name)).transpose()
+        let image = |texture: Option<&TextureSource>| texture.map(|t| self.colours(t, &layer.name)).transpose();
+        let [roughness, anisotropy] = layer.base_textures();
+        Ok(BaseImages { roughness: image(roughness)?, anisotropy: image(anisotropy)? })
     }
 
     /// Returns those of `locations` that were decoded, with the digests of their bytes.

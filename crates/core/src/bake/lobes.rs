@@ -5,10 +5,12 @@ use std::borrow::Cow;
 use crate::bake::offsets::{MapOffsets, size_of};
 use crate::bake::reflectance::ReflectanceInput;
 use crate::image::{Image, Rgba};
+use crate::lobe::{Alpha, Roughness};
 use crate::material::{
     Base, BaseAnisotropy, BaseLevels, BaseRows, BumpMap, Bumps, GridError, LobeLevels, Roughening, base_lobe, grid,
     lost_variance_of_lobes,
 };
+use crate::metric::MIN_ALPHA;
 use crate::mip::Wrap;
 use crate::note::Note;
 use crate::settings::{Model, Settings};
@@ -45,6 +47,23 @@ impl BaseInput<'_> {
         grid(settings, images.map(|image| (image.width, image.height)).chain(bump_map.map(size_of)))
     }
 
+    /// Returns the mean alpha, at least the least of an engine. For anisotropic lobes it is that of the narrower axis.
+    pub fn mean_alpha(&self) -> f64 {
+        let alpha = |green: f32| f64::from(Alpha::from(Roughness((green * self.roughness_factor).clamp(0.0, 1.0))).0);
+        let mean = match self.roughness.as_deref() {
+            None => alpha(1.0),
+            Some(image) => {
+                let mut greens = vec![0.0; image.width as usize];
+                let sums = (0..image.height).map(|y| {
+                    Rgba(image).green(y, &mut greens);
+                    greens.iter().map(|green| alpha(*green)).sum::<f64>()
+                });
+                sums.sum::<f64>() / (f64::from(image.width) * f64::from(image.height))
+            }
+        };
+        mean.max(MIN_ALPHA)
+    }
+
     /// Puts the base lobe and its reflectance on a grid of `width` x `height` texels.
     pub fn rows(&self, size: (u32, u32)) -> BaseRows<'_> {
         let (width, height) = size;
@@ -61,20 +80,6 @@ impl BaseInput<'_> {
         let rgba = roughness.map(Rgba);
         BaseRows::new(width, height, rgba, self.roughness_factor, anisotropy, self.wrap).with_reflectance(reflectance)
     }
-}
-
-/// Returns the mean alpha of base lobes, which is that of the narrower axis if they are anisotropic. `roughness` is
-/// the texture whose green is the roughness, which is 1 without a texture.
-pub fn mean_alpha(roughness: Option<&Image>, roughness_factor: f32) -> f64 {
-    let mean_square = roughness.map_or(1.0, |image| {
-        let mut greens = vec![0.0; image.width as usize];
-        let squares = (0..image.height).map(|y| {
-            Rgba(image).green(y, &mut greens);
-            greens.iter().map(|green| f64::from(*green).powi(2)).sum::<f64>()
-        });
-        squares.sum::<f64>() / (f64::from(image.width) * f64::from(image.height))
-    });
-    f64::from(roughness_factor).powi(2) * mean_square
 }
 
 /// A base lobe with levels that were built while the bump map was decoded.

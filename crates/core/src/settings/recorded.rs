@@ -47,7 +47,8 @@ pub struct RecordedSettings {
     /// [`Settings::rdo`]; absent if it is not set.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rdo: Option<f64>,
-    /// Whether [`Settings::scale_normals`] is true; absent otherwise.
+    /// Whether scales may have changed ([`Settings::scale_normals`]); absent if not, or if the form goes by the
+    /// container.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub scale_normals: bool,
     /// [`Settings::textures`]; absent if only baked textures are written.
@@ -83,7 +84,7 @@ impl RecordedSettings {
             max_model: Some(settings.max_model).filter(|max_model| *max_model != MaxModel::Anisotropic),
             own_anisotropy: Some(settings.effective_own_anisotropy()).filter(|own| *own != OwnAnisotropy::Bake),
             rdo: settings.rdo,
-            scale_normals: settings.scale_normals == Some(true),
+            scale_normals: settings.scale_normals.unwrap_or(settings.gltf == Form::Strict),
             textures: Some(settings.textures).filter(|textures| *textures != Textures::Bumps),
             diffuse_light: Some(settings.diffuse_light).filter(|light| *light != DiffuseLight::Environment),
             max_size: settings.max_size,

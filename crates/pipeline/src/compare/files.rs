@@ -173,7 +173,9 @@ fn compare_material(
     source: &Source<'_>,
     advance: &(dyn Fn(f32, &str) + Sync),
 ) -> Result<Option<Comparison>, CompareError> {
+    // Low bumps are stored as the bake of this document stores them.
     let settings = Settings::default()
+        .resolved_for(source.document.container())
         .with_gltf(Form::Strict)
         .with_glb(false)
         .with_target(Target::Basis)

@@ -56,7 +56,9 @@ pub fn title_of(column: &str) -> &'static str {
 /// # Errors
 /// [`ReadBackError::NoBumps`] if no material has bumps, and the errors of the bake.
 pub fn columns(source: &Source<'_>, settings: &Settings, advance: &dyn Fn(f32)) -> Result<Vec<Columns>, PictureError> {
-    let strict = settings.with_gltf(Form::Strict).with_glb(false).with_provenance(false);
+    // Low bumps are stored as the bake of this document stores them.
+    let resolved = settings.resolved_for(source.document.container());
+    let strict = resolved.with_gltf(Form::Strict).with_glb(false).with_provenance(false);
     let of_profile = |profile| strict.with_profile(profile);
     let plain = of_profile(Profile::Portable).with_model(Model::None).with_target(Target::Float);
     let (has_portable, has_pyramid) = (settings.profile.is_portable(), settings.profile.has_pyramid());

@@ -30,8 +30,8 @@ export const DOCUMENT = {
   textures: text,
   'diffuse-light': text,
   gltf: text,
-  glb: flag,
-  'scale-normals': flag,
+  glb: text,
+  'scale-normals': text,
   frame: text,
   'main-direction': text,
   'height-scale': text,
@@ -39,7 +39,7 @@ export const DOCUMENT = {
   'screen-height': text,
   fov: text,
   aspect: text,
-  trim: flag,
+  trim: text,
 };
 
 /** Where outputs go, with how many threads, and what is printed. */
@@ -63,6 +63,9 @@ const NUMBERS = [
   'aspect',
 ];
 
+/** Options that may stand without a value, which is then true. */
+const SWITCHES = ['glb', 'scale-normals', 'trim'];
+
 /**
  * Reads arguments.
  *
@@ -73,8 +76,10 @@ const NUMBERS = [
  */
 export function parse(args, own) {
   let parsed;
+  const isBare = (arg) => SWITCHES.some((name) => arg === `--${name}`);
+  const complete = args.map((arg) => (isBare(arg) ? `${arg}=true` : arg));
   try {
-    parsed = parseArgs({ args, options: { ...TEXTURE, ...OUTPUT, ...own }, allowPositionals: true });
+    parsed = parseArgs({ args: complete, options: { ...TEXTURE, ...OUTPUT, ...own }, allowPositionals: true });
   } catch (error) {
     throw new UsageError(`${error.message} If the native tool has this option, install its package.`);
   }
@@ -85,6 +90,7 @@ export function parse(args, own) {
   if (withoutProvenance) settings.provenance = false;
   if (settings['main-direction']) settings['main-direction'] = settings['main-direction'].split(',').map(Number);
   for (const name of NUMBERS.filter((name) => name in settings)) settings[name] = number(name, settings[name]);
+  for (const name of SWITCHES.filter((name) => name in settings)) settings[name] = truth(name, settings[name]);
   if (values.threads) values.threads = number('threads', values.threads);
   return { inputs: positionals, settings, values };
 }
@@ -94,6 +100,11 @@ export function number(name, value) {
   const parsed = Number(value);
   if (value.trim() !== '' && Number.isFinite(parsed)) return parsed;
   throw new UsageError(`--${name}: expected a number, found ${value}`);
+}
+
+function truth(name, value) {
+  if (value === 'true' || value === 'false') return value === 'true';
+  throw new UsageError(`--${name}: expected true or false, found ${value}`);
 }
 
 function pick(values, names) {
