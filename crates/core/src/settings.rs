@@ -298,6 +298,12 @@ impl Settings {
         }
     }
 
+    /// Returns whether `normalTexture.scale` may change.
+    pub(crate) fn effective_scale_normals(&self) -> bool {
+        // Bevy, which ignores the scale, refuses the strict form and loads all others.
+        self.scale_normals.unwrap_or(self.gltf == Form::Strict)
+    }
+
     /// Returns what the bake does with the anisotropy that a material has of its own.
     pub(crate) fn effective_own_anisotropy(&self) -> OwnAnisotropy {
         let is_overridden = !self.profile.is_portable() || self.model == Model::Anisotropic;

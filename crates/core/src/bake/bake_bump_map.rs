@@ -23,7 +23,7 @@ pub struct BumpMapProducts {
 /// texture and the offsets have no levels finer than `first`.
 ///
 /// The first layer whose lobes are on the grid of the bump map decides the normal texture, and offsets and K of the
-/// pyramid profile. It should be the narrowest of them.
+/// pyramid profile. Callers pass the narrowest of them first.
 pub fn bake_bump_map<'a, 'm>(
     map: &MapOffsets<'m>,
     first: usize,

@@ -85,8 +85,8 @@ impl GroupBake<'_> {
         for users in lobe_groups {
             let layer = &self.group.layers[users[0]];
             let input = self.input(layer, self.images.base(layer)?, None);
-            let is_on_grid = input.grid(self.settings, Some(map.bump_map))? == map.bumps.size();
-            let can_decide = layer.can_decide_directions() && is_on_grid;
+            let size = input.grid(self.settings, Some(map.bump_map))?;
+            let can_decide = layer.base.is_ok() && map.can_be_decided_by(size, layer.slope_scale);
             let is_seen = users.iter().any(|user| self.group.layers[*user].layer.is_seen);
             let width = input.mean_alpha() / f64::from(layer.slope_scale.abs());
             keyed.push((!can_decide, !is_seen, width, users));

@@ -128,7 +128,7 @@ pub fn group_by_bump_map(
     let mut groups: Vec<BumpMapGroup> = Vec::new();
     let mut indices: HashMap<_, usize> = HashMap::new();
     let mut textures = Textures::of(root);
-    let may_scale = settings.scale_normals == Some(true) && settings.profile.is_portable();
+    let may_scale = settings.effective_scale_normals() && settings.profile.is_portable();
     let animated = if may_scale { animated_bumps(root) } else { BTreeSet::new() };
     for Material { index, name, layers } in materials {
         for layer in layers {
@@ -331,11 +331,6 @@ impl GroupLayer {
     /// Returns the reference to the layer's anisotropy texture; none if the layer can only be isotropic.
     pub fn anisotropy_slot(&self) -> Option<Slot> {
         self.row().anisotropy.as_ref().map(|anisotropy| self.slot(anisotropy.texture))
-    }
-
-    /// Returns whether the layer can decide the directions of the bump map's texels.
-    pub fn can_decide_directions(&self) -> bool {
-        self.base.is_ok() && self.slope_scale != 0.0
     }
 
     /// Returns a JSON pointer into the material.

@@ -47,7 +47,7 @@ impl BaseInput<'_> {
         grid(settings, images.map(|image| (image.width, image.height)).chain(bump_map.map(size_of)))
     }
 
-    /// Returns the mean alpha, at least the least of an engine. For anisotropic lobes it is that of the narrower axis.
+    /// Returns the mean alpha, at least [`MIN_ALPHA`]. For anisotropic lobes it is the alpha of the narrower axis.
     pub fn mean_alpha(&self) -> f64 {
         let alpha = |green: f32| f64::from(Alpha::from(Roughness((green * self.roughness_factor).clamp(0.0, 1.0))).0);
         let mean = match self.roughness.as_deref() {
@@ -149,7 +149,7 @@ impl<'a> LayerLobes<'a> {
         };
         let is_in_pyramid = settings.profile.has_pyramid() && layer.is_in_pyramid;
         let is_roughened = layer.can_be_roughened && (settings.profile.is_portable() || layer.is_in_pyramid);
-        let can_decide = is_roughened && slope_scale != 0.0 && layer.size == map.bumps.size();
+        let can_decide = is_roughened && map.can_be_decided_by(layer.size, slope_scale);
         let needed = (is_in_pyramid && !can_decide)
             .then(|| map.bumps.corrected_variance(slope_scale, settings, base_lobe(&base.coarsest())));
         let roughening = is_roughened.then(|| {

@@ -32,6 +32,12 @@ impl<'a> MapOffsets<'a> {
     pub fn scaling_normals(self) -> Self {
         Self { normal_scale: normal_scale(&self.bumps), ..self }
     }
+
+    /// Returns whether lobes on a grid of `size` texels can decide the directions of the map's texels. `slope_scale`
+    /// multiplies the offsets under them.
+    pub fn can_be_decided_by(&self, size: (u32, u32), slope_scale: f32) -> bool {
+        slope_scale != 0.0 && size == self.bumps.size()
+    }
 }
 
 /// Returns the columns and rows of a bump map.

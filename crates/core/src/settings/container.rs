@@ -28,9 +28,8 @@ impl Settings {
             (Form::Auto, Container::Gltf) => Form::Fallback,
             (explicit, _) => explicit,
         };
-        // Bevy, which ignores the scale, refuses the strict form and loads all others.
-        let scale_normals = self.scale_normals.unwrap_or(gltf == Form::Strict);
-        Self { gltf, ..self.with_glb(container == Container::Glb).with_scale_normals(scale_normals) }
+        let explicit = self.with_gltf(gltf).with_glb(container == Container::Glb);
+        explicit.with_scale_normals(explicit.effective_scale_normals())
     }
 
     /// Returns the container of the output for a source document in the container `source`.

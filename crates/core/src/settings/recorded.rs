@@ -84,7 +84,7 @@ impl RecordedSettings {
             max_model: Some(settings.max_model).filter(|max_model| *max_model != MaxModel::Anisotropic),
             own_anisotropy: Some(settings.effective_own_anisotropy()).filter(|own| *own != OwnAnisotropy::Bake),
             rdo: settings.rdo,
-            scale_normals: settings.scale_normals.unwrap_or(settings.gltf == Form::Strict),
+            scale_normals: settings.effective_scale_normals(),
             textures: Some(settings.textures).filter(|textures| *textures != Textures::Bumps),
             diffuse_light: Some(settings.diffuse_light).filter(|light| *light != DiffuseLight::Environment),
             max_size: settings.max_size,

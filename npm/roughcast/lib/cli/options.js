@@ -102,6 +102,7 @@ export function number(name, value) {
   throw new UsageError(`--${name}: expected a number, found ${value}`);
 }
 
+/** Returns the value of a switch as a boolean. */
 function truth(name, value) {
   if (value === 'true' || value === 'false') return value === 'true';
   throw new UsageError(`--${name}: expected true or false, found ${value}`);
