@@ -4,7 +4,15 @@ import { isGlb, stem } from './names.js';
 import { tomlSettings } from './settings.js';
 
 /** Bakes the materials of a glTF document; bake.d.ts describes the arguments and the result. */
-export async function bake(document, options = {}) {
+export async function bake(document, options) {
+  const baked = await bakeWithSizes(document, options);
+  // The command line counts copied files in its other members, and this function does not copy files.
+  const { layers, textures } = baked.report;
+  return { ...baked, report: { layers, textures } };
+}
+
+/** Bakes as `bake` does, with all members of the backend's report. */
+export async function bakeWithSizes(document, options = {}) {
   const { name = 'model', files = {}, settings = {}, threads, onProgress, backend: kind } = options;
   const { bakeDocument } = await backend(kind);
   const { names } = await listFiles(document, threads);
@@ -17,9 +25,7 @@ export async function bake(document, options = {}) {
   const input = { path: `${name}.${isGlb(document) ? 'glb' : 'gltf'}`, bytes: asBytes(document, name) };
   const baked = await bakeDocument({ name, input, beside, settings: tomlSettings(settings), threads, onProgress });
   baked.files.sort((a, b) => (a.path < b.path ? -1 : 1));
-  // The command line counts copied files in its other members, and this function does not copy files.
-  const { layers, textures } = baked.report;
-  return { ...baked, copies: baked.copies.sort(), report: { layers, textures } };
+  return { ...baked, copies: baked.copies.sort() };
 }
 
 /** Bakes a standalone normal or height map; bake.d.ts describes the arguments and the result. */

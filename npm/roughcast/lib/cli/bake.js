@@ -2,15 +2,17 @@
 import { readFile, realpath, writeFile } from 'node:fs/promises';
 import { existsSync } from 'node:fs';
 import path from 'node:path';
-import { bake } from '../bake.js';
+import { bakeWithSizes } from '../bake.js';
 import { stem } from '../names.js';
-import { count, findAssets, readIfThere, size, writeOutput } from './files.js';
+import { bufferPaths, findAssets, readIfThere, writeOutput } from './files.js';
 import { DOCUMENT, UsageError, parse } from './options.js';
+import { sum, summary, total } from './summary.js';
 
 const OWN = { ...DOCUMENT, report: { type: 'string' }, 'no-config': { type: 'boolean' } };
 
 /** Bakes inputs one after the other. Returns the exit code. */
 export async function bakeCommand(args, stdout, stderr) {
+  const started = performance.now();
   const { inputs, settings, values } = parse(args, OWN);
   const assets = (await Promise.all(inputs.map(findAssets))).flat();
   const place = placeOf(values.output, assets, settings);
@@ -22,6 +24,7 @@ export async function bakeCommand(args, stdout, stderr) {
     if (outcome.error) stderr.write(`error: ${asset.file}: ${outcome.error}\n`);
     else if (!values.quiet && !values.json) stdout.write(summary(outcome, values.verbose));
   }
+  if (!values.quiet && !values.json) stdout.write(total(outcomes, secondsSince(started)));
   const report = `${JSON.stringify({ formatVersion: 1, assets: outcomes }, null, 2)}\n`;
   if (values.json) stdout.write(report);
   if (values.report) await writeFile(values.report, report);
@@ -52,34 +55,44 @@ async function bakeAsset({ file }, place, settings, threads) {
       read += bytes?.byteLength ?? 0;
       return bytes;
     };
-    const baked = await bake(document, { name: stem(place), files, settings, threads, backend: 'wasm' });
+    const baked = await bakeWithSizes(document, { name: stem(place), files, settings, threads, backend: 'wasm' });
     const output = path.join(path.dirname(place), baked.document.path);
     const copies = await Promise.all(
       baked.copies.map(async (name) => ({ path: name, bytes: await readFile(path.join(folder, name)) })),
     );
     const all = [...copies, ...baked.files, baked.document];
     for (const { path: name, bytes } of all) await writeOutput(path.join(path.dirname(place), name), bytes, sources);
-    Object.assign(outcome, { output, status: baked.report.textures.length > 0 ? 'baked' : 'copied' });
-    outcome.bytes = all.reduce((sum, { bytes }) => sum + bytes.byteLength, 0);
-    Object.assign(outcome, { bytesRead: read, seconds: (performance.now() - started) / 1e3, ...baked.report });
+    const { report } = baked;
+    const buffers = copies.length > 0 ? bufferPaths(baked.document.bytes) : new Set();
+    Object.assign(outcome, {
+      output,
+      status: report.textures.length > 0 ? 'baked' : 'copied',
+      seconds: secondsSince(started),
+      inputBytes: read,
+      bytes: lengthOf(all),
+      ...report,
+      // The report counts the document and new files.
+      sizes: sum(report.sizes, copiedSizes(copies, buffers)),
+    });
   } catch (error) {
     outcome.error = error.message;
   }
   return outcome;
 }
 
-/** Returns a line about an asset, and its notes. Without `verbose`, notes that ask for nothing are left out. */
-function summary({ output, layers, textures, bytesRead, bytes, seconds }, verbose) {
-  const materials = new Set(layers.filter((layer) => layer.model).map((layer) => layer.index)).size;
-  const counts = [count(materials, 'material'), count(textures.length, 'texture')].join(', ');
-  const what = `${counts}, ${size(bytesRead)} -> ${size(bytes)}`;
-  const lines = [`${output}: ${what}, ${seconds.toFixed(1)} s (WebAssembly)`];
-  for (const { material, notes } of layers) {
-    const shown = notes.filter((note) => verbose || note.asksForAction);
-    lines.push(...shown.map((note) => `  ${material}: ${note.text}`));
-  }
-  return `${lines.join('\n')}\n`;
+/** Returns the sizes of copied files, which are images or `buffers`. */
+function copiedSizes(copies, buffers) {
+  const [geometry, images] = [true, false].map((wanted) =>
+    lengthOf(copies.filter((copy) => buffers.has(path.posix.normalize(copy.path)) === wanted)),
+  );
+  return { ktx2: 0, fallback: 0, images, geometry, json: 0 };
 }
+
+/** Returns the bytes of files together. */
+const lengthOf = (files) => files.reduce((length, { bytes }) => length + bytes.byteLength, 0);
+
+/** Returns the seconds since `start`, a time of `performance.now()`. */
+const secondsSince = (start) => (performance.now() - start) / 1e3;
 
 /** Warns that the settings of a roughcast.toml are not used. */
 function warnOfConfig(file, stderr) {

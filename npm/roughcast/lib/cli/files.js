@@ -2,6 +2,7 @@
 import { mkdir, readFile, readdir, realpath, rename, rm, stat, writeFile } from 'node:fs/promises';
 import path from 'node:path';
 import process from 'node:process';
+import { isGlb } from '../names.js';
 
 /**
  * Finds the assets that an input names.
@@ -41,6 +42,24 @@ export async function writeOutput(file, bytes, sources) {
   } catch (error) {
     await rm(beside, { force: true });
     throw error;
+  }
+}
+
+/** Returns the paths of the buffers that a .gltf or .glb file names, relative to it. */
+export function bufferPaths(document) {
+  const view = new DataView(document.buffer, document.byteOffset, document.byteLength);
+  const json = isGlb(document) ? document.subarray(20, 20 + view.getUint32(12, true)) : document;
+  const { buffers = [] } = JSON.parse(new TextDecoder().decode(json));
+  const uris = buffers.map(({ uri }) => uri).filter((uri) => uri && !uri.startsWith('data:'));
+  return new Set(uris.map((uri) => path.posix.normalize(decoded(uri))));
+}
+
+/** Returns a URI without its percent-encoding. */
+function decoded(uri) {
+  try {
+    return decodeURIComponent(uri);
+  } catch {
+    return uri;
   }
 }
 
