@@ -1,4 +1,4 @@
-// The try-it page as a person would use it, in headless Chromium. Screenshots are left in target/npm.
+// The try-it page of a release as a person would use it, in headless Chromium. Screenshots are left in target/npm.
 import assert from 'node:assert/strict';
 import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import os from 'node:os';
@@ -15,6 +15,9 @@ const executablePath = process.env.CHROMIUM ?? '/usr/bin/chromium';
 const noBrowser = existsSync(executablePath) ? false : `needs Chromium at ${executablePath} (or $CHROMIUM)`;
 const options = { skip: noModule || noBrowser };
 const SHOTS = path.join(repository, 'target/npm');
+const { version } = JSON.parse(readFileSync(path.join(npm, 'roughcast/package.json')));
+/** The name of the archive without its extension, and of the folder in the archive. */
+const NAME = `roughcast-page-${version}`;
 const ARGUMENTS = ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-quic'];
 
 let folder;
@@ -26,9 +29,10 @@ before(async () => {
   if (options.skip) return;
   mkdirSync(SHOTS, { recursive: true });
   folder = mkdtempSync(path.join(os.tmpdir(), 'roughcast-page-'));
-  run(process.execPath, [path.join(npm, 'make-page.js'), '--out', path.join(folder, 'page')]);
-  server = await serve({ page: path.join(folder, 'page') });
-  isolated = await serve({ page: path.join(folder, 'page') }, { isIsolated: true });
+  run('bash', [path.join(repository, '.github/release/page-archive'), folder]);
+  run('tar', ['-xzf', path.join(folder, `${NAME}.tar.gz`), '-C', folder]);
+  server = await serve({ page: path.join(folder, NAME) });
+  isolated = await serve({ page: path.join(folder, NAME) }, { isIsolated: true });
   browser = await chromium.launch({ executablePath, args: ARGUMENTS });
 });
 after(async () => {
@@ -120,6 +124,12 @@ function codecsOf(glb) {
     .sort();
 }
 
+test('has the licences beside the page', options, () => {
+  for (const name of ['index.html', 'LICENSE-APACHE', 'LICENSE-MIT', 'three/LICENSE']) {
+    assert.ok(existsSync(path.join(folder, NAME, name)), name);
+  }
+});
+
 test('bakes a sample, shows all three pictures with errors, and offers the file that Node bakes', options, async () => {
   const page = await open();
   await finished(page);
@@ -139,7 +149,7 @@ test('bakes a sample, shows all three pictures with errors, and offers the file 
 
   const { name, bytes } = await download(page);
   assert.equal(name, 'brushed-baked.glb');
-  const sample = readFileSync(path.join(folder, 'page/samples/brushed.glb'));
+  const sample = readFileSync(path.join(folder, NAME, 'samples/brushed.glb'));
   const settings = { engine: 'three', quality: 'fast', gltf: 'strict' };
   const { document } = await bake(sample, { name: 'brushed', settings, backend: 'wasm' });
   assert.ok(bytes.equals(document.bytes), 'the bytes of the page are those of Node');
@@ -184,7 +194,7 @@ test('bakes with threads on an isolated page, to the same bytes', options, async
   assert.equal(await page.evaluate(() => crossOriginIsolated), true);
   const processors = await page.evaluate(() => navigator.hardwareConcurrency);
   assert.deepEqual(modulesOf(page), [processors > 1 ? 'roughcast.threads.wasm' : 'roughcast.wasm']);
-  const sample = readFileSync(path.join(folder, 'page/samples/brushed.glb'));
+  const sample = readFileSync(path.join(folder, NAME, 'samples/brushed.glb'));
   const settings = { engine: 'three', quality: 'fast', gltf: 'strict' };
   const { document } = await bake(sample, { name: 'brushed', settings, backend: 'wasm', threads: 1 });
   assert.ok((await download(page)).bytes.equals(document.bytes));
