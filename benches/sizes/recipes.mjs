@@ -43,8 +43,8 @@ const roughcast = (...options) =>
 const gltfpack = (...options) =>
   converted((input, output) => run('gltfpack', '-i', input, '-o', output, '-noq', '-km', ...options));
 
-const optimize = (...options) =>
-  converted((input, output) => run(process.execPath, GLTF_TRANSFORM, 'optimize', input, output, ...options));
+const gltfTransform = (command, ...options) =>
+  converted((input, output) => run(process.execPath, GLTF_TRANSFORM, command, input, output, ...options));
 
 /** Encodes every image with `encode`, in the format that `format` returns for colours or data. */
 const encoded = (encode, format) => async (input) => {
@@ -144,8 +144,9 @@ export const RECIPES = [
     '-tc color -tu normal,attrib -tl 512',
   ]),
   ...encoders('basisu', basisu, 'basisu', [UASTC, UASTC_RDO, ETC1S, MIXED]),
-  ...rows('gltf-transform optimize', optimize, undefined, ['--texture-compress webp']),
+  ...rows('gltf-transform', gltfTransform, 'ktx', ['uastc', 'etc1s']),
+  ...rows('gltf-transform', gltfTransform, undefined, ['optimize --texture-compress webp']),
   ...encoders('basisu as WebAssembly', webAssembly, undefined, [UASTC, ETC1S]),
   ...slow(encoders('basisu as WebAssembly', webAssembly, undefined, [UASTC_RDO, MIXED])),
-  ...slow(rows('gltf-transform optimize', optimize, 'ktx', ['--texture-compress ktx2'])),
+  ...slow(rows('gltf-transform', gltfTransform, 'ktx', ['optimize --texture-compress ktx2'])),
 ];

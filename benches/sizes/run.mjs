@@ -1,7 +1,7 @@
 // Prints the table of docs/sizes.md: bytes of textures, CPU seconds, and the quality of base colours.
 // Needs Linux, whose /proc counts the CPU time of finished child processes.
-// Slow rows are measured only if --only names them.
-// usage: node run.mjs [--tool ROUGHCAST] [--only TEXT] ASSET...
+// Each --only measures the rows whose names have its text. Slow rows are measured only if an --only chooses them.
+// usage: node run.mjs [--tool ROUGHCAST] [--only TEXT]... ASSET...
 import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { basename, join } from 'node:path';
 import process from 'node:process';
@@ -11,11 +11,11 @@ import { inFolder, missingPrograms, run } from './programs.mjs';
 import { decode, io, RECIPES } from './recipes.mjs';
 
 const { values, positionals } = parseArgs({
-  options: { tool: { type: 'string', default: 'roughcast' }, only: { type: 'string', default: '' } },
+  options: { tool: { type: 'string', default: 'roughcast' }, only: { type: 'string', multiple: true } },
   allowPositionals: true,
 });
 if (positionals.length === 0) {
-  console.error('usage: node run.mjs [--tool ROUGHCAST] [--only TEXT] ASSET...');
+  console.error('usage: node run.mjs [--tool ROUGHCAST] [--only TEXT]... ASSET...');
   process.exit(2);
 }
 
@@ -91,7 +91,7 @@ async function measure(make) {
   return [...[...bytes, total].map(megabytes), cpu.toFixed(1), decibels(error)];
 }
 
-const isChosen = ({ name, isSlow }) => (values.only ? name.includes(values.only) : !isSlow);
+const isChosen = ({ name, isSlow }) => (values.only ? values.only.some((text) => name.includes(text)) : !isSlow);
 
 const printRow = (cells) => console.log(`| ${cells.join(' | ')} |`);
 
