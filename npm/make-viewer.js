@@ -1,5 +1,5 @@
 // Bundles the viewer of plugins/three for the package: `node make-viewer.js [--out out/viewer]`. Node serves the folder
-// by its `show.js`, without a checkout, other packages or a network.
+// by its `show.js`, without a checkout, other packages or a network. The native tool embeds the folder (`build.rs`).
 import { cpSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import process from 'node:process';

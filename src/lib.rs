@@ -124,7 +124,7 @@ pub use roughcast_core::{
 #[doc(hidden)]
 pub use roughcast_pipeline::{
     cache, check, compare, input_file, inspect, output, pictures, project, readback, remote, render, run, standalone,
-    text, watch,
+    text, viewer, watch,
 };
 
 #[doc(inline)]

@@ -1,4 +1,5 @@
-// A read-only web server of chosen folders, on the loopback interface and a free port.
+// A read-only web server of chosen folders, on the loopback interface and a free port. The native tool has the same in
+// `crates/pipeline/src/viewer`.
 import { createReadStream } from 'node:fs';
 import { realpath, stat } from 'node:fs/promises';
 import http from 'node:http';

@@ -92,7 +92,7 @@ fn run_command(cli: Cli, out: &mut dyn Write, err: &mut dyn Write) -> io::Result
         Command::Inspect(args) => inspect::run(&args, out, err),
         Command::Compare(args) => compare::run(&args, out, err),
         Command::Render(args) => render::run(&args, out, err),
-        Command::View(args) => view::run(&args, err),
+        Command::View(args) => view::run(&args, out, err),
         Command::Completions(args) => completions::run(&args, Cli::command(), out),
         Command::Man(args) => man::run(&args, Cli::command(), out, err),
     }

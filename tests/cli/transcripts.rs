@@ -130,7 +130,6 @@ fn errors() {
             "roughcast render brushed/brushed.bin -o out",
             "roughcast render heights/heights.png -o out",
             "roughcast render brushed/brushed.gltf -o brushed/brushed.bin --scene highlight --width 8",
-            "roughcast view brushed out --original brushed/brushed.gltf",
         ],
     );
 }

@@ -18,6 +18,7 @@ pub mod render;
 pub mod run;
 pub mod standalone;
 pub mod text;
+pub mod viewer;
 pub mod watch;
 
 // Modules of the core are named `crate::` here as they are there.
