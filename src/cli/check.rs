@@ -30,9 +30,9 @@ pub struct Args {
     /// .gltf, .glb or .ktx2 files, or folders of them.
     #[arg(required = true, value_name = "BAKED")]
     baked: Vec<PathBuf>,
-    /// Folder of the sources: compare their digests with those that the bake recorded, and the recorded settings with
-    /// the current ones of roughcast.toml and of flags.
-    #[arg(long, value_name = "DIR")]
+    /// Folder of the sources, or the one source: compare their digests with those that the bake recorded, and the
+    /// recorded settings with the current ones of roughcast.toml and of flags.
+    #[arg(long, value_name = "PATH")]
     source: Option<PathBuf>,
     /// Decode every level and check its texels.
     #[arg(long)]

@@ -127,3 +127,46 @@ fn never_overwrites_sources() {
     let (_, _, err) = roughcast(&["check", outer.to_str().unwrap(), "--source", source, "--fix"]);
     assert_eq!(files(&bake.source), before, "{err}");
 }
+
+/// Bakes the asset to the file `name` in `folder`. Returns the path of that file.
+fn named(source: &Path, folder: &Path, name: &str) -> String {
+    let output = folder.join(name).to_str().unwrap().to_owned();
+    let (outcome, _, err) = roughcast(&["bake", source.join("ridges.gltf").to_str().unwrap(), "-o", &output, "-q"]);
+    assert_eq!(outcome, Outcome::Done, "{err}");
+    output
+}
+
+/// A document that `-o` names has its source in the record, wherever both are. It is never its own source.
+#[test]
+fn checks_and_bakes_named_documents_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let source = folder.path().join("source");
+    write_asset(&source);
+    let document = source.join("ridges.gltf");
+    for (place, name) in [(folder.path(), "other.glb"), (folder.path(), "other.gltf"), (&*source, "beside.glb")] {
+        let output = named(&source, place, name);
+        let check = |more: &[&str]| {
+            let words = ["check", &output, "--format", "json", "--source"];
+            let (outcome, out, err) = roughcast(&[&words[..], more].concat());
+            let codes: Vec<String> = findings(&serde_json::from_str(&out).unwrap()).into_iter().map(|f| f.0).collect();
+            (outcome, codes, err)
+        };
+        for path in [source.as_path(), document.as_path()] {
+            assert_eq!(check(&[path.to_str().unwrap()]), (Outcome::Done, vec![], String::new()), "{output}");
+        }
+        let surface = source.join("surface.png");
+        let kept = fs::read(&surface).unwrap();
+        fs::copy(source.join("bumps.png"), &surface).unwrap();
+        let (outcome, codes, _) = check(&[source.to_str().unwrap()]);
+        assert!(outcome == Outcome::Findings && codes.contains(&"RC1505".to_owned()), "{output}: {codes:?}");
+        let (outcome, codes, err) = check(&[source.to_str().unwrap(), "--fix"]);
+        assert_eq!((outcome, codes), (Outcome::Done, vec![]), "{output}: {err}");
+        assert!(err.contains(&format!("-> {output}")), "{err}");
+        fs::write(&surface, kept).unwrap();
+    }
+    fs::rename(&document, source.join("renamed.gltf")).unwrap();
+    let output = source.join("beside.glb");
+    let words = ["check", output.to_str().unwrap(), "--source", source.to_str().unwrap()];
+    let (outcome, out, _) = roughcast(&words);
+    assert!(outcome == Outcome::Findings && out.contains("RC1504") && out.contains("ridges.gltf"), "{out}");
+}

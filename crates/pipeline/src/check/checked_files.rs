@@ -89,28 +89,27 @@ pub struct Sources {
 }
 
 impl Sources {
-    /// Finds the assets of the folder `source` that belong to `baked`.
+    /// Finds the assets of `source`, a folder or one document, that belong to `baked`.
     ///
     /// # Errors
     /// [`SelectionError`] where settings contradict each other or a configuration cannot be read.
     pub fn find(source: &Path, baked: &[PathBuf], selection: &Selection) -> Result<Self, SelectionError> {
-        let folder = Some(source.to_owned());
+        let folder = if source.is_file() { folder_of(source) } else { source };
+        let folder = Some(folder.to_owned());
         let mut sources = Self { folder, is_configured: selection.is_explicit(), ..Self::default() };
         for argument in baked {
             let is_folder = argument.is_dir();
-            let (inputs, output) = if is_folder {
-                (vec![source.to_owned()], argument.as_path())
-            } else {
-                let file = source_file_of(argument, source);
-                (file.into_iter().collect(), argument.parent().unwrap_or(Path::new("")))
-            };
             // A missing source is a finding of the output that needs the source.
-            let selected = selection.find_into(&inputs, output)?;
+            let selected = if is_folder {
+                selection.find_into(&[source.to_owned()], argument)?
+            } else {
+                selection.find_named(source_file_of(argument, source).as_slice(), argument)?
+            };
             sources.is_configured |= !selected.configs.is_empty();
             let is_unsafe = |error: &InputError| matches!(error, InputError::OutputIsInput { .. });
             sources.unsafe_output = sources.unsafe_output.or(selected.errors.into_iter().find(is_unsafe));
             for (input, resolved) in selected.assets {
-                let key = input.folder.join(&input.stem);
+                let key = if is_folder { input.folder.join(&input.stem) } else { argument.with_extension("") };
                 if is_folder {
                     sources.expected.push(key.clone());
                 }
@@ -131,10 +130,31 @@ pub fn source_document(path: &Path) -> Result<Document, String> {
     Document::parse(&bytes).map_err(|e| e.to_string())
 }
 
-/// Returns the file below the folder `source` that `baked` was baked from: by its name, else by what it records.
+/// Returns the file of `source`, a folder or one document, that `baked` was baked from: by what it records, else by its
+/// name. No file is its own source.
 fn source_file_of(baked: &Path, source: &Path) -> Option<PathBuf> {
-    let named = source_file(&source.join(baked.file_name().unwrap_or_default()));
-    named.or_else(|| source_file(&source.join(recorded_source(baked)?)))
+    if source.is_file() {
+        return Some(source.to_owned());
+    }
+    let recorded = recorded_source(baked).and_then(|name| source_file(&source.join(name)));
+    let named = || source_file(&source.join(baked.file_name()?));
+    recorded.or_else(named).filter(|file| !is_same_file(file, baked))
+}
+
+/// Returns where the source of `target` should be in `folder`, which has no asset for it.
+pub fn expected_source(target: &CheckedFile, folder: &Path) -> PathBuf {
+    let named = folder.join(&target.below);
+    let recorded = recorded_source(&target.path).filter(|_| is_same_file(&named, &target.path));
+    recorded.map_or(named, |name| folder.join(name))
+}
+
+fn is_same_file(a: &Path, b: &Path) -> bool {
+    fs::canonicalize(a).ok().is_some_and(|a| fs::canonicalize(b).is_ok_and(|b| a == b))
+}
+
+/// Returns the folder that a file is in.
+fn folder_of(file: &Path) -> &Path {
+    file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 /// Returns the file name of its source that the document at `baked` records.

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use rayon::prelude::*;
 use semver::Version;
 
-use super::checked_files::{CheckedFile, Sources, find_checked_files, source_document};
+use super::checked_files::{CheckedFile, Sources, expected_source, find_checked_files, source_document};
 use super::document::check_document;
 use super::files::Files;
 use super::findings::{Code, Finding, Findings, Severity};
@@ -171,7 +171,7 @@ impl Checker {
         let source_path = sources
             .folder
             .as_ref()
-            .map(|folder| known.map_or_else(|| folder.join(&target.below), |asset| asset.input.path.clone()));
+            .map(|folder| known.map_or_else(|| expected_source(target, folder), |asset| asset.input.path.clone()));
         let source_folder = source_path.as_deref().and_then(Path::parent).unwrap_or(Path::new("")).to_owned();
         let read_source = |path: &Path| read_file(&source_folder.join(path));
         let origin = source_path.and_then(|path| match source_document(&path) {

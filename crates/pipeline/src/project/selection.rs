@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use self::configs::{Configs, FoundConfig};
-use super::destination::Destination;
+use super::destination::{Destination, named_container};
 use super::inputs::{self, Input, InputError};
 use super::record::is_baked;
 use super::resolve::{ConfigSource, Resolved, resolve};
@@ -129,6 +129,18 @@ impl Selection {
     /// [`SelectionError`] where no asset can be selected.
     pub fn find_into(&self, arguments: &[PathBuf], output: &Path) -> Result<Selected, SelectionError> {
         self.select(Configs::default(), arguments, Destination::folder(output), &mut is_baked)
+    }
+
+    /// Finds the settings of the assets `arguments`, at most one, that is baked to the file `output`.
+    ///
+    /// # Errors
+    /// [`SelectionError`] where no asset can be selected.
+    pub fn find_named(&self, arguments: &[PathBuf], output: &Path) -> Result<Selected, SelectionError> {
+        let document = named_container(output).and_then(|_| Destination::new(output, arguments).ok());
+        // A texture, or a name that a bake does not write.
+        let folder = || Destination::folder(output.parent().unwrap_or(Path::new("")));
+        let destination = document.unwrap_or_else(folder);
+        self.select(Configs::default(), arguments, destination, &mut is_baked)
     }
 
     /// Returns whether a configuration or a value is explicit.
