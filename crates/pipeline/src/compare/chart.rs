@@ -18,6 +18,8 @@ const LEFT: f64 = 56.0;
 const RIGHT: f64 = 150.0;
 const TOP: f64 = 34.0;
 const BOTTOM: f64 = 48.0;
+/// What the charts call the oracle, as the verdict does.
+const BEST: &str = "best possible lobe";
 /// Space for labels to the left of the first point.
 const BEFORE: f64 = 150.0;
 
@@ -120,7 +122,7 @@ pub fn cost(comparison: &Comparison, axis: Axis, measure: Measure, y: f64) -> St
     for oracle in oracles {
         let y = scale.y(oracle.error);
         labels.avoid([LEFT, y - 1.0, WIDTH - RIGHT, y + 1.0]);
-        labels.avoid([LEFT, y, LEFT + 45.0, y + 18.0]);
+        labels.avoid([LEFT, y, LEFT + 4.0 + width(BEST), y + 18.0]);
     }
     for (x, y, entry) in placed {
         let cost = value(entry).map_or("not measured".to_owned(), |n| amount(axis, n));
@@ -186,7 +188,8 @@ pub fn levels(comparison: &Comparison, y: f64) -> String {
             class(entry),
             x + 22.0
         );
-        label(&mut svg, entry, &entry.name, [x + 25.0, height], "start");
+        let name = if entry.kind == Kind::Oracle { BEST } else { &entry.name };
+        label(&mut svg, entry, name, [x + 25.0, height], "start");
         svg += "</g>";
     }
     svg + "</svg>"
@@ -270,7 +273,7 @@ impl Scale {
             let _ = write!(
                 svg,
                 "<path class=\"oracle\" d=\"M{LEFT} {y:.1}H{:.1}\"/><text class=\"soft\" x=\"{LEFT}\" y=\"{:.1}\" \
-                 dx=\"4\">oracle</text>",
+                 dx=\"4\">{BEST}</text>",
                 WIDTH - RIGHT,
                 y + 13.0
             );

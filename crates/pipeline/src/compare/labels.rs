@@ -27,9 +27,12 @@ pub struct Labels {
     boxes: Vec<[f64; 4]>,
 }
 
-/// Estimates the width of `text` in a sans-serif font of 11 pixels.
+/// Least distance between labels side by side.
+const GAP: f64 = 6.0;
+
+/// Estimates the width of `text` in a wide sans-serif font of 11 pixels.
 pub fn width(text: &str) -> f64 {
-    6.0 * text.chars().count() as f64
+    6.4 * text.chars().count() as f64
 }
 
 impl Labels {
@@ -53,12 +56,13 @@ impl Labels {
             [[12.0, dy], [12.0, -dy], [-12.0 - w, dy], [-12.0 - w, -dy]]
         });
         let area = |[dx, dy]: [f64; 2]| [x + dx, y + dy - 0.5 * LINE, x + dx + w, y + dy + 0.5 * LINE];
+        let with_gap = |[left, top, right, bottom]: [f64; 4]| [left - GAP, top, right + GAP, bottom];
         let [left, top, right, bottom] = self.bounds;
         let inside = |b: &[f64; 4]| b[0] >= left && b[1] >= top && b[2] <= right && b[3] <= bottom;
         let apart = |b: &[f64; 4], o: &[f64; 4]| b[2] <= o[0] || o[2] <= b[0] || b[3] <= o[1] || o[3] <= b[1];
         let free = |b: &[f64; 4]| inside(b) && self.boxes.iter().all(|o| apart(b, o));
         let found = offsets.map(area).find(free).unwrap_or_else(|| area([12.0, 0.0]));
-        self.boxes.push(found);
+        self.boxes.push(with_gap(found));
         [found[0], 0.5 * (found[1] + found[3])]
     }
 }
