@@ -192,7 +192,14 @@ impl Choice {
         };
         let why: Vec<String> = reasons.iter().map(why).collect();
         let (levels, verb) = if self.misses.len() == 1 { ("level", "misses") } else { ("levels", "miss") };
-        let is_avoidable = reasons.iter().any(|reason| reason.is_avoidable());
+        let remedies = self.remedies(&reasons, settings, worst.level);
+        let end = match &remedies[..] {
+            [] if reasons.iter().any(|reason| reason.is_avoidable()) => {
+                "; a larger --max-error accepts them".to_owned()
+            }
+            [] => String::new(),
+            remedies => format!("; to come closer, use {}", remedies.join(", and ")),
+        };
         let text = format!(
             "{levels} {all} {verb} --max-error {} (worst {:.2}, at level {}; the best lobe has {:.2} there): {}{}",
             settings.max_error,
@@ -200,20 +207,15 @@ impl Choice {
             worst.level,
             worst.oracle,
             why.join("; "),
-            if is_avoidable { self.remedies(&reasons, settings, worst.level) } else { String::new() }
+            end
         );
-        Some(note::missed_bound(text, is_avoidable))
+        Some(note::missed_bound(text, !remedies.is_empty()))
     }
 
-    /// Returns what the user can do about `reasons`, as the end of a sentence. `level` has the largest error.
-    fn remedies(&self, reasons: &[Reason], settings: &Settings, level: usize) -> String {
+    /// Returns what the user can do about `reasons`, as objects of "use". `level` has the largest error.
+    fn remedies(&self, reasons: &[Reason], settings: &Settings, level: usize) -> Vec<String> {
         let closer = if settings.model == Model::Auto { None } else { self.closer_model(level) };
-        let remedies: Vec<String> = reasons.iter().filter_map(|reason| reason.remedy(settings, closer)).collect();
-        if remedies.is_empty() {
-            "; a larger --max-error accepts them".to_owned()
-        } else {
-            format!("; to come closer, use {}", remedies.join(", and "))
-        }
+        reasons.iter().filter_map(|reason| reason.remedy(settings, closer)).collect()
     }
 
     /// Returns the model with the smallest error at `level`, if that is another model than the chosen one.
@@ -321,7 +323,6 @@ impl Content {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::codec::Target;
     use crate::codec::uastc::Effort;
 
     #[test]
@@ -333,10 +334,11 @@ mod tests {
             misses: vec![Miss { level: 2, error: 0.2, oracle: 0.1, reason }],
         };
         let asks = |reason| choice(reason).note(&Settings::default()).expect("a note").asks_for_action;
-        for reason in [Reason::Encoding, Reason::Isotropic, Reason::Fit] {
+        for reason in [Reason::Isotropic, Reason::Fit] {
             assert!(asks(reason), "{reason:?}");
         }
-        for reason in [Reason::AlphaAboveOne, Reason::TwoPeaked, Reason::Steep, Reason::NoSingleLobe] {
+        let best = [Reason::Encoding, Reason::AlphaAboveOne, Reason::TwoPeaked, Reason::Steep, Reason::NoSingleLobe];
+        for reason in best {
             assert!(!asks(reason), "{reason:?}");
         }
     }
@@ -354,16 +356,16 @@ mod tests {
         };
         let settings = Settings::default();
         for (settings, end) in [
-            (settings, "; to come closer, use --target float, and --quality best"),
+            (settings, "; to come closer, use --quality best"),
             (
                 settings.with_model(Model::Isotropic),
-                "; to come closer, use --target float, and --model anisotropic if the engine shows it correctly",
+                "; to come closer, use --model anisotropic if the engine shows it correctly",
             ),
-            (settings.with_target(Target::Float), "; to come closer, use --quality best"),
-            (settings.with_target(Target::Float).with_quality(Effort::Best), "(2); a larger --max-error accepts them"),
+            (settings.with_quality(Effort::Best), "(2); a larger --max-error accepts them"),
         ] {
-            let text = choice.note(&settings).expect("a note").text;
-            assert!(text.ends_with(end), "{text}");
+            let note = choice.note(&settings).expect("a note");
+            assert!(note.text.ends_with(end), "{note}");
+            assert_eq!(note.asks_for_action, end.contains("use"), "{note}");
         }
     }
 }

@@ -19,16 +19,17 @@ pub fn output_sizes(document: &Document, bytes: usize, files: &[NewFile]) -> Res
     let root: Value = document.json().value("")?.unwrap_or_default();
     let fallbacks = Fallbacks::of(&root);
     let mut sizes = OutputSizes::default();
+    let mut bin = document.bin().unwrap_or_default();
+    sizes.json = (bytes as u64).saturating_sub(bin.len() as u64);
     for file in files {
-        // The new files of a bake are KTX2 textures, their PNG copies and the buffer of a .glb.
-        let size = match file.path.extension().and_then(OsStr::to_str) {
-            Some("ktx2") => &mut sizes.ktx2,
-            Some("png") => &mut sizes.fallback,
-            _ => &mut sizes.geometry,
-        };
-        *size += file.bytes.len() as u64;
+        match file.path.extension().and_then(OsStr::to_str) {
+            Some("ktx2") => sizes.ktx2 += file.bytes.len() as u64,
+            Some("png") => sizes.fallback += file.bytes.len() as u64,
+            // The new files of a bake are KTX2 textures, their PNG copies, and the buffer of a .glb that becomes a
+            // .gltf.
+            _ => bin = &file.bytes,
+        }
     }
-    let bin = document.bin().unwrap_or_default();
     let mut images = 0;
     for (index, view) in image_views(&root) {
         // An image of another buffer, or one outside of the chunk, has no bytes here.
@@ -45,7 +46,6 @@ pub fn output_sizes(document: &Document, bytes: usize, files: &[NewFile]) -> Res
         images += image.len() as u64;
     }
     sizes.geometry += (bin.len() as u64).saturating_sub(images);
-    sizes.json = (bytes as u64).saturating_sub(bin.len() as u64);
     Ok(sizes)
 }
 

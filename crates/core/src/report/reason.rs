@@ -2,7 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::codec::Target;
 use crate::codec::uastc::Effort;
 use crate::settings::{Model, Settings};
 
@@ -70,11 +69,12 @@ impl Evidence {
 
 impl Reason {
     /// Returns whether another setting or another layer may come closer to the bound. For the other reasons the best
-    /// lobe exceeds the bound, too, or no engine can show that lobe.
+    /// lobe exceeds the bound, too, or no engine can show that lobe, or glTF has no finer encoding: `--target float` is
+    /// for other programs.
     pub fn is_avoidable(self) -> bool {
         match self {
-            Self::Encoding | Self::Isotropic | Self::Fit => true,
-            Self::AlphaAboveOne | Self::TwoPeaked | Self::Steep | Self::NoSingleLobe => false,
+            Self::Isotropic | Self::Fit => true,
+            Self::Encoding | Self::AlphaAboveOne | Self::TwoPeaked | Self::Steep | Self::NoSingleLobe => false,
         }
     }
 
@@ -82,14 +82,13 @@ impl Reason {
     /// model that the layer can have and that is closer than the requested model.
     pub(super) fn remedy(self, settings: &Settings, closer: Option<Model>) -> Option<String> {
         match self {
-            Self::Encoding => (settings.target != Target::Float).then(|| "--target float".to_owned()),
             Self::Isotropic => (settings.model_limit() == Model::Anisotropic)
                 .then(|| "the base layer for these bumps, since only that layer can be anisotropic".to_owned()),
             Self::Fit => match closer {
                 Some(model) => Some(format!("--model {} if the engine shows it correctly", model.name())),
                 None => (settings.quality != Effort::Best).then(|| "--quality best".to_owned()),
             },
-            Self::AlphaAboveOne | Self::TwoPeaked | Self::Steep | Self::NoSingleLobe => None,
+            Self::Encoding | Self::AlphaAboveOne | Self::TwoPeaked | Self::Steep | Self::NoSingleLobe => None,
         }
     }
 

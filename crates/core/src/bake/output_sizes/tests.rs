@@ -36,3 +36,17 @@ fn new_files_beside_a_gltf_are_counted_by_their_extensions() {
     let sizes = output_sizes(&document, 2, &files).unwrap();
     assert_eq!(sizes, OutputSizes { ktx2: 5, fallback: 3, images: 0, geometry: 2, json: 2 });
 }
+
+#[test]
+fn images_in_the_buffer_of_a_glb_that_becomes_a_gltf_are_images() {
+    let json = json!({
+        "asset": { "version": "2.0" },
+        "buffers": [{ "byteLength": 100, "uri": "a.bin" }],
+        "bufferViews": [{ "buffer": 0, "byteLength": 20 }, { "buffer": 0, "byteOffset": 20, "byteLength": 30 }],
+        "images": [{ "bufferView": 1 }],
+    });
+    let document = Document::gltf(Json::parse(json.to_string().as_bytes()).unwrap());
+    let files = [NewFile::new(PathBuf::from("a.bin"), vec![0; 100])];
+    let sizes = output_sizes(&document, 9, &files).unwrap();
+    assert_eq!(sizes, OutputSizes { ktx2: 0, fallback: 0, images: 30, geometry: 70, json: 9 });
+}
