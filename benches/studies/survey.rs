@@ -1,17 +1,18 @@
-//! Compares the quick survey of `bake` with full references.
+//! Compares the quick survey of `bake` with an exhaustive count.
 //!
-//! `cargo run --release -p studies --bin survey` takes the mean lobe errors of plain mips, corrected vMF and D over 64
-//! texels of each map and level. It compares references from the survey with full references at the same texels, and
-//! with full references at four times as many other texels. It reads `../shared/data/maps`, else `fixtures/maps`.
+//! `cargo run --release -p studies --bin survey` takes the mean lobe errors of plain mips, corrected vMF and D on each
+//! map and level from 1 to 6: over the texels and samples of the survey, and over all texels of the level, with whole
+//! footprints and at least 32 samples for each texel. It reads `../shared/data/maps`, else `fixtures/maps`.
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
+use rayon::prelude::*;
 use roughcast::bump::{Moments, NormalLayout, NormalMap, NormalOffsets};
 use roughcast::decode::decode;
 use roughcast::image::DecodeOptions;
 use roughcast::lobe::{Alpha, Family, OrientedLobe, SquaredAlpha};
-use roughcast::metric::{Peer, Precision, Surface, mean_errors, sample_sites, sample_texels};
+use roughcast::metric::{Peer, Precision, Site, Surface, sample_sites};
 use roughcast::mip::{TexelRows, level_sizes};
 
 const PEERS: [Peer; 3] = [Peer::PlainMips, Peer::CorrectedVmf, Peer::D];
@@ -40,6 +41,10 @@ impl Differences {
     }
 }
 
+/// All texels of a level, and whole footprints.
+const ALL: Precision =
+    Precision { texels: usize::MAX, least: usize::MAX, rows: usize::MAX, level0: u32::MAX, half_vectors: 1 << 23 };
+
 fn main() -> Result<(), Box<dyn Error>> {
     let folders = ["../shared/data/maps", "fixtures/maps"].map(Path::new);
     let folder = folders.into_iter().find(|f| f.is_dir()).ok_or("expected ../shared/data/maps or fixtures/maps")?;
@@ -47,20 +52,28 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut paths: Vec<PathBuf> = entries.into_iter().map(|e| e.path()).collect();
     paths.retain(|path| path.to_string_lossy().contains("_normal"));
     paths.sort();
-    let (mut same, mut more) = (Differences::default(), Differences::default());
+    let mut all = Differences::default();
     for path in &paths {
         let map = NormalMap::new(decode(&std::fs::read(path)?, &DecodeOptions::default())?, NormalLayout::Auto, false)?;
+        let mut of_map = Differences::default();
         for alpha in ALPHAS {
-            compare(&map, alpha, &mut same, &mut more);
+            for level in 1..=6.min(level_sizes(map.width(), map.height()).len() - 1) {
+                let [quick, exhaustive] =
+                    [Precision::QUICK, ALL].map(|precision| errors(&map, alpha, level, precision));
+                for (quick, exhaustive) in quick.iter().zip(exhaustive) {
+                    of_map.add(quick - exhaustive);
+                    all.add(quick - exhaustive);
+                }
+            }
         }
-        println!("{}: same texels: {}", path.display(), same.text());
+        println!("{}: {}", path.display(), of_map.text());
     }
-    println!("all: same texels: {}", same.text());
-    println!("all: against four times as many texels: {}", more.text());
+    println!("all: {}", all.text());
     Ok(())
 }
 
-fn compare(map: &NormalMap, alpha: f32, same: &mut Differences, more: &mut Differences) {
+/// Returns the mean error of each peer at a level.
+fn errors(map: &NormalMap, alpha: f32, level: usize, precision: Precision) -> [f64; PEERS.len()] {
     let sizes = level_sizes(map.width(), map.height());
     let surface = Surface::of_map(map, SquaredAlpha::isotropic(Alpha(alpha)));
     let rows = |first: u32, out: &mut [OrientedLobe]| {
@@ -70,28 +83,12 @@ fn compare(map: &NormalMap, alpha: f32, same: &mut Differences, more: &mut Diffe
             *lobe = OrientedLobe::new(m.mean, SquaredAlpha::isotropic(Alpha(alpha)));
         }
     };
-    let precision = Precision::QUICK;
-    let sites = sample_sites(&sizes, 1..sizes.len(), Family::Ggx, precision, &rows);
-    for (level, &size) in sizes.iter().enumerate().skip(1) {
-        let of: Vec<_> = sites.iter().filter(|s| s.level == level).collect();
-        let mut quick = [0.0; PEERS.len()];
-        for site in &of {
-            // Lobes are from whole footprints. Only the reference that they are compared with is surveyed.
-            let moments = surface.footprint(size, site.texel).moments();
-            for (sum, peer) in quick.iter_mut().zip(PEERS) {
-                *sum += site.reference.error(&peer.lobe(Family::Ggx, &moments)) / of.len() as f64;
-            }
-        }
-        let full = |texels| {
-            mean_errors(&surface, Family::Ggx, size, &sample_texels(size, texels), |_, footprint, reference| {
-                let moments = footprint.moments();
-                PEERS.map(|peer| reference.error(&peer.lobe(Family::Ggx, &moments)))
-            })
-        };
-        quick.iter().zip(full(precision.texels)).for_each(|(quick, full)| same.add(quick - full));
-        // Whole footprints of coarse levels take minutes, and those levels have no more texels.
-        if level <= 5 {
-            quick.iter().zip(full(4 * precision.texels)).for_each(|(quick, full)| more.add(quick - full));
-        }
-    }
+    let sites = sample_sites(&sizes, level..level + 1, Family::Ggx, precision, &rows);
+    let of_site = |site: &Site| {
+        // Lobes are from whole footprints. Only the reference that they are compared with is surveyed.
+        let moments = surface.footprint(sizes[level], site.texel).moments();
+        PEERS.map(|peer| site.reference.error(&peer.lobe(Family::Ggx, &moments)))
+    };
+    let each: Vec<_> = sites.par_iter().map(of_site).collect();
+    std::array::from_fn(|i| each.iter().map(|errors| errors[i]).sum::<f64>() / each.len() as f64)
 }

@@ -72,7 +72,8 @@ pub fn bake_layer<'m>(
     let means = (map.settings.profile.is_portable() && is_undecided && lobes.roughening.is_some())
         .then(|| normals_of_means(map));
     let normals = earlier.or(deciding.as_ref()).or(means.as_ref());
-    let candidates = candidates(map, &layer, &lobes, normals, step.pyramid.or(pyramid.as_ref()));
+    let owns_pyramid = pyramid.is_some() && !step.is_needed_later;
+    let candidates = candidates(map, &layer, &lobes, normals, step.pyramid.or(pyramid.as_ref()), owns_pyramid);
     let encoding = normal_encoding(map, step.first);
     // The evaluation of candidates waits for its slowest texels several times: normals are encoded meanwhile.
     let (encoded, choice) = rayon::join(
@@ -87,6 +88,7 @@ pub fn bake_layer<'m>(
         LayerNormals { mip_chain, normals: lobes.map(copied) }
     });
     let model = LayerModel::new(choice, &layer, map.settings);
+    let pyramid = pyramid.map(|levels| levels.with_base_levels(model.base_levels()));
     let is_held = layer.can_be_roughened || map.settings.profile.has_pyramid();
     let reported_model = if is_held { model.model } else { Model::None };
     let is_stored = map.settings.profile.is_portable() && model.model != Model::None && !layer.keeps_core_lobe;
@@ -104,13 +106,13 @@ fn layer_products(
     lobes: LayerLobes<'_>,
     (first, is_stored): (usize, bool),
 ) -> Result<LayerProducts, EncodeError> {
+    let lobes = lobes.with_base_levels(model.base_levels());
     let base_roughness = lobes.with_base_texture().filter(|_| model.model != Model::None);
     let base_roughness = base_roughness.map(|roughening| base_roughness_texture(map, roughening, first)).transpose()?;
     let LayerLobes { roughening, needed_variance, .. } = lobes;
     let mut notes: Vec<Note> = model.choice.as_ref().and_then(|choice| choice.note(map.settings)).into_iter().collect();
     let mut textures = Vec::new();
     if let Some(roughening) = roughening.filter(|_| is_stored) {
-        let roughening = roughening.with_base_levels(model.base_levels());
         textures = lobe_textures(map, &roughening, &model)?;
         notes.extend(notes::of_roughening(&roughening, model.model, map.bump_map.noise()));
         roughening.free();

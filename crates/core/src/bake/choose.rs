@@ -18,13 +18,15 @@ pub struct LayerModel {
 }
 
 /// Returns the candidates of a layer; none if the bumps cannot be added to the base lobe. `normals` is the normal
-/// texture of the portable profile, and `pyramid` are the levels of the pyramid profile.
+/// texture of the portable profile, and `pyramid` are the levels of the pyramid profile. `owns_pyramid` says whether
+/// these levels are for this layer alone.
 pub fn candidates<'a, 'f>(
     map: &'a MapOffsets<'_>,
     layer: &LayerInput<'_>,
     lobes: &'a LayerLobes<'f>,
     normals: Option<&'a Normals<'a>>,
     pyramid: Option<&'a LobeLevels<'_>>,
+    owns_pyramid: bool,
 ) -> Option<CandidateSet<'a, 'f>> {
     let pyramid = lobes.needed_variance.map(|needed| {
         let levels: &dyn PyramidLevels = match pyramid {
@@ -32,7 +34,8 @@ pub fn candidates<'a, 'f>(
             None => map.bumps.moments(),
         };
         let correction = correction_factor(needed, lost_variance(levels));
-        PyramidData { levels, correction, has_base_texture: lobes.with_base_texture().is_some() }
+        let has_base_texture = lobes.with_base_texture().is_some();
+        PyramidData { levels, correction, has_base_texture, may_keep_base: owns_pyramid }
     });
     lobes.roughening.as_ref().map(|roughening| CandidateSet {
         roughening,

@@ -160,6 +160,15 @@ impl<'a> LayerLobes<'a> {
         Self { roughening, needed_variance: needed.or(of_lobes), can_decide }
     }
 
+    /// Keeps the base lobe at `levels`. [`LobeLevels::with_base_levels`] does the same to the levels of the pyramid
+    /// profile.
+    pub fn with_base_levels(self, levels: &[usize]) -> Self {
+        let roughening = self.roughening.map(|roughening| roughening.with_base_levels(levels));
+        let of_lobes = roughening.as_ref().filter(|_| self.can_decide).map(lost_variance_of_lobes);
+        let needed_variance = self.needed_variance.map(|needed| of_lobes.unwrap_or(needed));
+        Self { roughening, needed_variance, ..self }
+    }
+
     /// Returns the lobes if they can decide the directions of the bump map's texels: if they are on its grid.
     pub fn deciding(&self) -> Option<&Roughening<'a>> {
         self.roughening.as_ref().filter(|_| self.can_decide)

@@ -69,6 +69,16 @@ impl<'a> LobeLevels<'a> {
         let tail = bumps.sizes().iter().enumerate().skip(1).map(level).collect();
         Self { level_0: bumps.rows, tail }
     }
+
+    /// Keeps the base lobe at `levels`, which are coarser than level 0: K is 0 there.
+    pub fn with_base_levels(mut self, levels: &[usize]) -> Self {
+        for level in levels.iter().filter_map(|level| level.checked_sub(1)) {
+            for texel in self.tail.get_mut(level).into_iter().flat_map(|level| &mut level.texels) {
+                *texel = PyramidTexel { offset: texel.offset, ..PyramidTexel::default() };
+            }
+        }
+        self
+    }
 }
 
 impl PyramidLevels for LobeLevels<'_> {

@@ -72,15 +72,19 @@ pub fn with_z([x, y]: [f32; 2]) -> [f32; 3] {
 
 /// Returns `count` texels spread evenly over a level of `size`, or all texels if there are no more. The choice depends
 /// on nothing else.
-pub fn sample_texels((width, height): (u32, u32), count: usize) -> Vec<(u32, u32)> {
+pub fn sample_texels(size: (u32, u32), count: usize) -> Vec<(u32, u32)> {
+    sample_rows(size, count, count)
+}
+
+/// Returns `count` texels spread evenly over at most `rows` rows of a level of `size`, or all texels if there are no
+/// more.
+pub(super) fn sample_rows((width, height): (u32, u32), count: usize, rows: usize) -> Vec<(u32, u32)> {
     if u64::from(width) * u64::from(height) <= count as u64 {
         return (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).collect();
     }
     let at = |share: f64, size: u32| (share * f64::from(size)) as u32;
-    let texel = |i| {
-        let [u, v] = even_point(i);
-        (at(u, width), at(v, height))
-    };
+    let of_row = count.div_ceil(rows.max(1)).max(1);
+    let texel = |i| (at(even_point(i)[0], width), at(even_point(i / of_row)[1], height));
     (0..count).map(texel).collect()
 }
 

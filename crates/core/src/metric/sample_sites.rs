@@ -7,17 +7,21 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use crate::lobe::{Family, LobeTexel};
-use crate::metric::decoded::sample_texels;
+use crate::metric::decoded::sample_rows;
 use crate::metric::draws::{DRAWN, DrawnFootprint};
 use crate::metric::footprint::{Footprint, Part};
 use crate::metric::reference::Reference;
 
 /// How many sites each level has. A level with few texels has more samples for each texel. Time grows with
-/// `half_vectors * parts`.
+/// `half_vectors * parts`, and with `rows`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Precision {
     /// Most texels of a level.
     pub texels: usize,
+    /// Least texels of a level that is not counted whole, where `level0` would allow fewer.
+    pub least: usize,
+    /// Most texels in all rows of a level that have sites, at least 64 rows. Candidates are computed row by row.
+    pub rows: usize,
     /// Most level-0 texels drawn from the footprints of a level, all together.
     pub level0: u32,
     /// Half-vectors for all texels of a level together, at most 2048 for one texel.
@@ -25,10 +29,16 @@ pub struct Precision {
 }
 
 impl Precision {
-    /// The precision of a default bake: mean errors of a level within about 0.01 of all samples.
-    /// `benches/studies/survey.rs` measures 0.0066 (root mean square), and 0.0056 with twice the level-0 texels. The
-    /// choice of texels contributes 0.018 to both.
-    pub const QUICK: Self = Self { texels: 64, level0: 1 << 16, half_vectors: 8192 };
+    /// The precision of a default bake. Mean errors of a level are within 0.01 of those of all texels
+    /// (`benches/studies/survey.rs`).
+    pub const QUICK: Self = Self { texels: 1024, least: 64, rows: 1 << 18, level0: 1 << 17, half_vectors: 8192 };
+
+    /// Returns the texels of a level of `size` that have sites. Each may cover `covered` texels of level 0.
+    fn sites(&self, size: (u32, u32), covered: usize) -> Vec<(u32, u32)> {
+        let texels = self.texels.min(self.level0 as usize / covered).max(self.least);
+        let rows = (self.rows / size.0.max(1) as usize).max(self.least);
+        sample_rows(size, texels, rows)
+    }
 
     fn samples(&self, texels: usize) -> usize {
         (self.half_vectors / texels.max(1)).clamp(1, 2048)
@@ -81,7 +91,7 @@ pub fn sample_sites<T: LobeTexel>(
     let mut points = Vec::new();
     for level in levels {
         let Some(&size) = sizes.get(level) else { break };
-        let texels = sample_texels(size, precision.texels);
+        let texels = precision.sites(size, covered(whole.0, size.0) * covered(whole.1, size.1));
         let (strata, samples) = (precision.strata(texels.len()), precision.samples(texels.len()));
         let point = |(index, texel)| {
             let drawn = DrawnFootprint { whole, size, texel, strata };
@@ -138,6 +148,12 @@ pub fn sample_sites<T: LobeTexel>(
         Some(Site { level: point.level, texel: point.drawn.texel, footprint, reference })
     };
     points.par_iter().zip(strips).filter_map(site).collect()
+}
+
+/// Returns how many texels of an axis of length `old` a texel of an axis of length `new` may overlap.
+fn covered(old: u32, new: u32) -> usize {
+    let new = new.max(1);
+    old.div_ceil(new) as usize + usize::from(!old.is_multiple_of(new))
 }
 
 #[cfg(test)]

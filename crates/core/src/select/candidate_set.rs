@@ -33,6 +33,9 @@ pub struct PyramidData<'a> {
     pub correction: f32,
     /// Whether a texture has the base lobes that K is added to. Otherwise the material's own texture has them.
     pub has_base_texture: bool,
+    /// Whether K may be 0 at some levels, which then keep the base lobe: K is made of the lobes of this layer, and no
+    /// other layer uses it.
+    pub may_keep_base: bool,
 }
 
 impl CandidateSet<'_, '_> {

@@ -10,10 +10,14 @@ use crate::select::rule::choose;
 use crate::select::shown::{Errors, Shown};
 use crate::settings::Model;
 
-/// A candidate and its error at each sample point.
+/// What a level may lose against the base lobe: in the pyramid profile, and where it is magnified from a smaller texture.
+const NEGLIGIBLE: f32 = 0.005;
+
+/// A candidate that has been evaluated.
 struct Evaluated {
     candidate: Candidate,
-    errors: Errors,
+    /// Whether a level that it lacks, and that is magnified therefore, loses against the base lobe.
+    is_worse_than_base: bool,
 }
 
 /// The sample points of all levels from `finest` on.
@@ -30,7 +34,11 @@ impl CandidateSet<'_, '_> {
     /// # Errors
     /// [`EncodeError`] if the blocks at the sample points cannot be encoded.
     pub fn choose(&self) -> Result<Choice, EncodeError> {
-        let samples = self.samples();
+        self.choose_with(Precision::QUICK)
+    }
+
+    fn choose_with(&self, precision: Precision) -> Result<Choice, EncodeError> {
+        let samples = self.samples(precision);
         let shown = Shown::new(self, samples.sites.iter(), true)?;
         let none = shown.errors(&samples.sites.iter().collect::<Vec<_>>(), Model::None, self.first)?;
         let mut evaluated = Vec::new();
@@ -38,13 +46,12 @@ impl CandidateSet<'_, '_> {
             evaluated.extend(self.evaluate(model, &samples, &shown, &none)?);
         }
         let chosen = self.index_of_choice(&evaluated);
-        let Evaluated { candidate, errors } = &evaluated[chosen];
-        let misses = misses(self, &samples.sites, candidate, errors, samples.finest)?;
+        let misses = misses(self, &samples.sites, &evaluated[chosen].candidate, samples.finest)?;
         let candidates = evaluated.into_iter().map(|evaluated| evaluated.candidate).collect();
         Ok(Choice { finest: samples.finest, candidates, chosen, misses })
     }
 
-    fn samples(&self) -> Samples {
+    fn samples(&self, precision: Precision) -> Samples {
         let sizes = self.roughening.sizes();
         let finest = self.finest.min(sizes.len() - 1);
         let lobes = self.roughening.lobes();
@@ -54,20 +61,20 @@ impl CandidateSet<'_, '_> {
         let texels = |first, out: &mut [OrientedLobe]| {
             (first..).zip(out.chunks_exact_mut(width)).for_each(|(y, row)| lobes.row(0, y, row));
         };
-        let mut sites = sample_sites(&sizes, finest..1, family, Precision::QUICK, &texels);
+        let mut sites = sample_sites(&sizes, finest..1, family, precision, &texels);
         let coarser = finest.max(1)..sizes.len();
         sites.extend(if lobes.is_reflectance_constant() {
             let rows = |first, out: &mut [OrientedLobe]| lobes.magnified_rows(first, out);
-            sample_sites(&sizes, coarser, family, Precision::QUICK, &rows)
+            sample_sites(&sizes, coarser, family, precision, &rows)
         } else {
             let rows = |first, out: &mut [ReflectingLobe]| lobes.reflecting_rows(first, out);
-            sample_sites(&sizes, coarser, family, Precision::QUICK, &rows)
+            sample_sites(&sizes, coarser, family, precision, &rows)
         });
         Samples { sizes, finest, sites }
     }
 
-    /// Evaluates `model` in each of its sizes, smallest first. `none` are the errors of the base lobe, which a level of
-    /// the portable profile keeps where the model has a larger error.
+    /// Evaluates `model` in each of its sizes, smallest first. `none` are the errors of the base lobe, which a level
+    /// keeps where the model has a larger error.
     fn evaluate(
         &self,
         model: Model,
@@ -83,8 +90,14 @@ impl CandidateSet<'_, '_> {
             let own_errors = by_level(sites, &errors, *finest, sizes.len());
             let levels = (*finest..).zip(own_errors.iter().zip(&base_errors));
             // Levels that are magnified from the first level have no texels of their own.
-            let may_keep = |level| level >= first && self.pyramid.is_none();
-            let is_worse = |(level, (own, base)): &(usize, (&f32, &f32))| own > base && may_keep(*level);
+            let loses = |(level, (own, base)): (usize, (&f32, &f32))| level < first && *own > base + NEGLIGIBLE;
+            let is_worse_than_base = first > self.first && levels.clone().any(loses);
+            // K is 0 at level 0 anyway.
+            let may_be_0 = |level| self.pyramid.as_ref().is_none_or(|pyramid| pyramid.may_keep_base && level > 0);
+            let may_keep = |level| level >= first && may_be_0(level);
+            // Without K, a plugin shows another picture at one level than at its neighbours.
+            let margin = if self.pyramid.is_some() { NEGLIGIBLE } else { 0.0 };
+            let is_worse = |(level, (own, base)): &(usize, (&f32, &f32))| **own > *base + margin && may_keep(*level);
             let base_levels: Vec<usize> = levels.filter(is_worse).map(|(level, _)| level).collect();
             for i in (0..sites.len()).filter(|i| base_levels.contains(&sites[*i].level)) {
                 errors[i] = none[i];
@@ -96,7 +109,7 @@ impl CandidateSet<'_, '_> {
                 errors: by_level(sites, &errors, *finest, sizes.len()),
                 base_levels,
             };
-            Ok(Evaluated { candidate, errors })
+            Ok(Evaluated { candidate, is_worse_than_base })
         };
         self.first_levels(model, sizes).into_iter().map(evaluated).collect()
     }
@@ -124,8 +137,9 @@ impl CandidateSet<'_, '_> {
     fn index_of_choice(&self, evaluated: &[Evaluated]) -> usize {
         let chosen = match self.settings.model {
             Model::Auto => {
-                let errors: Vec<Vec<f32>> = evaluated.iter().map(|e| e.candidate.errors.clone()).collect();
-                choose(&errors, self.settings.max_error)
+                let kept: Vec<usize> = (0..evaluated.len()).filter(|i| !evaluated[*i].is_worse_than_base).collect();
+                let errors: Vec<Vec<f32>> = kept.iter().map(|i| evaluated[*i].candidate.errors.clone()).collect();
+                choose(&errors, self.settings.max_error).map(|chosen| kept[chosen])
             }
             requested => evaluated.iter().position(|e| e.candidate.model == requested.min(self.max_model)),
         };

@@ -13,10 +13,13 @@ use crate::settings::{Model, Settings};
 
 /// Sample points of a level for which the best lobe is sought if the level misses the bound.
 const ORACLE_POINTS: usize = 8;
-/// Half-vectors for each of these sample points.
+/// Half-vectors for each of these sample points, by which the best lobe is sought.
 const ORACLE_SAMPLES: usize = 256;
+/// Half-vectors for each of these sample points, by which the best lobe is measured. The errors of a level have few
+/// half-vectors for each of many points.
+const MEASURE_SAMPLES: usize = 1024;
 
-/// Returns the levels at which `chosen` misses the bound, with the reasons. `errors` holds its errors at `sites`.
+/// Returns the levels at which `chosen` misses the bound, with the reasons, from measurements at `sites`.
 ///
 /// # Errors
 /// [`EncodeError`] if the blocks at the sample points cannot be encoded.
@@ -24,15 +27,13 @@ pub(super) fn misses(
     set: &CandidateSet<'_, '_>,
     sites: &[Site],
     chosen: &Candidate,
-    errors: &Errors,
     finest: usize,
 ) -> Result<Vec<Miss>, EncodeError> {
     let Settings { max_error, .. } = *set.settings;
     let missed: Vec<(usize, f32)> =
         (finest..).zip(chosen.errors.iter().copied()).filter(|(_, e)| *e > max_error).collect();
     let is_missed = |site: &Site| missed.iter().any(|(level, _)| *level == site.level);
-    let (sites, errors): (Vec<&Site>, Vec<f64>) = sites.iter().zip(errors).filter(|(site, _)| is_missed(site)).unzip();
-    let measurements = Measurements::new(set, sites, errors, chosen)?;
+    let measurements = Measurements::new(set, sites.iter().filter(|site| is_missed(site)).collect(), chosen)?;
     let miss = |(level, error): (usize, f32)| {
         let evidence = measurements.evidence(level, error);
         Miss { level, error, oracle: rounded(evidence.oracle), reason: evidence.reason(f64::from(max_error)) }
@@ -44,8 +45,6 @@ pub(super) fn misses(
 struct Measurements<'s> {
     family: Family,
     sites: Vec<&'s Site>,
-    /// Errors of the chosen candidate.
-    errors: Errors,
     /// Errors of the chosen candidate without encoding.
     unencoded: Errors,
     /// Errors of the chosen candidate without encoding and without a limit on alpha.
@@ -57,12 +56,7 @@ struct Measurements<'s> {
 }
 
 impl<'s> Measurements<'s> {
-    fn new(
-        set: &CandidateSet<'_, '_>,
-        sites: Vec<&'s Site>,
-        errors: Errors,
-        chosen: &Candidate,
-    ) -> Result<Self, EncodeError> {
+    fn new(set: &CandidateSet<'_, '_>, sites: Vec<&'s Site>, chosen: &Candidate) -> Result<Self, EncodeError> {
         let (model, first) = (chosen.model, chosen.first);
         let shown = Shown::new(set, sites.iter().copied(), false)?;
         let anisotropic = (model == Model::Isotropic && set.max_model == Model::Isotropic)
@@ -75,7 +69,6 @@ impl<'s> Measurements<'s> {
             anisotropic,
             lobes: shown.lobes(model, first)?,
             sites,
-            errors,
         })
     }
 
@@ -85,31 +78,38 @@ impl<'s> Measurements<'s> {
         let mean = |of: &[usize], value: &dyn Fn(usize) -> f64| {
             of.iter().map(|i| value(*i)).sum::<f64>() / of.len().max(1) as f64
         };
-        // The first sample points are spread over the level as evenly as all of them.
-        let few = &of[..of.len().min(ORACLE_POINTS)];
+        // Neighbours in the list may lie in one row.
+        let few: Vec<usize> =
+            of.iter().copied().step_by(of.len().div_ceil(ORACLE_POINTS).max(1)).take(ORACLE_POINTS).collect();
         let is_two_peaked = |i: usize| is_two_peaked(self.family, &self.sites[i].footprint);
+        let unencoded = mean(&of, &|i| self.unencoded[i]);
         Evidence {
-            unencoded: mean(&of, &|i| self.unencoded[i]),
+            unencoded,
             unclamped: mean(&of, &|i| self.unclamped[i]),
             anisotropic: self.anisotropic.as_ref().map(|errors| mean(&of, &|i| errors[i])),
-            oracle: (f64::from(error) - self.mean_gain(few).max(0.0)).max(0.0),
-            two_peaked: mean(few, &|i| f64::from(u8::from(is_two_peaked(i)))),
+            oracle: (unencoded - self.mean_gain(&few)).clamp(0.0, f64::from(error)),
+            two_peaked: mean(&few, &|i| f64::from(u8::from(is_two_peaked(i)))),
             steep: mean(&of, &|i| steep_share(self.sites[i])),
         }
     }
 
-    /// Returns by how much the best lobe is better than the chosen candidate, as a mean over some sample points.
+    /// Returns by how much the best lobe is better than the chosen candidate without encoding, as a mean over some
+    /// sample points.
     fn mean_gain(&self, points: &[usize]) -> f64 {
-        let gain = |i: &usize| self.errors[*i] - best_error(self.sites[*i], &self.lobes[*i]);
+        let gain = |i: &usize| gain_of_best(self.sites[*i], &self.lobes[*i]);
         points.par_iter().map(gain).collect::<Vec<_>>().iter().sum::<f64>() / points.len().max(1) as f64
     }
 }
 
-/// Returns the error at `site` of the best lobe. The best lobe is sought with half-vectors of its own: the half-vectors
-/// that measure its error would favour it.
-fn best_error(site: &Site, starts: &[Lobe]) -> f64 {
-    let (best, _) = oracle(&Reference::new(site.reference.family(), &site.footprint, ORACLE_SAMPLES), starts);
-    starts.iter().chain([&best]).map(|lobe| site.reference.error(lobe)).fold(f64::INFINITY, f64::min)
+/// Returns by how much the best lobe has a smaller error at `site` than the worst of `lobes`. The best lobe is sought
+/// with half-vectors of its own: the half-vectors that measure its error would favour it.
+fn gain_of_best(site: &Site, lobes: &[Lobe]) -> f64 {
+    let reference = |samples| Reference::new(site.reference.family(), &site.footprint, samples);
+    let (best, _) = oracle(&reference(ORACLE_SAMPLES), lobes);
+    let measure = reference(MEASURE_SAMPLES);
+    let errors: Vec<f64> = lobes.iter().map(|lobe| measure.error(lobe)).collect();
+    let smallest = errors.iter().copied().fold(measure.error(&best), f64::min);
+    errors.into_iter().fold(0.0, f64::max) - smallest
 }
 
 /// Rounds to four decimals: further decimals are noise that would only fill reports.

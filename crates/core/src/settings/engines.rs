@@ -136,12 +136,10 @@ impl Preset {
         })
     }
 
-    /// Returns the model with the most parameters that the engine can show in a bake of `profile`.
+    /// Returns the model with the most parameters that [`Model::Auto`] may choose in a bake of `profile`: no engine of
+    /// the table shows baked anisotropic lobes as they are.
     pub fn max_model(&self, profile: Profile) -> Option<MaxModel> {
-        profile.is_portable().then_some(match self.anisotropy {
-            Anisotropy::Unread => MaxModel::Isotropic,
-            Anisotropy::Wrong => MaxModel::Anisotropic,
-        })
+        profile.is_portable().then_some(MaxModel::Isotropic)
     }
 }
 

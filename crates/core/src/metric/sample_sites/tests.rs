@@ -37,9 +37,10 @@ fn sample_sites_agree_with_full_mean_errors() {
             [Peer::PlainMips, Peer::CorrectedVmf, Peer::D].map(|peer| peer.lobe(Family::Ggx, &footprint.moments()))
         };
         let of_level: Vec<_> = sites.iter().filter(|s| s.level == level).collect();
-        let full = mean_errors(&surface, Family::Ggx, size, &sample_texels(size, 64), |_, footprint, reference| {
-            lobes(footprint).map(|lobe| reference.error(&lobe))
-        });
+        let full =
+            mean_errors(&surface, Family::Ggx, size, &sample_texels(size, usize::MAX), |_, footprint, reference| {
+                lobes(footprint).map(|lobe| reference.error(&lobe))
+            });
         for (i, full) in full.iter().enumerate() {
             let quick: f64 = of_level
                 .iter()

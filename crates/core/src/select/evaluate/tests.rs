@@ -187,6 +187,44 @@ fn errors_are_those_of_the_baked_files() {
     }
 }
 
+/// Mirror tiles beside rough grout: at some levels one lobe for both is worse than the tiles' own.
+fn tiles(side: u32) -> (Image, Image) {
+    let is_grout = |x: u32, y: u32| x % 16 < 3 || y % 16 < 3;
+    let lean = |x: u32, y: u32| [0.06 * noise(x, y, 3), 0.06 * noise(x, y, 4)];
+    let slope = |x: u32, y: u32| {
+        if is_grout(x, y) { [0.5 * noise(x, y, 1), 0.5 * noise(x, y, 2)] } else { lean(x / 16, y / 16) }
+    };
+    let roughness = |i: u32| [0, if is_grout(i % side, i / side) { 178 } else { 26 }, 255];
+    let samples = Samples::U8((0..side * side).flat_map(roughness).collect());
+    (normals(side, slope), Image { width: side, height: side, channels: 3, samples })
+}
+
+/// K is 0 at a level that the base lobe shows better.
+#[test]
+fn levels_of_the_pyramid_are_no_worse_than_the_base_lobe() {
+    let (image, roughness) = tiles(128);
+    let base = || BaseRoughness { image: Some(roughness.clone()), factor: 1.0 };
+    let settings = Settings { profile: Profile::Pyramid, model: Model::Anisotropic, ..settings(0.1) };
+    let baked = bake_with(&image, base(), &settings);
+    let choice = baked.choice.as_ref().unwrap();
+    let (none, taken) = (&choice.candidates[0], choice.taken().unwrap());
+    let factor = baked.textures.iter().find(|t| t.content == Content::Factor).unwrap();
+    for level in 1..none.errors.len() {
+        assert!(taken.errors[level] <= none.errors[level] + 0.005, "level {level}: {taken:?} {none:?}");
+        let ktx2 = factor.mip_chain.to_ktx2(&[]).unwrap();
+        let image = Ktx2::parse(&ktx2).unwrap().decode_level(level as u32).unwrap();
+        let range = factor.range.as_ref().unwrap();
+        let texels = (0..image.height).flat_map(|y| (0..image.width).map(move |x| (x, y)));
+        let largest = texels.flat_map(|(x, y)| {
+            let [r, g, b] = [0, 1, 2].map(|c| image.sample(x, y, c).unwrap());
+            range.values::<3>([r, g, b, 1.0])
+        });
+        let largest = largest.fold(0.0_f32, |largest, d: f32| largest.max(d.abs()));
+        assert!(!taken.base_levels.contains(&level) || largest < 0.01, "level {level}: {largest}");
+    }
+    assert!(!taken.base_levels.is_empty(), "{choice:#?}");
+}
+
 #[test]
 fn the_error_of_both_profiles_is_the_larger_one() {
     let image = normals(64, brushed);
@@ -224,17 +262,16 @@ fn distinguishes_two_peaks_from_too_simple_a_model() {
     assert_eq!((none.misses[0].level, none.misses[0].reason), (0, Reason::Encoding));
 }
 
-#[test]
-fn levels_that_cannot_be_sampled_do_not_count() {
-    let image = normals(64, brushed);
-    let map = NormalMap::new(image, NormalLayout::Xyz, false).unwrap();
+/// Calls `f` with the candidates of a material whose finest level that can be sampled is the given one.
+fn with_candidates<T>(side: u32, slope: fn(u32, u32) -> [f32; 2], finest: usize, f: impl Fn(&CandidateSet) -> T) -> T {
+    let map = NormalMap::new(normals(side, slope), NormalLayout::Xyz, false).unwrap();
     let bump_map = BumpMap::Normals(map);
-    let bumps = Bumps::new(&bump_map, (64, 64));
-    let base = Base::new(BaseRows::new(64, 64, None, 0.4, None, [Wrap::Repeat; 2]));
+    let bumps = Bumps::new(&bump_map, (side, side));
+    let base = Base::new(BaseRows::new(side, side, None, 0.4, None, [Wrap::Repeat; 2]));
     let settings = settings(0.1);
     let roughening = Roughening::new(base, &bumps, 1.0, Sampler::default(), &settings);
     let normals = Normals::of_lobes(&bumps, roughening.lobes());
-    let candidates = |finest| CandidateSet {
+    f(&CandidateSet {
         roughening: &roughening,
         settings: &settings,
         normals: Some(&normals),
@@ -243,8 +280,39 @@ fn levels_that_cannot_be_sampled_do_not_count() {
         max_model: Model::Anisotropic,
         finest,
         first: 0,
-    };
-    let [all, coarse] = [0, 3].map(|finest| candidates(finest).choose().unwrap());
+    })
+}
+
+/// Bumps of many sizes, some steep: texels of a level differ much from each other.
+fn uneven(x: u32, y: u32) -> [f32; 2] {
+    let waves = |u: f32, v: f32| (0.05 * u).sin() * (0.031 * v + 1.0).cos() + (0.4 * u + 0.13 * v).sin();
+    let steep = if noise(x / 24, y / 24, 3) > 0.4 { 1.0 } else { 0.1 };
+    [steep * waves(x as f32, y as f32), 0.3 * steep * noise(x, y, 4)]
+}
+
+/// The errors of a default bake, which counts some texels, are within 0.01 of those of all texels.
+#[test]
+fn errors_are_those_of_all_texels() {
+    let all =
+        Precision { texels: usize::MAX, least: usize::MAX, rows: usize::MAX, level0: u32::MAX, half_vectors: 1 << 19 };
+    for slope in [uneven, brushed] {
+        with_candidates(256, slope, 0, |set| {
+            let (quick, all) = (set.choose_with(Precision::QUICK).unwrap(), set.choose_with(all).unwrap());
+            let pairs = quick.candidates.iter().zip(&all.candidates);
+            for (quick, all) in pairs {
+                assert_eq!((quick.model, quick.first), (all.model, all.first));
+                for (level, (quick, all)) in quick.errors.iter().zip(&all.errors).enumerate() {
+                    assert!((quick - all).abs() < 0.01, "level {level}: {quick} {all}");
+                }
+            }
+        });
+    }
+}
+
+#[test]
+fn levels_that_cannot_be_sampled_do_not_count() {
+    let choice = |finest| with_candidates(64, brushed, finest, |set| set.choose().unwrap());
+    let [all, coarse] = [0, 3].map(choice);
     assert_eq!((all.finest, coarse.finest), (0, 3));
     for candidate in &coarse.candidates {
         let same = all.candidates.iter().find(|c| (c.model, c.first) == (candidate.model, candidate.first)).unwrap();
@@ -252,5 +320,5 @@ fn levels_that_cannot_be_sampled_do_not_count() {
     }
     // A quarter of the size lacks nothing that is sampled.
     assert_eq!(taken(&coarse).1, 2);
-    assert_eq!(candidates(99).choose().unwrap().finest, 6, "there is always one level");
+    assert_eq!(choice(99).finest, 6, "there is always one level");
 }

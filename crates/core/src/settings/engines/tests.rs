@@ -18,8 +18,9 @@ fn presets_bake_isotropic_lobes_into_core_materials() {
         assert_eq!(preset.model(Profile::Both), Model::Isotropic, "{engine:?}");
         assert_eq!(preset.model(Profile::Pyramid), Model::Anisotropic, "{engine:?}");
         assert_eq!(preset.max_model(Profile::Pyramid), None, "{engine:?}");
-        let is_isotropic = preset.max_model(Profile::Portable) == Some(MaxModel::Isotropic);
-        let own = if is_isotropic { OwnAnisotropy::Ignore } else { OwnAnisotropy::Keep };
+        assert_eq!(preset.max_model(Profile::Portable), Some(MaxModel::Isotropic), "{engine:?}");
+        let is_unread = matches!(engine, Engine::Filament | Engine::Godot);
+        let own = if is_unread { OwnAnisotropy::Ignore } else { OwnAnisotropy::Keep };
         assert_eq!(preset.own_anisotropy(Profile::Both), Some(own), "{engine:?}");
         assert_eq!(preset.own_anisotropy(Profile::Pyramid), None, "{engine:?}");
     }

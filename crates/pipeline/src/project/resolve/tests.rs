@@ -1,27 +1,25 @@
 use super::*;
-use crate::settings::{MaxModel, Model};
+use crate::settings::{MaxModel, Model, Profile};
 
 #[test]
-fn auto_keeps_isotropic_lobes_for_engines_that_read_no_anisotropy() {
+fn auto_keeps_isotropic_lobes_for_every_engine() {
     for engine in Engine::ALL {
         let values = Values { engine: Some(engine), model: Some(Model::Auto), ..Values::default() };
         let origin = "command line".to_owned();
         let settings = resolve(&[ConfigSource { origin, values }]).expect("settings").settings;
-        let expected = match engine {
-            Engine::Filament | Engine::Godot => MaxModel::Isotropic,
-            _ => MaxModel::Anisotropic,
-        };
-        assert_eq!((settings.model, settings.max_model), (Model::Auto, expected), "{engine:?}");
+        assert_eq!((settings.model, settings.max_model), (Model::Auto, MaxModel::Isotropic), "{engine:?}");
     }
 }
 
 #[test]
 fn a_later_preset_replaces_the_largest_model_of_an_earlier_one() {
-    let source = |engine| ConfigSource {
+    let source = |engine, profile| ConfigSource {
         origin: format!("{engine:?}"),
-        values: Values { engine: Some(engine), ..Values::default() },
+        values: Values { engine: Some(engine), profile, ..Values::default() },
     };
-    let resolved = resolve(&[source(Engine::Godot), source(Engine::Three)]).expect("settings");
+    // The plugin of three.js shows anisotropic lobes.
+    let sources = [source(Engine::Godot, None), source(Engine::Three, Some(Profile::Pyramid))];
+    let resolved = resolve(&sources).expect("settings");
     assert_eq!(resolved.settings.max_model, MaxModel::Anisotropic);
     assert_eq!(resolved.engine, Some(Engine::Three));
 }
