@@ -10,7 +10,7 @@ use crate::select::rule::choose;
 use crate::select::shown::{Errors, Shown};
 use crate::settings::Model;
 
-/// What a level may lose against the base lobe: in the pyramid profile, and where it is magnified from a smaller texture.
+/// What a level may lose against the base lobe: in the pyramid profile, or where a smaller texture lacks the level.
 const NEGLIGIBLE: f32 = 0.005;
 
 /// A candidate that has been evaluated.
