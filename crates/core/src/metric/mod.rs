@@ -29,4 +29,4 @@ pub use oracle::oracle;
 pub use peaks::is_two_peaked;
 pub use peers::Peer;
 pub use reference::{Reference, SAMPLES};
-pub use sample_sites::{Level0Rows, Precision, Site, sample_sites};
+pub use sample_sites::{Level0Rows, Precision, Site, sample_bytes, sample_sites};

@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use crate::lobe::{Family, LobeTexel};
+use crate::lobe::{Family, LobeTexel, OrientedLobe};
 use crate::metric::decoded::sample_rows;
 use crate::metric::draws::{DRAWN, DrawnFootprint};
 use crate::metric::footprint::{Footprint, Part};
@@ -48,6 +48,19 @@ impl Precision {
     fn strata(&self, texels: usize) -> u32 {
         (self.level0 / texels.max(1) as u32).isqrt().clamp(1, 2 * DRAWN)
     }
+}
+
+/// Returns about how many bytes [`sample_sites`] takes for `levels` of a mip chain with `sizes`.
+pub fn sample_bytes(sizes: &[(u32, u32)], levels: Range<usize>, precision: Precision) -> u64 {
+    let Some(&whole) = sizes.first() else { return 0 };
+    let parts = |&size: &(u32, u32)| {
+        let all = covered(whole.0, size.0) * covered(whole.1, size.1);
+        let texels = precision.sites(size, all).len();
+        texels * all.min((precision.strata(texels) as usize).pow(2))
+    };
+    let parts: usize = sizes.iter().take(levels.end).skip(levels.start).map(parts).sum();
+    // Each part is also a lobe while it is drawn.
+    (parts * (size_of::<Part>() + size_of::<OrientedLobe>())) as u64
 }
 
 /// A texel with its reference, ready for candidates to be compared.

@@ -2,7 +2,8 @@
 
 use crate::codec::EncodeError;
 use crate::lobe::{OrientedLobe, ReflectingLobe};
-use crate::metric::{Precision, Site, sample_sites};
+use crate::memory;
+use crate::metric::{Precision, Site, sample_bytes, sample_sites};
 use crate::report::{Candidate, Choice};
 use crate::select::candidate_set::CandidateSet;
 use crate::select::misses::{misses, rounded};
@@ -32,12 +33,14 @@ impl CandidateSet<'_, '_> {
     /// the report shows their errors.
     ///
     /// # Errors
-    /// [`EncodeError`] if the blocks at the sample points cannot be encoded.
+    /// [`EncodeError`] if the blocks at the sample points cannot be encoded, or if memory is too small for the samples.
     pub fn choose(&self) -> Result<Choice, EncodeError> {
         self.choose_with(Precision::QUICK)
     }
 
     fn choose_with(&self, precision: Precision) -> Result<Choice, EncodeError> {
+        let sizes = self.roughening.sizes();
+        memory::check(sample_bytes(&sizes, self.finest.min(sizes.len() - 1)..sizes.len(), precision))?;
         let samples = self.samples(precision);
         let shown = Shown::new(self, samples.sites.iter(), true)?;
         let none = shown.errors(&samples.sites.iter().collect::<Vec<_>>(), Model::None, self.first)?;
