@@ -163,6 +163,10 @@ impl<'a> LayerLobes<'a> {
     /// Keeps the base lobe at `levels`. [`LobeLevels::with_base_levels`] does the same to the levels of the pyramid
     /// profile.
     pub fn with_base_levels(self, levels: &[usize]) -> Self {
+        // Summing up the variance takes time.
+        if levels.is_empty() {
+            return self;
+        }
         let roughening = self.roughening.map(|roughening| roughening.with_base_levels(levels));
         let of_lobes = roughening.as_ref().filter(|_| self.can_decide).map(lost_variance_of_lobes);
         let needed_variance = self.needed_variance.map(|needed| of_lobes.unwrap_or(needed));

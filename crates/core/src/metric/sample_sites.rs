@@ -20,7 +20,8 @@ pub struct Precision {
     pub texels: usize,
     /// Least texels of a level that is not counted whole, where `level0` would allow fewer.
     pub least: usize,
-    /// Most texels in all rows of a level that have sites, at least 64 rows. Candidates are computed row by row.
+    /// Most texels in all rows of a level that have sites, but at least `least` rows. Candidates are computed row by
+    /// row.
     pub rows: usize,
     /// Most level-0 texels drawn from the footprints of a level, all together.
     pub level0: u32,
@@ -33,9 +34,9 @@ impl Precision {
     /// within 0.03 at coarser levels (`benches/studies/survey.rs`).
     pub const QUICK: Self = Self { texels: 1024, least: 64, rows: 1 << 18, level0: 1 << 17, half_vectors: 8192 };
 
-    /// Returns the texels of a level of `size` that have sites. Each may cover `covered` texels of level 0.
-    fn sites(&self, size: (u32, u32), covered: usize) -> Vec<(u32, u32)> {
-        let texels = self.texels.min(self.level0 as usize / covered).max(self.least);
+    /// Returns the texels of a level of `size` that have sites. Level 0 has the size `whole`.
+    fn sites(&self, whole: (u32, u32), size: (u32, u32)) -> Vec<(u32, u32)> {
+        let texels = self.texels.min(self.level0 as usize / covered(whole, size)).max(self.least);
         let rows = (self.rows / size.0.max(1) as usize).max(self.least);
         sample_rows(size, texels, rows)
     }
@@ -54,9 +55,8 @@ impl Precision {
 pub fn sample_bytes(sizes: &[(u32, u32)], levels: Range<usize>, precision: Precision) -> u64 {
     let Some(&whole) = sizes.first() else { return 0 };
     let parts = |&size: &(u32, u32)| {
-        let all = covered(whole.0, size.0) * covered(whole.1, size.1);
-        let texels = precision.sites(size, all).len();
-        texels * all.min((precision.strata(texels) as usize).pow(2))
+        let texels = precision.sites(whole, size).len();
+        texels * covered(whole, size).min((precision.strata(texels) as usize).pow(2))
     };
     let parts: usize = sizes.iter().take(levels.end).skip(levels.start).map(parts).sum();
     // Each part is also a lobe while it is drawn.
@@ -104,7 +104,7 @@ pub fn sample_sites<T: LobeTexel>(
     let mut points = Vec::new();
     for level in levels {
         let Some(&size) = sizes.get(level) else { break };
-        let texels = precision.sites(size, covered(whole.0, size.0) * covered(whole.1, size.1));
+        let texels = precision.sites(whole, size);
         let (strata, samples) = (precision.strata(texels.len()), precision.samples(texels.len()));
         let point = |(index, texel)| {
             let drawn = DrawnFootprint { whole, size, texel, strata };
@@ -163,10 +163,10 @@ pub fn sample_sites<T: LobeTexel>(
     points.par_iter().zip(strips).filter_map(site).collect()
 }
 
-/// Returns how many texels of an axis of length `old` a texel of an axis of length `new` may overlap.
-fn covered(old: u32, new: u32) -> usize {
-    let new = new.max(1);
-    old.div_ceil(new) as usize + usize::from(!old.is_multiple_of(new))
+/// Returns how many texels of a level of size `whole` a texel of a level of `size` may overlap.
+fn covered(whole: (u32, u32), size: (u32, u32)) -> usize {
+    let along = |old: u32, new: u32| old.div_ceil(new.max(1)) as usize + usize::from(!old.is_multiple_of(new.max(1)));
+    along(whole.0, size.0) * along(whole.1, size.1)
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use crate::codec::EncodeError;
 use crate::lobe::{OrientedLobe, ReflectingLobe};
-use crate::memory;
+use crate::memory::{self, OutOfMemory};
 use crate::metric::{Precision, Site, sample_bytes, sample_sites};
 use crate::report::{Candidate, Choice};
 use crate::select::candidate_set::CandidateSet;
@@ -11,13 +11,14 @@ use crate::select::rule::choose;
 use crate::select::shown::{Errors, Shown};
 use crate::settings::Model;
 
-/// What a level may lose against the base lobe: in the pyramid profile, or where a smaller texture lacks the level.
-const NEGLIGIBLE: f32 = 0.005;
+/// How much larger than the error of the base lobe the error of a level may be: in the pyramid profile, or where a
+/// smaller texture lacks the level.
+const MAX_LOSS: f32 = 0.005;
 
 /// A candidate that has been evaluated.
 struct Evaluated {
     candidate: Candidate,
-    /// Whether a level that it lacks, and that is magnified therefore, loses against the base lobe.
+    /// Whether the base lobe is better by more than [`MAX_LOSS`] at a level that its smaller texture lacks.
     is_worse_than_base: bool,
 }
 
@@ -39,9 +40,7 @@ impl CandidateSet<'_, '_> {
     }
 
     fn choose_with(&self, precision: Precision) -> Result<Choice, EncodeError> {
-        let sizes = self.roughening.sizes();
-        memory::check(sample_bytes(&sizes, self.finest.min(sizes.len() - 1)..sizes.len(), precision))?;
-        let samples = self.samples(precision);
+        let samples = self.samples(precision)?;
         let shown = Shown::new(self, samples.sites.iter(), true)?;
         let none = shown.errors(&samples.sites.iter().collect::<Vec<_>>(), Model::None, self.first)?;
         let mut evaluated = Vec::new();
@@ -54,9 +53,10 @@ impl CandidateSet<'_, '_> {
         Ok(Choice { finest: samples.finest, candidates, chosen, misses })
     }
 
-    fn samples(&self, precision: Precision) -> Samples {
+    fn samples(&self, precision: Precision) -> Result<Samples, OutOfMemory> {
         let sizes = self.roughening.sizes();
         let finest = self.finest.min(sizes.len() - 1);
+        memory::check(sample_bytes(&sizes, finest..sizes.len(), precision))?;
         let lobes = self.roughening.lobes();
         let family = self.settings.lobe;
         // Level 0 is compared with its own texels.
@@ -73,7 +73,7 @@ impl CandidateSet<'_, '_> {
             let rows = |first, out: &mut [ReflectingLobe]| lobes.reflecting_rows(first, out);
             sample_sites(&sizes, coarser, family, precision, &rows)
         });
-        Samples { sizes, finest, sites }
+        Ok(Samples { sizes, finest, sites })
     }
 
     /// Evaluates `model` in each of its sizes, smallest first. `none` are the errors of the base lobe, which a level
@@ -93,13 +93,13 @@ impl CandidateSet<'_, '_> {
             let own_errors = by_level(sites, &errors, *finest, sizes.len());
             let levels = (*finest..).zip(own_errors.iter().zip(&base_errors));
             // Levels that are magnified from the first level have no texels of their own.
-            let loses = |(level, (own, base)): (usize, (&f32, &f32))| level < first && *own > base + NEGLIGIBLE;
+            let loses = |(level, (own, base)): (usize, (&f32, &f32))| level < first && *own > base + MAX_LOSS;
             let is_worse_than_base = first > self.first && levels.clone().any(loses);
             // K is 0 at level 0 anyway.
             let may_be_0 = |level| self.pyramid.as_ref().is_none_or(|pyramid| pyramid.may_keep_base && level > 0);
             let may_keep = |level| level >= first && may_be_0(level);
-            // Without K, a plugin shows another picture at one level than at its neighbours.
-            let margin = if self.pyramid.is_some() { NEGLIGIBLE } else { 0.0 };
+            // A level without K looks unlike its neighbours, so that a small gain is not worth it.
+            let margin = if self.pyramid.is_some() { MAX_LOSS } else { 0.0 };
             let is_worse = |(level, (own, base)): &(usize, (&f32, &f32))| **own > *base + margin && may_keep(*level);
             let base_levels: Vec<usize> = levels.filter(is_worse).map(|(level, _)| level).collect();
             for i in (0..sites.len()).filter(|i| base_levels.contains(&sites[*i].level)) {

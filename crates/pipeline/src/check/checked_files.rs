@@ -10,6 +10,7 @@ use walkdir::WalkDir;
 use crate::bake::output_stem_of;
 use crate::gltf::document::Document;
 use crate::input_file::read_file;
+use crate::output::{folder_of, is_same_file};
 use crate::project::{Input, InputError, Resolved, Selection, SelectionError, recorded};
 
 /// A file to check.
@@ -146,15 +147,6 @@ pub fn expected_source(target: &CheckedFile, folder: &Path) -> PathBuf {
     let named = folder.join(&target.below);
     let recorded = recorded_source(&target.path).filter(|_| is_same_file(&named, &target.path));
     recorded.map_or(named, |name| folder.join(name))
-}
-
-fn is_same_file(a: &Path, b: &Path) -> bool {
-    fs::canonicalize(a).ok().is_some_and(|a| fs::canonicalize(b).is_ok_and(|b| a == b))
-}
-
-/// Returns the folder that a file is in.
-fn folder_of(file: &Path) -> &Path {
-    file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 /// Returns the file name of its source that the document at `baked` records.

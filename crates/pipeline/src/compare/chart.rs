@@ -5,6 +5,7 @@
 
 use std::fmt::Write;
 
+use super::entry::BEST_LOBE;
 use super::labels::{Labels, stack, width};
 use super::units::amount;
 use super::{Axis, Comparison, Entry, Kind};
@@ -18,8 +19,6 @@ const LEFT: f64 = 56.0;
 const RIGHT: f64 = 150.0;
 const TOP: f64 = 34.0;
 const BOTTOM: f64 = 48.0;
-/// What the charts call the oracle, as the verdict does.
-const BEST: &str = "best possible lobe";
 /// Space for labels to the left of the first point.
 const BEFORE: f64 = 150.0;
 
@@ -122,7 +121,7 @@ pub fn cost(comparison: &Comparison, axis: Axis, measure: Measure, y: f64) -> St
     for oracle in oracles {
         let y = scale.y(oracle.error);
         labels.avoid([LEFT, y - 1.0, WIDTH - RIGHT, y + 1.0]);
-        labels.avoid([LEFT, y, LEFT + 4.0 + width(BEST), y + 18.0]);
+        labels.avoid([LEFT, y, LEFT + 4.0 + width(BEST_LOBE), y + 18.0]);
     }
     for (x, y, entry) in placed {
         let cost = value(entry).map_or("not measured".to_owned(), |n| amount(axis, n));
@@ -188,8 +187,7 @@ pub fn levels(comparison: &Comparison, y: f64) -> String {
             class(entry),
             x + 22.0
         );
-        let name = if entry.kind == Kind::Oracle { BEST } else { &entry.name };
-        label(&mut svg, entry, name, [x + 25.0, height], "start");
+        label(&mut svg, entry, entry.shown_name(), [x + 25.0, height], "start");
         svg += "</g>";
     }
     svg + "</svg>"
@@ -197,7 +195,7 @@ pub fn levels(comparison: &Comparison, y: f64) -> String {
 
 /// Opens the group of an entry, which stands out while a pointer is over it or it has the focus, and shows `detail`.
 fn begin(svg: &mut String, entry: &Entry, detail: &str) {
-    let text = xml_escaped(&format!("{}: {detail}", entry.name));
+    let text = xml_escaped(&format!("{}: {detail}", entry.shown_name()));
     let (x, y) = (WIDTH - 8.0, HEIGHT - 12.0);
     let _ = write!(
         svg,
@@ -273,7 +271,7 @@ impl Scale {
             let _ = write!(
                 svg,
                 "<path class=\"oracle\" d=\"M{LEFT} {y:.1}H{:.1}\"/><text class=\"soft\" x=\"{LEFT}\" y=\"{:.1}\" \
-                 dx=\"4\">{BEST}</text>",
+                 dx=\"4\">{BEST_LOBE}</text>",
                 WIDTH - RIGHT,
                 y + 13.0
             );

@@ -16,6 +16,9 @@ pub enum Kind {
     Oracle,
 }
 
+/// What people read in place of the oracle's name.
+pub const BEST_LOBE: &str = "best possible lobe";
+
 /// A model, its error and its cost.
 #[derive(Clone, Debug, Serialize)]
 #[serde(rename_all = "camelCase")]
@@ -36,6 +39,13 @@ pub struct Entry {
     /// Its cost.
     #[serde(flatten)]
     pub cost: Cost,
+}
+
+impl Entry {
+    /// Returns the name for people; files for programs have [`Self::name`].
+    pub fn shown_name(&self) -> &str {
+        if self.kind == Kind::Oracle { BEST_LOBE } else { &self.name }
+    }
 }
 
 /// All entries of a material.

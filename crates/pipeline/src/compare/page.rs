@@ -87,7 +87,8 @@ fn table(comparison: &Comparison) -> String {
         let kind = format!("{:?}", entry.kind).to_lowercase();
         let chosen = if entry.chosen { "chosen" } else { "" };
         let picture_error = entry.picture_error.map_or(String::new(), |error| format!("{error:.3}"));
-        let facts = [entry.name.clone(), kind, chosen.to_owned(), format!("{:.3}", entry.error), picture_error];
+        let facts =
+            [entry.shown_name().to_owned(), kind, chosen.to_owned(), format!("{:.3}", entry.error), picture_error];
         let costs = Axis::ALL.map(|axis| axis.value(&entry.cost).map_or(String::new(), |n| amount(axis, n)));
         let errors = entry.level_errors.iter().map(|e| format!("{e:.3}"));
         for cell in facts.into_iter().chain(costs).chain(errors) {

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use super::case::case_folded;
 use super::error::PublishError;
 use super::path::OutputPath;
-use super::real::real;
+use super::real::{is_same_file, real};
 use super::sweep::sweep;
 
 /// Decides whether paths may be written, from the files that a run reads, that its jobs will write, and that it has
@@ -176,8 +176,4 @@ fn check_replaceable(path: &Path) -> Result<(), PublishError> {
         Ok(facts) if !facts.is_file() => Err(PublishError::NotAFile { path: path.to_owned() }),
         _ => Ok(()),
     }
-}
-
-fn is_same_file(a: &Path, b: &Path) -> bool {
-    a == b || matches!((fs::canonicalize(a), fs::canonicalize(b)), (Ok(a), Ok(b)) if a == b)
 }

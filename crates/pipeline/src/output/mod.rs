@@ -17,7 +17,7 @@ pub use case::case_folded;
 pub use error::PublishError;
 pub use guard::Guard;
 pub use path::{OutputPath, folder_of};
-pub use real::real;
+pub use real::{is_same_file, real};
 pub use reserve::{Outputs, Reserved};
 pub use sweep::is_abandoned;
 pub use write::Staged;

@@ -25,6 +25,11 @@ pub fn real(path: &Path) -> io::Result<PathBuf> {
     Ok(real)
 }
 
+/// Returns whether two paths lead to one file.
+pub fn is_same_file(a: &Path, b: &Path) -> bool {
+    a == b || matches!((fs::canonicalize(a), fs::canonicalize(b)), (Ok(a), Ok(b)) if a == b)
+}
+
 /// Follows `path` from the folder `real`, which becomes the resolved path.
 fn follow(real: &mut PathBuf, path: &Path, links: &mut usize) -> io::Result<()> {
     for part in path.components() {

@@ -16,6 +16,7 @@ use super::resolve::{ConfigSource, Resolved, resolve};
 use super::trust::NamedServer;
 use crate::gltf::document::Container;
 use crate::note::Note;
+use crate::output::folder_of;
 use crate::settings::Settings;
 use crate::settings::engines::Engine;
 use crate::settings::values::Values;
@@ -131,14 +132,14 @@ impl Selection {
         self.select(Configs::default(), arguments, Destination::folder(output), &mut is_baked)
     }
 
-    /// Finds the settings of the assets `arguments`, at most one, that is baked to the file `output`.
+    /// Finds the asset that `arguments` name, if any, and its settings. It is baked to the file `output`.
     ///
     /// # Errors
     /// [`SelectionError`] where no asset can be selected.
     pub fn find_named(&self, arguments: &[PathBuf], output: &Path) -> Result<Selected, SelectionError> {
         let document = named_container(output).and_then(|_| Destination::new(output, arguments).ok());
         // A texture, or a name that a bake does not write.
-        let folder = || Destination::folder(output.parent().unwrap_or(Path::new("")));
+        let folder = || Destination::folder(folder_of(output));
         let destination = document.unwrap_or_else(folder);
         self.select(Configs::default(), arguments, destination, &mut is_baked)
     }

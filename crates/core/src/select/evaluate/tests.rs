@@ -7,7 +7,7 @@ use crate::lobe::{Alpha, Family, Roughness, SquaredAlpha};
 use crate::material::{Base, BaseRows, BumpMap, Bumps, Normals, Roughening};
 use crate::metric::{Decoded, Surface, mean_errors, sample_texels};
 use crate::mip::{Sampler, Wrap};
-use crate::report::{Content, Miss, Reason};
+use crate::report::{Candidate, Content, Miss, Reason};
 use crate::select::evaluate::*;
 use crate::settings::{Profile, Settings};
 
@@ -185,6 +185,24 @@ fn errors_are_those_of_the_baked_files() {
             assert!((f64::from(*found) - full).abs() < 0.015, "{target:?}, level {level}: {found} {full}");
         }
     }
+}
+
+/// A smaller texture is no choice if the base lobe is better at a level that it lacks, whatever the bound.
+#[test]
+fn smaller_textures_lose_little_against_the_base_lobe() {
+    // Noise of the finest grain: level 0 has lost nothing, and all other levels have lost as much.
+    let image = normals(64, |x, y| [0.3 * noise(x, y, 1), 0.3 * noise(x, y, 2)]);
+    let mut is_passed_over = false;
+    for step in 1..=10 {
+        let max_error = 0.05 * step as f32;
+        let choice = choice_of(&image, 0.3, &Settings { target: Target::Float, ..settings(max_error) });
+        let (none, taken) = (&choice.candidates[0], choice.taken().unwrap());
+        let loses = |c: &Candidate| (0..c.first).any(|level| c.errors[level] > none.errors[level] + 0.005);
+        assert!(!loses(taken), "{max_error}: {choice:#?}");
+        let cheaper = &choice.candidates[..choice.chosen];
+        is_passed_over |= cheaper.iter().any(|c| loses(c) && c.errors.iter().all(|error| *error <= max_error));
+    }
+    assert!(is_passed_over, "no bound tempts to take a smaller texture");
 }
 
 /// Mirror tiles beside rough grout: at some levels one lobe for both is worse than the tiles' own.
