@@ -1,7 +1,8 @@
 //! The command line: one file per command, each with its `Args` and a `run`. `options` holds groups of options that
-//! several commands have, `terminal` what they print with, `work` runs jobs with a progress bar, and `threads` starts
-//! the thread pool.
+//! several commands have, `terminal` what they print with, `work` runs jobs with a progress bar, `threads` starts the
+//! thread pool, and `address_space` knows the limit on memory.
 
+mod address_space;
 mod bake;
 mod check;
 mod compare;
@@ -26,6 +27,7 @@ use std::io::{self, Write};
 
 use clap::{CommandFactory, Parser, Subcommand};
 
+use crate::memory;
 use terminal::streams::{Messages, Results};
 
 /// Bakes the roughness that mipmapped normal maps lose into KTX2 textures and glTF materials.
@@ -78,6 +80,7 @@ pub fn run(cli: Cli, out: &mut dyn Write, err: &mut dyn Write) -> Outcome {
 }
 
 fn run_command(cli: Cli, out: &mut dyn Write, err: &mut dyn Write) -> io::Result<Outcome> {
+    memory::watch_address_space(address_space::left);
     if let Err(error) = threads::start(cli.threads, err) {
         writeln!(err, "error: {error}")?;
         return Ok(Outcome::Retry);

@@ -3,6 +3,7 @@
 
 use std::hint::black_box;
 use std::io;
+use std::sync::OnceLock;
 
 /// Memory that the system refused.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
@@ -26,13 +27,26 @@ impl From<OutOfMemory> for io::Error {
 /// Requests below this many bytes are not checked: there are many, and none of them fills the memory.
 const SMALL: u64 = 1 << 20;
 
-/// Bytes that must stay free besides a large request, for the small requests that follow.
+/// Bytes that must stay free besides a large request, for the small requests that follow and for other threads. The
+/// allocator of Linux takes this much address space at once for the small requests of one thread.
 const SPARE: u64 = 64 << 20;
+
+/// Returns how many bytes the process may still take of its address space; None where there is no limit.
+pub type AddressSpace = fn() -> Option<u64>;
+
+static ADDRESS_SPACE: OnceLock<AddressSpace> = OnceLock::new();
+
+/// Sets how checks learn how much address space is left: only the system knows it, and this crate asks no system. The
+/// first call counts.
+pub fn watch_address_space(left: AddressSpace) {
+    ADDRESS_SPACE.get_or_init(|| left);
+}
 
 /// Checks that `bytes` can be allocated at once and that some memory is then left.
 ///
 /// A system that promises more memory than there is (overcommit) never refuses. A limit on the address space (`ulimit
-/// -v`) refuses, and so does a system that counts its promises.
+/// -v`) refuses, and so does a system that counts its promises. The limit is compared first: a trial request that takes
+/// nearly all that is left would make small requests of other threads fail meanwhile, and these end the process.
 ///
 /// # Errors
 /// [`OutOfMemory`].
@@ -41,6 +55,10 @@ pub fn check(bytes: u64) -> Result<(), OutOfMemory> {
         return Ok(());
     }
     let refused = OutOfMemory { bytes };
+    let left = ADDRESS_SPACE.get().and_then(|left| left());
+    if left.is_some_and(|left| left < bytes.saturating_add(SPARE)) {
+        return Err(refused);
+    }
     let wanted = usize::try_from(bytes.saturating_add(bytes.min(SPARE))).map_err(|_| refused)?;
     let mut probe: Vec<u8> = Vec::new();
     probe.try_reserve_exact(wanted).map_err(|_| refused)?;
