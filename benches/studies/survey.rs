@@ -41,6 +41,9 @@ impl Differences {
     }
 }
 
+/// The last level at which hundreds of texels are counted.
+const LAST_FINE: usize = 4;
+
 /// All texels of a level, and whole footprints.
 const ALL: Precision =
     Precision { texels: usize::MAX, least: usize::MAX, rows: usize::MAX, level0: u32::MAX, half_vectors: 1 << 23 };
@@ -52,7 +55,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut paths: Vec<PathBuf> = entries.into_iter().map(|e| e.path()).collect();
     paths.retain(|path| path.to_string_lossy().contains("_normal"));
     paths.sort();
-    let mut all = Differences::default();
+    let (mut all, mut fine) = (Differences::default(), Differences::default());
     for path in &paths {
         let map = NormalMap::new(decode(&std::fs::read(path)?, &DecodeOptions::default())?, NormalLayout::Auto, false)?;
         let mut of_map = Differences::default();
@@ -63,11 +66,15 @@ fn main() -> Result<(), Box<dyn Error>> {
                 for (quick, exhaustive) in quick.iter().zip(exhaustive) {
                     of_map.add(quick - exhaustive);
                     all.add(quick - exhaustive);
+                    if level <= LAST_FINE {
+                        fine.add(quick - exhaustive);
+                    }
                 }
             }
         }
         println!("{}: {}", path.display(), of_map.text());
     }
+    println!("all, levels 1 to {LAST_FINE}: {}", fine.text());
     println!("all: {}", all.text());
     Ok(())
 }
