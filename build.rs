@@ -2,8 +2,7 @@
 //! wrote.
 //!
 //! The page holds three.js, which no build by Cargo can fetch, so that builds without the variable have no page. The
-//! files get into the tool as they are (1.6 MB). Compressed they would have 0.5 MB, but wheels and archives are
-//! compressed anyway.
+//! files get into the tool as they are, since wheels and archives are compressed anyway.
 
 use std::error::Error;
 use std::fmt::Write;

@@ -43,7 +43,7 @@ pub fn total(assets: &[AssetOutcome], elapsed: Duration) -> String {
         failed => format!(" and {failed} failed"),
     };
     let totals = done.iter().copied().map(Totals::of).fold(Totals::default(), Totals::and);
-    format!("total of {} assets{failed}: {}", done.len(), totals.text(elapsed.as_secs_f64()))
+    format!("total of {}{failed}: {}", counted(done.len(), "asset"), totals.text(elapsed.as_secs_f64()))
 }
 
 /// What was baked, and its sizes.

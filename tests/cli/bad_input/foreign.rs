@@ -40,13 +40,14 @@ fn each_command_says_what_a_file_is_instead_and_what_to_do() {
         for name in ["scene.fbx", "scene.obj", "scene.usdc", "scene.blend"] {
             cases.push((command, name, export));
         }
-        cases.push((command, "folder", "found: a folder; name a file in it"));
+        cases.push((command, "folder", "found: a folder; check the path"));
     }
     for name in ["pointer.png", "pointer.ktx2"] {
         cases.push(("map -o out.ktx2", name, lfs));
     }
-    for (name, part) in [("empty.png", empty), ("scene.fbx", export), ("folder", "found: a folder; name a file in it")]
-    {
+    fs::write(folder.path().join("scene.glb"), b"glTF\x02\0\0\0").expect("a file");
+    let (asset, a_folder) = ("found a glTF asset", "found: a folder");
+    for (name, part) in [("empty.png", empty), ("scene.fbx", export), ("scene.glb", asset), ("folder", a_folder)] {
         cases.push(("map -o out.ktx2", name, part));
     }
     for (name, part) in [("pointer.glb", lfs), ("empty.glb", empty), ("scene.fbx", export), ("scene.obj", export)] {

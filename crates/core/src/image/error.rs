@@ -14,6 +14,9 @@ pub enum DecodeError {
         /// The kind of the file.
         found: Foreign,
     },
+    /// The file is a glTF asset, which has images.
+    #[error("expected {}, found a glTF asset; name one of its images, or bake the asset itself", signed_formats())]
+    Asset,
     /// The first bytes are not those of a known format.
     #[error(
         "unknown image format (the first bytes are {start:02x?}): expected {}{}",
@@ -77,6 +80,15 @@ pub enum DecodeError {
 }
 
 impl DecodeError {
+    /// Returns the error for a file in no format of images.
+    pub(crate) fn of_no_format(bytes: &[u8]) -> Self {
+        // A .glb file has this signature, and a .gltf file is a JSON object.
+        if bytes.starts_with(b"glTF") || bytes.trim_ascii_start().starts_with(b"{") {
+            return Self::Asset;
+        }
+        Self::UnknownFormat { start: bytes.iter().take(8).copied().collect() }
+    }
+
     pub(super) fn malformed(format: FileFormat, what: impl ToString) -> DecodeError {
         DecodeError::Malformed { format, what: brief(&what.to_string()) }
     }

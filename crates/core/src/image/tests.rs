@@ -176,6 +176,9 @@ fn unknown_and_empty_files_are_named_so() {
         let start = bytes[..bytes.len().min(8)].to_vec();
         assert_eq!(found, Err(DecodeError::UnknownFormat { start }));
     }
+    for bytes in [&b"glTF\x02\0\0\0"[..], b"\n {\"asset\": {}}"] {
+        assert_eq!(decode(bytes, &DecodeOptions::default()), Err(DecodeError::Asset));
+    }
     let message = decode(b"", &options("tga")).unwrap_err().to_string();
     assert!(message.ends_with("found an empty file; copy or export it again"), "{message}");
 }

@@ -146,7 +146,10 @@ fn source_file_of(baked: &Path, source: &Path) -> Option<PathBuf> {
 pub fn expected_source(target: &CheckedFile, folder: &Path) -> PathBuf {
     let named = folder.join(&target.below);
     let recorded = recorded_source(&target.path).filter(|_| is_same_file(&named, &target.path));
-    recorded.map_or(named, |name| folder.join(name))
+    match recorded {
+        Some(name) => named.with_file_name(name),
+        None => named,
+    }
 }
 
 /// Returns the file name of its source that the document at `baked` records.

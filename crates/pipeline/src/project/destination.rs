@@ -48,6 +48,16 @@ pub enum DestinationError {
         /// The document.
         path: PathBuf,
     },
+    /// The name of a file that is no document.
+    #[error(
+        "-o {}: expected a folder, or a file that ends in .gltf or .glb, found the name of another file; a bake writes \
+         one document or several files into a folder",
+        path.display()
+    )]
+    OtherFile {
+        /// The path.
+        path: PathBuf,
+    },
     /// A document whose name a bake cannot write.
     #[error(
         "-o {}: expected a name in UTF-8 with its extension in lower case, found another one; name it {}",
@@ -71,9 +81,13 @@ impl Destination {
     /// folder.
     ///
     /// # Errors
-    /// [`DestinationError`] if a document is named that no single input can be baked to.
+    /// [`DestinationError`] if a document is named that no single input can be baked to, or a file that is no document.
     pub fn new(path: &Path, arguments: &[PathBuf]) -> Result<Self, DestinationError> {
-        let Some(container) = named_container(path) else { return Ok(Self::folder(path)) };
+        let Some(container) = named_container(path) else {
+            let is_file = has_extension(path, &OTHER_FILES) && !path.is_dir();
+            let other = || DestinationError::OtherFile { path: path.to_owned() };
+            return if is_file { Err(other()) } else { Ok(Self::folder(path)) };
+        };
         let path = path.to_owned();
         let found = match arguments {
             [argument] if argument.is_dir() => Some(format!("the folder {}", argument.display())),
@@ -96,12 +110,17 @@ impl Destination {
     }
 }
 
+/// Extensions of files that a bake does not write as its document. No one gives them to a folder.
+const OTHER_FILES: [&str; 10] = ["bin", "fbx", "jpeg", "jpg", "json", "ktx2", "obj", "png", "usdz", "zip"];
+
 /// Returns the container that the extension of `path` names, if it names one.
 pub fn named_container(path: &Path) -> Option<Container> {
-    let extension = path.extension()?;
-    [Container::Gltf, Container::Glb]
-        .into_iter()
-        .find(|container| extension.eq_ignore_ascii_case(container.extension()))
+    [Container::Gltf, Container::Glb].into_iter().find(|container| has_extension(path, &[container.extension()]))
+}
+
+/// Returns whether the extension of `path` is one of `extensions`.
+fn has_extension(path: &Path, extensions: &[&str]) -> bool {
+    path.extension().is_some_and(|found| extensions.iter().any(|extension| found.eq_ignore_ascii_case(extension)))
 }
 
 #[cfg(test)]
@@ -115,7 +134,7 @@ mod tests {
 
     #[test]
     fn only_gltf_and_glb_name_a_document() {
-        for folder in ["out", "out/", "a.glb/out", "out.ktx2", "glb", ".glb"] {
+        for folder in ["out", "out/", "a.glb/out", "out.v2", "glb", ".glb"] {
             assert_eq!(destination(folder, &["a.glb", "b"]), Ok(Destination::folder(Path::new(folder))));
         }
         let named = destination("x/out.v2.glb", &["a.gltf"]).unwrap();
@@ -123,6 +142,21 @@ mod tests {
         let document = named.document.unwrap();
         assert_eq!((document.stem.as_str(), document.container), ("out.v2", Container::Glb));
         assert_eq!(destination("out.gltf", &["a.glb"]).unwrap().folder, Path::new("."));
+    }
+
+    #[test]
+    fn another_file_is_no_destination() {
+        for path in ["out.zip", "x/out.PNG"] {
+            let error = destination(path, &["a.glb", "b"]).unwrap_err();
+            assert!(
+                error.starts_with(&format!("-o {path}: expected a folder, or a file that ends in .gltf")),
+                "{error}"
+            );
+        }
+        let folder = tempfile::tempdir().unwrap();
+        let existing = folder.path().join("out.zip");
+        std::fs::create_dir(&existing).unwrap();
+        assert_eq!(Destination::new(&existing, &[]).unwrap(), Destination::folder(&existing));
     }
 
     #[test]

@@ -54,7 +54,7 @@ pub fn choose(inputs: &[PathBuf], original: Option<&Path>) -> Result<Chosen, Vie
         }
     }
     if let Some(path) = original {
-        check_file(path).map_err(|reason| ViewerError::Read { path: path.to_owned(), reason })?;
+        check_file(path).map_err(|reason| ViewerError::Original { path: path.to_owned(), reason })?;
         files.insert(Variant::Original, path.to_owned());
     }
     Ok(Chosen { files, others: others.len() })

@@ -19,6 +19,14 @@ pub enum ViewerError {
         /// The system's error.
         reason: io::Error,
     },
+    /// An original that cannot be read.
+    #[error("--original {}: expected a .gltf or .glb file, found: {reason}; check the path", path.display())]
+    Original {
+        /// The file.
+        path: PathBuf,
+        /// The system's error.
+        reason: io::Error,
+    },
     /// A folder that cannot be searched.
     #[error("{}: expected a folder that can be read, found: {reason}; check its permissions", path.display())]
     Walk {

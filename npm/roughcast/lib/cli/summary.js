@@ -28,9 +28,9 @@ export function summary(asset, verbose) {
 export function total(assets, seconds) {
   const done = assets.filter((asset) => !asset.error);
   if (assets.length < 2 || done.length === 0) return '';
-  const failed = assets.length - done.length;
+  const failed = assets.length === done.length ? '' : ` and ${assets.length - done.length} failed`;
   const totals = done.map(totalsOf).reduce(sum);
-  return `total of ${done.length} assets${failed > 0 ? ` and ${failed} failed` : ''}: ${text(totals, seconds)}\n`;
+  return `total of ${count(done.length, 'asset')}${failed}: ${text(totals, seconds)}\n`;
 }
 
 /** Returns what was baked, and its sizes. */
