@@ -1,11 +1,15 @@
 //! How much address space the process may still take.
 
 use std::fs;
+use std::sync::LazyLock;
+
+/// The limit, which was set before the process began.
+static LIMIT: LazyLock<Option<u64>> = LazyLock::new(|| number_after("/proc/self/limits", "Max address space"));
 
 /// Returns how many bytes the process may still take of its address space. None without a limit (`ulimit -v`), and on
 /// systems other than Linux.
 pub fn left() -> Option<u64> {
-    let limit = number_after("/proc/self/limits", "Max address space")?;
+    let limit = (*LIMIT)?;
     let taken = number_after("/proc/self/status", "VmSize:")?;
     Some(limit.saturating_sub(taken << 10))
 }

@@ -31,7 +31,7 @@ const SMALL: u64 = 1 << 20;
 /// allocator of Linux takes this much address space at once for the small requests of one thread.
 const SPARE: u64 = 64 << 20;
 
-/// Returns how many bytes the process may still take of its address space; None where there is no limit.
+/// A function that returns how many bytes the process may still take of its address space, or None without a limit.
 pub type AddressSpace = fn() -> Option<u64>;
 
 static ADDRESS_SPACE: OnceLock<AddressSpace> = OnceLock::new();

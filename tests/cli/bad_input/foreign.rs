@@ -24,6 +24,7 @@ fn each_command_says_what_a_file_is_instead_and_what_to_do() {
         ("scene.obj", b"# Blender 4.2\nv 0 0 0\n"),
         ("scene.usdc", b"PXR-USDC\0"),
         ("scene.blend", b"BLENDER-v402"),
+        ("scene.glb", b"glTF\x02\0\0\0"),
     ] {
         fs::write(folder.path().join(name), bytes).expect("a file");
     }
@@ -45,9 +46,8 @@ fn each_command_says_what_a_file_is_instead_and_what_to_do() {
     for name in ["pointer.png", "pointer.ktx2"] {
         cases.push(("map -o out.ktx2", name, lfs));
     }
-    fs::write(folder.path().join("scene.glb"), b"glTF\x02\0\0\0").expect("a file");
-    let (asset, a_folder) = ("found a glTF asset", "found: a folder");
-    for (name, part) in [("empty.png", empty), ("scene.fbx", export), ("scene.glb", asset), ("folder", a_folder)] {
+    let (asset, path) = ("found a glTF asset", "found: a folder; check the path");
+    for (name, part) in [("empty.png", empty), ("scene.fbx", export), ("scene.glb", asset), ("folder", path)] {
         cases.push(("map -o out.ktx2", name, part));
     }
     for (name, part) in [("pointer.glb", lfs), ("empty.glb", empty), ("scene.fbx", export), ("scene.obj", export)] {

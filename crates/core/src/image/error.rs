@@ -81,7 +81,7 @@ pub enum DecodeError {
 
 impl DecodeError {
     /// Returns the error for a file in no format of images.
-    pub(crate) fn of_no_format(bytes: &[u8]) -> Self {
+    pub(super) fn of_no_format(bytes: &[u8]) -> Self {
         // A .glb file has this signature, and a .gltf file is a JSON object.
         if bytes.starts_with(b"glTF") || bytes.trim_ascii_start().starts_with(b"{") {
             return Self::Asset;

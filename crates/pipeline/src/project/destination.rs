@@ -50,8 +50,8 @@ pub enum DestinationError {
     },
     /// The name of a file that is no document.
     #[error(
-        "-o {}: expected a folder, or a file that ends in .gltf or .glb, found the name of another file; a bake writes \
-         one document or several files into a folder",
+        "-o {}: expected a folder, or a file that ends in .gltf or .glb, found the name of another file; name a folder, or \
+         end the name in .gltf or .glb",
         path.display()
     )]
     OtherFile {
@@ -84,9 +84,11 @@ impl Destination {
     /// [`DestinationError`] if a document is named that no single input can be baked to, or a file that is no document.
     pub fn new(path: &Path, arguments: &[PathBuf]) -> Result<Self, DestinationError> {
         let Some(container) = named_container(path) else {
-            let is_file = has_extension(path, &OTHER_FILES) && !path.is_dir();
-            let other = || DestinationError::OtherFile { path: path.to_owned() };
-            return if is_file { Err(other()) } else { Ok(Self::folder(path)) };
+            let is_other_file = has_extension(path, &OTHER_FILES) && !path.is_dir();
+            return match is_other_file {
+                true => Err(DestinationError::OtherFile { path: path.to_owned() }),
+                false => Ok(Self::folder(path)),
+            };
         };
         let path = path.to_owned();
         let found = match arguments {
@@ -110,7 +112,7 @@ impl Destination {
     }
 }
 
-/// Extensions of files that a bake does not write as its document. No one gives them to a folder.
+/// Extensions of files that a bake cannot write as its document. No one names a new folder so.
 const OTHER_FILES: [&str; 10] = ["bin", "fbx", "jpeg", "jpg", "json", "ktx2", "obj", "png", "usdz", "zip"];
 
 /// Returns the container that the extension of `path` names, if it names one.
@@ -146,17 +148,15 @@ mod tests {
 
     #[test]
     fn another_file_is_no_destination() {
-        for path in ["out.zip", "x/out.PNG"] {
-            let error = destination(path, &["a.glb", "b"]).unwrap_err();
-            assert!(
-                error.starts_with(&format!("-o {path}: expected a folder, or a file that ends in .gltf")),
-                "{error}"
-            );
-        }
         let folder = tempfile::tempdir().unwrap();
         let existing = folder.path().join("out.zip");
         std::fs::create_dir(&existing).unwrap();
         assert_eq!(Destination::new(&existing, &[]).unwrap(), Destination::folder(&existing));
+        for path in ["out.zip", "x/out.PNG"] {
+            let error = destination(path, &["a.glb", "b"]).unwrap_err();
+            let expected = format!("-o {path}: expected a folder, or a file that ends in .gltf or .glb");
+            assert!(error.starts_with(&expected), "{error}");
+        }
     }
 
     #[test]

@@ -246,6 +246,8 @@ fn what_cannot_be_shown_is_named() {
         let text = complaint(name);
         assert!(text.contains(name) && text.contains(expected), "{text}");
     }
-    let missing = choose(&[], Some(&folder.path().join("missing.glb"))).expect_err("an error").to_string();
-    assert!(missing.contains("missing.glb: expected a .gltf"), "{missing}");
+    for (name, found) in [("missing.glb", ""), ("empty", "a folder")] {
+        let text = choose(&[], Some(&folder.path().join(name))).expect_err("an error").to_string();
+        assert!(text.contains(&format!("{name}: expected a .gltf or .glb file, found: {found}")), "{text}");
+    }
 }

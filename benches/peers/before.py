@@ -1,28 +1,26 @@
-"""Times bakes of large materials by an earlier build beside this one, in turns, and prints ratios of medians.
+"""Times bakes of large materials by an earlier build and by this one, in turn, and prints the ratio of the medians.
 
-python3 benches/studies/before.py EARLIER NOW MATERIAL.gltf ...
+python3 benches/peers/before.py EARLIER NOW MATERIAL.gltf ...
 
-EARLIER and NOW are two builds of the tool. The images of each material are repeated to 4096 x 4096 texels, as PNGs in
-a temporary folder. Needs Pillow (benches/appearance/requirements.txt).
+EARLIER and NOW are the paths of two builds of the tool. The images of each material are repeated to 4096 x 4096 texels,
+as PNGs in a temporary folder. Needs Pillow (benches/appearance/requirements.txt).
 """
 
 import json
 import shutil
-import statistics
-import subprocess
 import sys
 import tempfile
-import time
 from pathlib import Path
 
+from measure import Contender, alternate
 from PIL import Image
 
 SIDE = 4096
-RUNS = 5
+ROUNDS = 5
 
 
 def repeated(source, folder):
-    """Writes the material `source` to `folder`, with images of SIDE x SIDE texels."""
+    """Writes the material `source` to `folder`, with images of SIDE x SIDE texels, and returns its path."""
     document = json.loads(source.read_text())
     for image in document["images"]:
         tile = Image.open(source.parent / image["uri"])
@@ -39,10 +37,8 @@ def repeated(source, folder):
     return folder / source.name
 
 
-def seconds(tool, material, output):
-    start = time.monotonic()
-    subprocess.run([tool, "bake", material, "-o", output, "--quiet", "--threads", "2"], check=True)
-    return time.monotonic() - start
+def bake(tool, material, out):
+    return Contender([tool, "bake", str(material), "-o", str(out), "--quiet", "--threads", "2"], out=str(out))
 
 
 def main():
@@ -50,12 +46,13 @@ def main():
     for source in map(Path, materials):
         with tempfile.TemporaryDirectory() as folder:
             material = repeated(source, Path(folder))
-            # The first pair fills the caches of the system and does not count.
-            pairs = [
-                [seconds(tool, material, Path(folder, f"out{i}")) for i, tool in enumerate((earlier, now))]
-                for _ in range(RUNS + 1)
-            ][1:]
-            before, after = (statistics.median(times) for times in zip(*pairs))
+            tools = {"earlier": earlier, "now": now}
+            contenders = {name: bake(tool, material, Path(folder, name)) for name, tool in tools.items()}
+            results = alternate(contenders, ROUNDS, note=lambda _: None)
+        for name, result in results.items():
+            if "failed" in result:
+                sys.exit(f"{source}: {tools[name]} {result['failed']}")
+        before, after = (results[name]["wall"] for name in tools)
         print(f"{source.stem}: {before:.2f} s, now {after:.2f} s: {after / before:.2f} x", flush=True)
 
 
