@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::codec::uastc::Effort;
 use crate::lobe::{Family, LobeTexel};
-use crate::metric::{DRAWN, DrawnFootprint, FitEffort, fit};
+use crate::metric::{DRAWN, DrawnFootprint, FitEffort, Search, fit};
 use crate::mip::{FinerRow, MipTail, TexelRows, level_sizes};
 
 /// Which texels of a level are fitted, and how.
@@ -31,34 +31,36 @@ const UNEVEN: f32 = 2.0;
 ///
 /// `fast` takes the lobes of level 1 as parts from level 4 on: they are in memory, they stand for the whole footprint
 /// up to level 6, and a merge of four texels hardly drifts. From level 6 on, the lobes of level 2 do as well if they
-/// are alike.
+/// are alike. Up to level 4, most of the time goes to searches, so that these are short.
 const FAST: [LevelFit; 7] = [
-    level_fit(true, [0, 0], DRAWN, 64, 2, 0),
-    level_fit(true, [0, 0], DRAWN, 64, 2, 0),
-    level_fit(true, [1, 1], DRAWN, 64, 2, 0),
-    level_fit(false, [1, 1], DRAWN, 64, 1, 0),
-    level_fit(false, [1, 2], DRAWN, 128, 1, 0),
-    level_fit(false, [1, 2], DRAWN, 256, 2, 4),
-    level_fit(false, [1, 2], DRAWN, 512, 2, 4),
+    level_fit(true, [0, 0], DRAWN, 64, SHORT, 0),
+    level_fit(true, [0, 0], DRAWN, 64, SHORT, 0),
+    level_fit(true, [1, 1], DRAWN, 64, Search { rounds: 4, ..SHORT }, 0),
+    level_fit(false, [1, 1], DRAWN, 64, Search { descents: 1, ..LONG }, 0),
+    level_fit(false, [1, 2], DRAWN, 128, Search { descents: 1, ..LONG }, 0),
+    level_fit(false, [1, 2], DRAWN, 256, LONG, 4),
+    level_fit(false, [1, 2], DRAWN, 512, LONG, 4),
 ];
 const BEST: [LevelFit; 6] = [
-    level_fit(false, [0, 0], DRAWN, 128, 2, 0),
-    level_fit(false, [0, 0], DRAWN, 256, 2, 0),
-    level_fit(false, [0, 0], DRAWN, 256, 2, 0),
-    level_fit(false, [0, 0], 2 * DRAWN, 512, 2, 4),
-    level_fit(false, [0, 0], 2 * DRAWN, 1024, 2, 4),
-    level_fit(false, [0, 0], 2 * DRAWN, 2048, 2, 4),
+    level_fit(false, [0, 0], DRAWN, 128, LONG, 0),
+    level_fit(false, [0, 0], DRAWN, 256, LONG, 0),
+    level_fit(false, [0, 0], DRAWN, 256, LONG, 0),
+    level_fit(false, [0, 0], 2 * DRAWN, 512, LONG, 4),
+    level_fit(false, [0, 0], 2 * DRAWN, 1024, LONG, 4),
+    level_fit(false, [0, 0], 2 * DRAWN, 2048, LONG, 4),
 ];
+const SHORT: Search = Search { descents: 1, rounds: 2 };
+const LONG: Search = Search { descents: 2, rounds: 8 };
 
 const fn level_fit(
     uneven_only: bool,
     parts: [usize; 2],
     strata: u32,
     half_vectors: usize,
-    descents: usize,
+    search: Search,
     likelihood_steps: usize,
 ) -> LevelFit {
-    LevelFit { uneven_only, parts, strata, effort: FitEffort { half_vectors, descents, likelihood_steps } }
+    LevelFit { uneven_only, parts, strata, effort: FitEffort { half_vectors, search, likelihood_steps } }
 }
 
 /// The finest level that is fitted: the four texels under a texel of level 1 are too few.

@@ -9,15 +9,24 @@ use crate::metric::mixture::{BATCH, Batch, DensityTerms, HalfVector, Mixture, be
 use crate::metric::reference::even_point;
 use crate::simd::dispatch;
 
-/// How long a fit searches.
+/// How much work a fit does.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FitEffort {
     /// Half-vectors that represent the footprint, a multiple of 64.
     pub half_vectors: usize,
-    /// Starts from which the search descends: the best of the lobes that are tried.
-    pub descents: usize,
+    /// How long the search goes on.
+    pub search: Search,
     /// EM steps towards the likeliest lobe, which is another start unless this number is 0.
     pub likelihood_steps: usize,
+}
+
+/// The length of the search for the least error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Search {
+    /// Starts from which the search descends: the best of the lobes that are tried.
+    pub descents: usize,
+    /// The most rounds of a descent over all its directions.
+    pub rounds: usize,
 }
 
 /// Returns the lobe with the least error for the mixture of `parts` (weights that sum to 1, lobes) that a search
@@ -41,7 +50,8 @@ pub fn fit(
     let starts = [Some(given), plain_mip(parts), likeliest, target.peak()].into_iter().flatten();
     let mut starts: Vec<(f32, Candidate)> = starts.map(|lobe| (target.error(&lobe), lobe)).collect();
     starts.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let minima = starts.iter().take(effort.descents).map(|start| target.descend(*start));
+    let Search { descents, rounds } = effort.search;
+    let minima = starts.iter().take(descents).map(|start| target.descend(*start, rounds));
     let best = minima.min_by(|a, b| a.0.total_cmp(&b.0));
     best.map_or(start, |(_, lobe)| lobe.lobe())
 }
@@ -127,8 +137,6 @@ impl Candidate {
 const DIRECTIONS: usize = 5;
 /// The first step in each direction, in alphas.
 const STEPS: [f32; DIRECTIONS] = [0.25, 0.25, 0.2, 0.15, 0.15];
-/// The most rounds over all directions.
-const ROUNDS: usize = 8;
 /// The search ends when all steps are shorter.
 const LEAST_STEP: f32 = 0.02;
 /// The least z of a normal, at 87 degrees.
@@ -166,10 +174,10 @@ impl Target {
     }
 
     /// Moves `start` along each direction as long as this lowers the error. Steps are halved when they fail.
-    fn descend(&self, start: (f32, Candidate)) -> (f32, Candidate) {
+    fn descend(&self, start: (f32, Candidate), rounds: usize) -> (f32, Candidate) {
         let mut best = start;
         let mut steps = STEPS;
-        for _ in 0..ROUNDS {
+        for _ in 0..rounds {
             if steps.iter().all(|step| step.abs() < LEAST_STEP) {
                 break;
             }

@@ -23,7 +23,7 @@ mod tests;
 pub use decoded::{Decoded, mean_errors, sample_texels, shown_lobe, shown_normal, with_z};
 pub use density::{Lobe, MIN_ALPHA};
 pub use draws::{DRAWN, DrawnFootprint};
-pub use fit::{FitEffort, fit};
+pub use fit::{FitEffort, Search, fit};
 pub use footprint::{Footprint, FootprintMoments, Part, Surface};
 pub use oracle::oracle;
 pub use peaks::is_two_peaked;

@@ -11,14 +11,15 @@ use crate::select::rule::choose;
 use crate::select::shown::{Errors, Shown};
 use crate::settings::Model;
 
-/// How much larger than the error of the base lobe the error of a level may be: in the pyramid profile, or where a
-/// smaller texture lacks the level.
+/// How much larger than the error of the base lobe the error of a level may be: in the pyramid profile, or up to the
+/// first level of a smaller texture.
 const MAX_LOSS: f32 = 0.005;
 
 /// A candidate that has been evaluated.
 struct Evaluated {
     candidate: Candidate,
-    /// Whether the base lobe is better by more than [`MAX_LOSS`] at a level that its smaller texture lacks.
+    /// Whether the base lobe is better by more than [`MAX_LOSS`] at the first level of its smaller texture, or at one
+    /// that this texture lacks.
     is_worse_than_base: bool,
 }
 
@@ -92,12 +93,13 @@ impl CandidateSet<'_, '_> {
             let mut errors = self.errors_of_size(&full, model, first, sites, shown)?;
             let own_errors = by_level(sites, &errors, *finest, sizes.len());
             let levels = (*finest..).zip(own_errors.iter().zip(&base_errors));
-            // Levels that are magnified from the first level have no texels of their own.
-            let loses = |(level, (own, base)): (usize, (&f32, &f32))| level < first && *own > base + MAX_LOSS;
-            let is_worse_than_base = first > self.first && levels.clone().any(loses);
+            // The levels that a smaller texture lacks are magnified from its first level, which thus keeps its lobes.
+            let is_smaller = first > self.first;
+            let loses = |(level, (own, base)): (usize, (&f32, &f32))| level <= first && *own > base + MAX_LOSS;
+            let is_worse_than_base = is_smaller && levels.clone().any(loses);
             // K is 0 at level 0 anyway.
             let may_be_0 = |level| self.pyramid.as_ref().is_none_or(|pyramid| pyramid.may_keep_base && level > 0);
-            let may_keep = |level| level >= first && may_be_0(level);
+            let may_keep = |level| level >= first + usize::from(is_smaller) && may_be_0(level);
             // A level without K looks unlike its neighbours, so that a small gain is not worth it.
             let margin = if self.pyramid.is_some() { MAX_LOSS } else { 0.0 };
             let is_worse = |(level, (own, base)): &(usize, (&f32, &f32))| **own > *base + margin && may_keep(*level);

@@ -3,7 +3,8 @@ use crate::bump::Offset;
 use crate::lobe::Alpha;
 use crate::metric::{Footprint, Lobe, Part, Reference, SAMPLES, oracle};
 
-const EFFORT: FitEffort = FitEffort { half_vectors: 512, descents: 2, likelihood_steps: 4 };
+const EFFORT: FitEffort =
+    FitEffort { half_vectors: 512, search: Search { descents: 2, rounds: 8 }, likelihood_steps: 4 };
 
 /// Returns 1024 parts: `share` of them wide and spread by `steep`, the others narrow and spread by `flat`.
 fn two_populations(share: u32, alphas: [f32; 2], spreads: [f32; 2]) -> Vec<(f32, OrientedLobe)> {

@@ -207,7 +207,7 @@ fn smaller_textures_lose_little_against_the_base_lobe() {
 
 /// Mirror tiles beside rough grout: at some levels one lobe for both is worse than the tiles' own.
 fn tiles(side: u32) -> (Image, Image) {
-    let is_grout = |x: u32, y: u32| x % 16 < 3 || y % 16 < 3;
+    let is_grout = |x: u32, y: u32| x % 16 < 5 || y % 16 < 5;
     let lean = |x: u32, y: u32| [0.06 * noise(x, y, 3), 0.06 * noise(x, y, 4)];
     let slope = |x: u32, y: u32| {
         if is_grout(x, y) { [0.5 * noise(x, y, 1), 0.5 * noise(x, y, 2)] } else { lean(x / 16, y / 16) }
