@@ -1,6 +1,6 @@
 //! `roughcast check`.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::path::PathBuf;
 
@@ -146,14 +146,14 @@ impl Args {
         }
     }
 
-    /// Bakes the assets whose outputs are `curable`, as `bake` does.
-    fn fix(&self, curable: &BTreeSet<PathBuf>, sources: &Sources, err: &mut dyn Write) -> io::Result<Outcome> {
+    /// Bakes the assets of the `curable` outputs, as `bake` does.
+    fn fix(&self, curable: &BTreeMap<PathBuf, PathBuf>, sources: &Sources, err: &mut dyn Write) -> io::Result<Outcome> {
         if let Some(error) = &sources.unsafe_output {
             writeln!(err, "error: {error}")?;
             return Ok(Outcome::Failed);
         }
-        let assets = curable.iter().filter_map(|key| sources.assets.get(key));
-        let assets: Vec<_> = assets.map(|asset| (asset.input.clone(), asset.resolved.clone())).collect();
+        let asset = |(output, key): (&PathBuf, &PathBuf)| sources.assets.get(key).map(|asset| asset.baked_to(output));
+        let assets: Vec<_> = curable.iter().filter_map(asset).collect();
         let open = || -> Result<_, FixError> {
             assets.iter().try_for_each(|(_, resolved)| resolved.settings.target.check_available())?;
             Ok(self.cache.open()?)

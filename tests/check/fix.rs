@@ -99,6 +99,28 @@ fn a_fix_writes_the_outputs_of_a_bake() {
     assert_eq!(names(&files(&cache)), names(&cached), "the second bake added nothing to the cache");
 }
 
+/// A document that `-o` named keeps its name and its container.
+#[test]
+fn bakes_documents_with_a_name_of_their_own_again() {
+    for name in ["named.glb", "ridges.glb", "named.gltf"] {
+        let bake = bake(&[]);
+        let source = bake.source.join("ridges.gltf");
+        let baked_to = |folder: &str| {
+            let folder = bake.baked.with_file_name(folder);
+            run(&bake, &["bake", source.to_str().unwrap(), "-o", folder.join(name).to_str().unwrap(), "-q"]);
+            folder
+        };
+        let stale = baked_to("stale");
+        fs::copy(bake.source.join("surface.png"), bake.source.join("bumps.png")).unwrap();
+        let fresh = baked_to("fresh");
+        let (stale, source) = (stale.to_str().unwrap(), bake.source.to_str().unwrap());
+        let (outcome, out, err) = roughcast(&["check", stale, "--source", source, "--fix"]);
+        assert_eq!(outcome, Outcome::Done, "{name}: {out} {err}");
+        assert!(err.starts_with("baked again: ") && err.contains(name), "{name}: {err}");
+        assert_eq!(files(Path::new(stale)), files(&fresh), "{name}");
+    }
+}
+
 #[test]
 fn reports_findings_that_remain() {
     let bake = two_assets();

@@ -8,10 +8,11 @@ use std::path::{Path, PathBuf};
 use walkdir::WalkDir;
 
 use crate::bake::output_stem_of;
-use crate::gltf::document::Document;
+use crate::gltf::document::{Container, Document};
 use crate::input_file::read_file;
 use crate::output::{folder_of, is_same_file};
-use crate::project::{Input, InputError, Resolved, Selection, SelectionError, recorded};
+use crate::project::{Input, InputError, Resolved, Selection, SelectionError, named_container, recorded};
+use crate::settings::Form;
 
 /// A file to check.
 pub struct CheckedFile {
@@ -72,6 +73,25 @@ pub struct SourceAsset {
     pub input: Input,
     /// The current settings of the asset.
     pub resolved: Resolved,
+}
+
+impl SourceAsset {
+    /// Returns the asset and its settings for a bake to `output`. A document that exists keeps its name, and its
+    /// container if the settings leave that open: the user may have chosen both with `-o`.
+    pub fn baked_to(&self, output: &Path) -> (Input, Resolved) {
+        let (mut input, mut resolved) = (self.input.clone(), self.resolved.clone());
+        let named = named_container(output).zip(output.file_stem().and_then(|stem| stem.to_str()));
+        if let Some((container, stem)) = named.filter(|_| output.is_file()) {
+            input.stem = stem.to_owned();
+            let settings = &mut resolved.settings;
+            let default = named_container(&input.path).map(|source| settings.container(source));
+            if settings.glb.is_none() && settings.gltf != Form::Dual && default != Some(container) {
+                let glb = Some(container == Container::Glb);
+                (settings.glb, resolved.values.glb) = (glb, glb);
+            }
+        }
+        (input, resolved)
+    }
 }
 
 /// The assets of the source folder, by the paths of their outputs without extension.

@@ -1,6 +1,6 @@
 //! Checks files and folders, and collects the findings in a report.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -41,8 +41,9 @@ pub struct Checked {
     pub report: Report,
     /// Messages on files that cannot be read.
     pub errors: Vec<String>,
-    /// Keys of the assets of [`Sources`] with findings that a bake cures.
-    pub curable: BTreeSet<PathBuf>,
+    /// Outputs with findings that a bake cures, and the keys of their assets in [`Sources`]. A missing output has the
+    /// key itself for its path.
+    pub curable: BTreeMap<PathBuf, PathBuf>,
 }
 
 /// The findings of a document and of the files that it refers to.
@@ -90,7 +91,7 @@ impl Checker {
             let findings = self.add(target, result, checked);
             let is_curable = |f: &Finding| f.severity != Severity::Note && f.code.is_fixed_by_bake();
             if findings.iter().any(is_curable) {
-                checked.curable.insert(target.path.with_extension(""));
+                checked.curable.insert(target.path.clone(), target.key(sources));
             }
         }
         referred
@@ -123,7 +124,7 @@ impl Checker {
             let mut findings = findings.into_list();
             self.set_severities(&mut findings);
             checked.report.findings.extend(findings);
-            checked.curable.insert(missing.clone());
+            checked.curable.insert(missing.clone(), missing.clone());
         }
     }
 

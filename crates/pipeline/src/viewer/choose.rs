@@ -11,6 +11,7 @@ use super::error::ViewerError;
 use super::variant::Variant;
 use crate::gltf::document::{Document, DocumentError};
 use crate::input_file::{check_file, read_file};
+use crate::output::is_same_file;
 
 /// The documents to show.
 #[derive(Debug, Default, PartialEq)]
@@ -48,6 +49,8 @@ pub fn choose(inputs: &[PathBuf], original: Option<&Path>) -> Result<Chosen, Vie
             Entry::Vacant(free) => {
                 free.insert(path);
             }
+            // A file that is named may lie in a folder that is named, too.
+            Entry::Occupied(first) if is_same_file(first.get(), &path) => {}
             Entry::Occupied(first) => {
                 return Err(ViewerError::Twice { variant, first: first.remove(), second: path });
             }

@@ -42,7 +42,7 @@ pub enum ViewerError {
         path: PathBuf,
     },
     /// A file that is no glTF document.
-    #[error("{}: expected a glTF document, found: {reason}", path.display())]
+    #[error("{}: cannot be shown: {reason}", path.display())]
     Document {
         /// The file.
         path: PathBuf,

@@ -217,8 +217,8 @@ fn folders_show_the_asset_with_the_most_variants() {
     ];
     assert_eq!(chosen, Chosen { files: files.into(), others: 2 });
     // A named file decides instead, and so does --original.
-    let inputs = paths(folder.path(), &["out", "out/pyramid/c.gltf"]);
-    let twice = choose(&inputs, None).expect_err("one file twice").to_string();
+    let inputs = paths(folder.path(), &["out/pyramid/b.gltf", "out/pyramid/c.gltf"]);
+    let twice = choose(&inputs, None).expect_err("two files of one kind").to_string();
     assert!(
         twice.contains("expected one file of each kind") && twice.contains("\u{201c}Pyramid bake\u{201d}"),
         "{twice}"
@@ -227,6 +227,9 @@ fn folders_show_the_asset_with_the_most_variants() {
     let chosen = choose(&paths(folder.path(), &["assets/a.gltf", "out"]), Some(&original)).expect("documents");
     assert_eq!(chosen, Chosen { files: [(Variant::Original, original)].into(), others: 3 });
     assert_eq!(choose(&[], None).expect("an empty page"), Chosen::default());
+    // A file that is named and lies in a named folder counts once.
+    let chosen = choose(&paths(folder.path(), &["assets", "assets/a.gltf", "assets"]), None).expect("documents");
+    assert_eq!(chosen.files, [(Variant::Original, file("assets/a.gltf"))].into());
 }
 
 #[test]
@@ -239,7 +242,7 @@ fn what_cannot_be_shown_is_named() {
     };
     for (name, expected) in [
         ("missing.glb", "expected a .gltf or .glb file or a folder, found:"),
-        ("broken.gltf", "expected a glTF document, found:"),
+        ("broken.gltf", "cannot be shown: JSON: "),
         ("empty", "expected .gltf or .glb files below this folder, found none"),
         ("a:b.gltf", "expected a file name that a URL can hold"),
     ] {

@@ -81,7 +81,8 @@ async function choose(inputs, { TITLES, readDocument, variantOf }) {
   const isShown = ({ file }) => stem(file) === stem(shown.file);
   const files = {};
   for (const { variant, file } of [...named, ...found.filter(isShown)]) {
-    if (files[variant]) {
+    // A file that is named may lie in a folder that is named, too.
+    if (files[variant] && files[variant] !== file) {
       const both = `${files[variant]} and ${file}, both “${TITLES[variant]}”`;
       throw new UsageError(`expected one file of each kind, found ${both}; name one of them`);
     }
@@ -94,7 +95,7 @@ async function choose(inputs, { TITLES, readDocument, variantOf }) {
     try {
       return { file, variant: variantOf(readDocument(await readFile(file))) };
     } catch (error) {
-      throw new Error(`${file}: expected a glTF document, found: ${error.message}`, { cause: error });
+      throw new Error(`${file}: cannot be shown: ${error.message}`, { cause: error });
     }
   }
 }

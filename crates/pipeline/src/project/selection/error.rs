@@ -50,7 +50,7 @@ pub enum SelectionError {
     Destination(#[from] DestinationError),
     /// A document whose extension names another container than `--glb`.
     #[error(
-        "-o {}: expected a name that suits --glb={is_glb}, found another extension; leave --glb out or change the name",
+        "{}: expected a name that suits --glb={is_glb}, found another extension; leave --glb out or name another document",
         path.display()
     )]
     OtherContainer {
