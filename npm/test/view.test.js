@@ -126,7 +126,7 @@ test('says what it cannot show', options, (t) => {
       (error) => pattern.test(error.stderr) && error.status === status,
     );
   fails(/nosuch\.glb: expected .* found nothing/, 1, 'nosuch.glb');
-  fails(/broken\.gltf: expected a glTF document/, 1, 'broken.gltf');
+  fails(/broken\.gltf: cannot be shown: /, 1, 'broken.gltf');
   fails(/model\.glb and .*copies.*“Plain mips”/, 2, 'model.glb', 'copies');
   fails(/unknown/i, 2, '--unknown');
   assert.match(npx(folder, 'view', '--help'), /127\.0\.0\.1/);
