@@ -180,9 +180,9 @@ fn several_processes_share_a_cache_and_a_folder() {
     };
     for child in [start(), start(), start()] {
         let run = Run::from(child.wait_with_output().expect("an exit"));
-        // A run that waits for longer says so.
-        let is_wait = |line: &str| line == "note: waiting for another run of roughcast that writes to out";
-        assert!(run.code == 0 && run.err.lines().all(is_wait), "{}: {}", run.code, run.err);
+        // On a busy machine a run may wait for so long that it says so, once.
+        let wait = "note: waiting for another run of roughcast that writes to out\n";
+        assert!(run.code == 0 && ["", wait].contains(&run.err.as_str()), "{}: {}", run.code, run.err);
     }
     let shared = hashes(&folder.join("out"));
     assert_eq!(roughcast_in(folder, "bake assets -o alone -q".split(' ')).code, 0);

@@ -68,22 +68,24 @@ impl Checker {
             }
         }
         let (textures, documents): (Vec<_>, Vec<_>) = targets.into_iter().partition(CheckedFile::is_texture);
+        let documents: Vec<_> = documents.into_par_iter().map(|target| (target.key(sources), target)).collect();
         let referred = self.check_documents(&documents, sources, &mut checked);
         self.check_textures(&textures, &referred, sources, &mut checked);
-        self.find_missing_outputs(&documents, sources, &mut checked);
+        self.find_missing_outputs(documents.iter().map(|(key, _)| key).collect(), sources, &mut checked);
         checked
     }
 
-    /// Checks `documents` and returns the real paths of the files that they refer to.
+    /// Checks `documents`, each with its key, and returns the real paths of the files that they refer to.
     fn check_documents(
         &self,
-        documents: &[CheckedFile],
+        documents: &[(PathBuf, CheckedFile)],
         sources: &Sources,
         checked: &mut Checked,
     ) -> BTreeSet<PathBuf> {
         let mut referred = BTreeSet::new();
-        let results: Vec<_> = documents.par_iter().map(|target| self.check_document(target, sources)).collect();
-        for (target, result) in documents.iter().zip(results) {
+        let results: Vec<_> =
+            documents.par_iter().map(|(key, target)| self.check_document(target, key, sources)).collect();
+        for ((key, target), result) in documents.iter().zip(results) {
             let result = result.map(|DocumentFindings { findings, files }| {
                 referred.extend(files);
                 findings
@@ -91,7 +93,7 @@ impl Checker {
             let findings = self.add(target, result, checked);
             let is_curable = |f: &Finding| f.severity != Severity::Note && f.code.is_fixed_by_bake();
             if findings.iter().any(is_curable) {
-                checked.curable.insert(target.path.clone(), target.key(sources));
+                checked.curable.insert(target.path.clone(), key.clone());
             }
         }
         referred
@@ -113,9 +115,8 @@ impl Checker {
         }
     }
 
-    /// Adds a finding for every expected output that does not exist.
-    fn find_missing_outputs(&self, documents: &[CheckedFile], sources: &Sources, checked: &mut Checked) {
-        let present: BTreeSet<PathBuf> = documents.iter().map(|target| target.key(sources)).collect();
+    /// Adds a finding for every expected output whose key is not among `present`.
+    fn find_missing_outputs(&self, present: BTreeSet<&PathBuf>, sources: &Sources, checked: &mut Checked) {
         for missing in sources.expected.iter().filter(|key| !present.contains(*key)) {
             let Some(asset) = sources.assets.get(missing) else { continue };
             let mut findings = Findings::new(asset.input.path.display().to_string());
@@ -162,13 +163,13 @@ impl Checker {
         }
     }
 
-    fn check_document(&self, target: &CheckedFile, sources: &Sources) -> io::Result<DocumentFindings> {
+    fn check_document(&self, target: &CheckedFile, key: &Path, sources: &Sources) -> io::Result<DocumentFindings> {
         let bytes = read_file(&target.path)?;
         let name = target.path.display().to_string();
         let folder = target.path.parent().unwrap_or(Path::new(""));
         let mut findings = Findings::new(&name);
         // The output may have a shorter name than its source, or one that the user chose.
-        let known = sources.assets.get(&target.key(sources));
+        let known = sources.assets.get(key);
         let source_path = sources
             .folder
             .as_ref()

@@ -187,7 +187,8 @@ fn errors_are_those_of_the_baked_files() {
     }
 }
 
-/// A smaller texture is no choice if the base lobe is better at a level that it lacks, whatever the bound.
+/// A smaller texture is no choice if the base lobe is better at its first level or at a level that it lacks, whatever
+/// the bound.
 #[test]
 fn smaller_textures_lose_little_against_the_base_lobe() {
     // Noise of the finest grain: level 0 has lost nothing, and all other levels have lost as much.
@@ -197,7 +198,7 @@ fn smaller_textures_lose_little_against_the_base_lobe() {
         let max_error = 0.05 * step as f32;
         let choice = choice_of(&image, 0.3, &Settings { target: Target::Float, ..settings(max_error) });
         let (none, taken) = (&choice.candidates[0], choice.taken().unwrap());
-        let loses = |c: &Candidate| (0..c.first).any(|level| c.errors[level] > none.errors[level] + 0.005);
+        let loses = |c: &Candidate| (0..=c.first).any(|level| c.errors[level] > none.errors[level] + 0.005);
         assert!(!loses(taken), "{max_error}: {choice:#?}");
         let cheaper = &choice.candidates[..choice.chosen];
         is_passed_over |= cheaper.iter().any(|c| loses(c) && c.errors.iter().all(|error| *error <= max_error));
@@ -205,25 +206,43 @@ fn smaller_textures_lose_little_against_the_base_lobe() {
     assert!(is_passed_over, "no bound tempts to take a smaller texture");
 }
 
-/// Mirror tiles beside rough grout: at some levels one lobe for both is worse than the tiles' own.
-fn tiles(side: u32) -> (Image, Image) {
-    let is_grout = |x: u32, y: u32| x % 16 < 5 || y % 16 < 5;
+/// Mirror tiles beside rough grout of width `gap` with slopes up to `steep`: at some levels one lobe for both is worse
+/// than the tiles' own.
+fn tiles(side: u32, gap: u32, steep: f32) -> (Image, BaseRoughness) {
+    let is_grout = |x: u32, y: u32| x % 16 < gap || y % 16 < gap;
     let lean = |x: u32, y: u32| [0.06 * noise(x, y, 3), 0.06 * noise(x, y, 4)];
     let slope = |x: u32, y: u32| {
-        if is_grout(x, y) { [0.5 * noise(x, y, 1), 0.5 * noise(x, y, 2)] } else { lean(x / 16, y / 16) }
+        if is_grout(x, y) { [steep * noise(x, y, 1), steep * noise(x, y, 2)] } else { lean(x / 16, y / 16) }
     };
     let roughness = |i: u32| [0, if is_grout(i % side, i / side) { 178 } else { 26 }, 255];
     let samples = Samples::U8((0..side * side).flat_map(roughness).collect());
-    (normals(side, slope), Image { width: side, height: side, channels: 3, samples })
+    let roughness = Image { width: side, height: side, channels: 3, samples };
+    (normals(side, slope), BaseRoughness { image: Some(roughness), factor: 1.0 })
+}
+
+/// Finer levels are magnified from the first level of a smaller texture, so that this level keeps its lobes.
+#[test]
+fn the_first_level_of_a_smaller_texture_keeps_its_lobes() {
+    let (image, base) = tiles(64, 2, 1.0);
+    let choice = bake_with(&image, base, &Settings { profile: Profile::Pyramid, ..settings(0.1) }).choice.unwrap();
+    let keeps = |model, first, level: usize| {
+        let candidate = choice.candidates.iter().find(|c| (c.model, c.first) == (model, first)).unwrap();
+        candidate.base_levels.contains(&level)
+    };
+    let is_spared = |model| {
+        assert!((1..=2).all(|first| !keeps(model, first, first)), "{choice:#?}");
+        (1..=2).any(|level| keeps(model, 0, level))
+    };
+    let spared = [Model::Isotropic, Model::Anisotropic].map(is_spared);
+    assert!(spared.contains(&true), "the full size keeps the base lobe at none of these levels: {choice:#?}");
 }
 
 /// K is 0 at a level that the base lobe shows better.
 #[test]
 fn levels_of_the_pyramid_are_no_worse_than_the_base_lobe() {
-    let (image, roughness) = tiles(128);
-    let base = || BaseRoughness { image: Some(roughness.clone()), factor: 1.0 };
+    let (image, base) = tiles(128, 5, 0.5);
     let settings = Settings { profile: Profile::Pyramid, model: Model::Anisotropic, ..settings(0.1) };
-    let baked = bake_with(&image, base(), &settings);
+    let baked = bake_with(&image, base, &settings);
     let choice = baked.choice.as_ref().unwrap();
     let (none, taken) = (&choice.candidates[0], choice.taken().unwrap());
     let factor = baked.textures.iter().find(|t| t.content == Content::Factor).unwrap();
