@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use crate::codec::uastc::Effort;
 use crate::lobe::{Family, LobeTexel};
 use crate::metric::{DRAWN, DrawnFootprint, FitEffort, Search, fit};
-use crate::mip::{FinerRow, MipTail, TexelRows, level_sizes};
+use crate::mip::{FinerRows, MipTail, TexelRows, level_sizes};
 
 /// Which texels of a level are fitted, and how.
 struct LevelFit {
@@ -29,13 +29,13 @@ const UNEVEN: f32 = 2.0;
 /// can have more half-vectors in the same time. A merge is good enough for most texels of levels 2 to 4: on real maps
 /// it is within 1.02 to 1.15 x of the best lobe there.
 ///
-/// `fast` takes the lobes of level 1 as parts from level 4 on: they are in memory, they stand for the whole footprint
-/// up to level 6, and a merge of four texels hardly drifts. From level 6 on, the lobes of level 2 do as well if they
-/// are alike. Searches up to level 4 are short: with long ones, a bake of a map with many uneven texels takes 1.5 x the
-/// time.
+/// `fast` takes the lobes of level 1 as parts from level 3 on: they are in memory, they stand for the whole footprint
+/// up to level 6, and a merge of four texels hardly drifts. At level 2 they would be too few. From level 6 on, the
+/// lobes of level 2 do as well if they are alike. Searches up to level 4 are short: with long ones, a bake of a map
+/// with many uneven texels takes 1.5 x the time.
 const FAST: [LevelFit; 7] = [
     level_fit(true, [0, 0], DRAWN, 64, SHORT, 0),
-    level_fit(true, [0, 0], DRAWN, 64, SHORT, 0),
+    level_fit(true, [1, 1], DRAWN, 64, SHORT, 0),
     level_fit(true, [1, 1], DRAWN, 64, Search { rounds: 4, ..SHORT }, 0),
     level_fit(false, [1, 1], DRAWN, 64, Search { descents: 1, ..LONG }, 0),
     level_fit(false, [1, 2], DRAWN, 128, Search { descents: 1, ..LONG }, 0),
@@ -132,7 +132,7 @@ fn mark_uneven<T: LobeTexel>(
 /// Fits texels of row `y` of a level of `size`, from the lobes in `out`. The parts are texels of the level
 /// `part_level`, which has the size `whole`; `finer` writes its rows.
 fn fit_row<T: LobeTexel>(
-    finer: &FinerRow<'_, T>,
+    finer: &FinerRows<'_, T>,
     (part_level, whole): (usize, (u32, u32)),
     (y, size): (u32, (u32, u32)),
     family: Family,
@@ -143,8 +143,11 @@ fn fit_row<T: LobeTexel>(
     let footprint = |x| DrawnFootprint { whole, size, texel: (x, y), strata: *strata };
     let rows = footprint(0).rows();
     let mut texels = vec![T::default(); whole.0 as usize * rows.len()];
-    for ((row, _), texels) in rows.iter().zip(texels.chunks_exact_mut(whole.0 as usize)) {
-        finer(part_level, *row, texels);
+    let mut unread = texels.as_mut_slice();
+    for adjacent in rows.chunk_by(|above, below| above.0 + 1 == below.0) {
+        let (band, rest) = unread.split_at_mut(whole.0 as usize * adjacent.len());
+        finer(part_level, adjacent[0].0, band);
+        unread = rest;
     }
     let mut parts = Vec::new();
     for (x, texel) in (0..).zip(out).filter(|(x, _)| is_fitted(*x)) {

@@ -7,7 +7,7 @@ use crate::math::symmetric::Symmetric2;
 use crate::metric::density::unit_slope;
 use crate::metric::mixture::{BATCH, Batch, DensityTerms, HalfVector, Mixture, beckmann, ggx, lower_factor, sums};
 use crate::metric::reference::even_point;
-use crate::simd::dispatch;
+use crate::simd::{dispatch, map_row};
 
 /// How much work a fit does.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -155,10 +155,11 @@ struct Target {
 impl Target {
     fn new(family: Family, parts: &[(f32, OrientedLobe)], count: usize, first: usize) -> Self {
         let points = half_vectors(family, parts, count, first);
-        let densities = Mixture::new(family, parts).densities(&points);
-        let densest = points.iter().copied().zip(densities.iter().copied()).max_by(|a, b| a.1.total_cmp(&b.1));
-        let inverse = densities.as_chunks::<BATCH>().0.iter().map(|d| d.map(|d| 1.0 / d.max(1e-20))).collect();
-        let batches = points.chunks_exact(BATCH).map(Batch::new).collect();
+        let batches: Vec<Batch> = points.chunks_exact(BATCH).map(Batch::new).collect();
+        let densities = Mixture::new(family, parts).densities(&batches);
+        let densest = points.iter().copied().zip(densities.iter().flatten().copied());
+        let densest = densest.max_by(|a, b| a.1.total_cmp(&b.1));
+        let inverse = densities.iter().map(|d| d.map(|d| 1.0 / d.max(1e-20))).collect();
         Self { family, points, batches, inverse, densest }
     }
 
@@ -280,22 +281,32 @@ fn half_vectors(family: Family, parts: &[(f32, OrientedLobe)], count: usize, fir
         Family::Beckmann => &BECKMANN_SLOPES,
     };
     let (mut part, mut below) = (0, 0.0);
-    let mut point = |i: usize| {
+    let lobes_and_slopes = (0..count).map(|i| {
+        let place = (first + i) % TABLE;
         // Equally spaced places could follow the bumps of a periodic map.
-        let jitter = ((first + i) % TABLE) as f32 * GOLDEN;
-        let chosen = (i as f32 + (jitter - jitter.floor())) / count as f32;
+        let jitter = place as f32 * GOLDEN;
+        let chosen = (i as f32 + (jitter - (jitter as u32) as f32)) / count as f32;
         while part + 1 < parts.len() && below + parts[part].0 <= chosen {
             below += parts[part].0;
             part += 1;
         }
-        let OrientedLobe { normal, squared_alpha: SquaredAlpha(a) } = parts[part].1;
-        let ([t, b, n], [l11, l21, l22]) = (frame(normal), lower_factor([a.uu, a.uv, a.vv]));
-        let [x, y] = table[(first + i) % TABLE];
-        let h = [0, 1, 2].map(|i| n[i] + l11 * x * t[i] + (l21 * x + l22 * y) * b[i]);
-        let length = h.iter().map(|c| c * c).sum::<f32>().sqrt();
-        h.map(|c| c / length)
-    };
-    (0..count).map(&mut point).collect()
+        let (OrientedLobe { normal: [nx, ny, nz], squared_alpha: SquaredAlpha(a) }, [x, y]) =
+            (parts[part].1, table[place]);
+        [nx, ny, nz, a.uu, a.uv, a.vv, x, y]
+    });
+    let mut half_vectors = vec![HalfVector::default(); count];
+    map_row(lobes_and_slopes, &mut half_vectors, half_vector, |out, h| *out = h);
+    half_vectors
+}
+
+/// Returns the half-vector of a lobe, given as its normal and squared alphas uu, uv and vv, for a slope (x, y) of the
+/// lobe of A = 1.
+#[inline(always)]
+fn half_vector([nx, ny, nz, uu, uv, vv, x, y]: [f32; 8]) -> HalfVector {
+    let ([t, b, n], [l11, l21, l22]) = (frame([nx, ny, nz]), lower_factor([uu, uv, vv]));
+    let h = [0, 1, 2].map(|i| n[i] + l11 * x * t[i] + (l21 * x + l22 * y) * b[i]);
+    let length = (h[0] * h[0] + h[1] * h[1] + h[2] * h[2]).sqrt();
+    h.map(|c| c / length)
 }
 
 #[cfg(test)]

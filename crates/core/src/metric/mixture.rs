@@ -44,20 +44,16 @@ impl Mixture {
         Self { family, terms }
     }
 
-    /// Returns the weighted sum of the densities of the lobes at each of `points`.
-    pub fn densities(&self, points: &[HalfVector]) -> Vec<f32> {
-        let mut densities = vec![0.0; points.len()];
-        for (points, densities) in points.chunks(BATCH).zip(densities.chunks_mut(BATCH)) {
-            densities.copy_from_slice(&self.sums(&Batch::new(points))[..points.len()]);
-        }
-        densities
-    }
-
-    fn sums(&self, batch: &Batch) -> [f32; BATCH] {
+    /// Returns the weighted sum of the densities of the lobes at each half-vector of `batches`.
+    pub fn densities(&self, batches: &[Batch]) -> Vec<[f32; BATCH]> {
+        let mut densities = vec![[0.0; BATCH]; batches.len()];
+        let pairs = densities.iter_mut().zip(batches);
+        // Closures of `for_each` are compiled into the loop. Those of `collect` would not be vectorised.
         dispatch!(fearless_simd::Level::new(), _simd => match self.family {
-            Family::Ggx => sums(&self.terms, batch, ggx),
-            Family::Beckmann => sums(&self.terms, batch, beckmann),
-        })
+            Family::Ggx => pairs.for_each(|(densities, batch)| *densities = sums(&self.terms, batch, ggx)),
+            Family::Beckmann => pairs.for_each(|(densities, batch)| *densities = sums(&self.terms, batch, beckmann)),
+        });
+        densities
     }
 }
 
@@ -70,7 +66,13 @@ pub struct Batch([[f32; BATCH]; 3]);
 impl Batch {
     /// Takes at least one and at most [`BATCH`] half-vectors. The last one is repeated to fill the batch.
     pub fn new(points: &[HalfVector]) -> Self {
-        Self([0, 1, 2].map(|axis| std::array::from_fn(|i| points[i.min(points.len() - 1)][axis])))
+        let mut batch = Self(points[points.len() - 1].map(|coordinate| [coordinate; BATCH]));
+        for (i, point) in points.iter().take(BATCH).enumerate() {
+            for (coordinates, coordinate) in batch.0.iter_mut().zip(point) {
+                coordinates[i] = *coordinate;
+            }
+        }
+        batch
     }
 }
 

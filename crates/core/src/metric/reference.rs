@@ -4,7 +4,7 @@ use crate::lobe::Family;
 use crate::math::vector::Vector;
 use crate::metric::density::Lobe;
 use crate::metric::footprint::{Footprint, Part};
-use crate::metric::mixture::Mixture;
+use crate::metric::mixture::{BATCH, Batch, Mixture};
 
 /// Samples of a footprint that keep the error of [`Reference::error`] below 0.002 (test
 /// `doubling_the_samples_changes_little`).
@@ -43,7 +43,9 @@ impl Reference {
         }
         let half_vectors: Vec<_> = points.iter().map(|h| h.map(|c| c as f32)).collect();
         let lobes: Vec<_> = parts.iter().map(|part| (part.weight as f32, part.lobe())).collect();
-        let densities = Mixture::new(family, &lobes).densities(&half_vectors).into_iter().map(f64::from).collect();
+        let batches: Vec<Batch> = half_vectors.chunks(BATCH).map(Batch::new).collect();
+        let densities = Mixture::new(family, &lobes).densities(&batches);
+        let densities = densities.into_iter().flatten().take(samples).map(f64::from).collect();
         Self { family, points, densities }
     }
 

@@ -60,24 +60,24 @@ impl<T: Merge> MipTail<T> {
         }
     }
 
-    /// Calls `update(y, finer, row)` for every row of `level`, in any order. `finer(level, y, out)` writes rows of any
-    /// finer level. Levels that are not kept stay as they are.
+    /// Calls `update(y, finer, row)` for every row of `level`, in any order. `finer` writes rows of any finer level.
+    /// Levels that are not kept stay as they are.
     pub fn update_level(
         &mut self,
         source: &impl TexelRows<Texel = T>,
         level: usize,
-        update: impl Fn(u32, &FinerRow<'_, T>, &mut [T]) + Sync,
+        update: impl Fn(u32, &FinerRows<'_, T>, &mut [T]) + Sync,
     ) {
         let unkept = self.unkept;
         let Some(index) = level.checked_sub(unkept + 1) else { return };
         let (finer, coarser) = self.kept.split_at_mut(index);
-        let finer_row = |level: usize, y, out: &mut [T]| match level.checked_sub(unkept + 1) {
-            Some(index) => finer[index].row(y, out),
-            None => UnkeptLevel { source, level }.row(y, out),
+        let finer_rows = |level: usize, first, out: &mut [T]| match level.checked_sub(unkept + 1) {
+            Some(index) => finer[index].rows(first, out),
+            None => UnkeptLevel { source, level }.rows(first, out),
         };
         let Some(Level { width, texels, .. }) = coarser.first_mut() else { return };
         let rows = texels.par_chunks_exact_mut(*width as usize).enumerate();
-        rows.for_each(|(y, row)| update(y as u32, &finer_row, row));
+        rows.for_each(|(y, row)| update(y as u32, &finer_rows, row));
     }
 
     /// Returns the single texel of the coarsest level.
@@ -88,8 +88,8 @@ impl<T: Merge> MipTail<T> {
     }
 }
 
-/// Writes row y of a level to a slice of texels: `(level, y, out)`.
-pub type FinerRow<'a, T> = dyn Fn(usize, u32, &mut [T]) + Sync + 'a;
+/// Writes rows of a level to a slice that has room for them: `(level, first, out)`, where `first` is the topmost row.
+pub type FinerRows<'a, T> = dyn Fn(usize, u32, &mut [T]) + Sync + 'a;
 
 impl<T> From<Vec<Level<T>>> for MipTail<T> {
     fn from(kept: Vec<Level<T>>) -> Self {

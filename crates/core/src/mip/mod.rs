@@ -13,7 +13,7 @@ mod rows;
 mod tests;
 mod wrap;
 
-pub use levels::{FinerRow, MipTail};
+pub use levels::{FinerRows, MipTail};
 pub(crate) use merge::MAX_PARTS;
 pub use merge::{Merge, Numbers};
 pub use pyramid::Pyramid;
