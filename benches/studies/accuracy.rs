@@ -129,7 +129,7 @@ fn print_ratios(of_maps: &[(String, [f64; COLUMNS])]) {
 /// Returns the mean errors of each level of the map.
 fn errors_by_level(image: &Image, alpha: f32, texels: usize) -> Result<Vec<Means>, Box<dyn Error>> {
     let map = || NormalMap::new(image.clone(), NormalLayout::Auto, false);
-    let surface = Surface::of_map(&map()?, SquaredAlpha::isotropic(Alpha(alpha)));
+    let surface = Surface::of_map(&map()?, SquaredAlpha::isotropic(Alpha(alpha))).magnified();
     let bump_map = BumpMap::Normals(map()?);
     let bake = |model, effort, target| -> Result<_, Box<dyn Error>> {
         let base = BaseRoughness { image: None, factor: Roughness::from(Alpha(alpha)).0 };
