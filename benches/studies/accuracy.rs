@@ -1,11 +1,11 @@
 //! Prints the accuracy table of docs/accuracy.md as markdown.
 //!
-//! `cargo run --release -p studies --bin accuracy [TEXELS]` uses TEXELS texels per level and map, 16 by default. It
-//! reads `../shared/data/maps`, else `fixtures/maps`.
+//! `cargo run --release -p studies --bin accuracy [TEXELS [MAP...]]` uses TEXELS texels per level and map, 16 by
+//! default. Without a MAP it reads five maps of `../shared/data/maps`, or else two of `fixtures/maps`.
 
 use std::array::from_fn;
 use std::error::Error;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use roughcast::bake::{BaseRoughness, bake_map};
 use roughcast::bump::{NormalLayout, NormalMap};
@@ -56,7 +56,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let shared = Path::new("../shared/data/maps");
     let folder = if shared.is_dir() { shared } else { Path::new("fixtures/maps") };
     let names: &[&str] = if folder == shared { &MAPS } else { &FIXTURES };
-    let paths: Vec<_> = names.iter().map(|name| folder.join(name)).collect();
+    let mut paths: Vec<PathBuf> = std::env::args().skip(2).map(PathBuf::from).collect();
+    if paths.is_empty() {
+        paths.extend(names.iter().map(|name| folder.join(name)));
+    }
     print!("| map | alpha |");
     Peer::ALL.iter().for_each(|peer| print!(" {} |", peer.name()));
     OURS.iter().for_each(|ours| print!(" {} |", ours.0));

@@ -30,9 +30,9 @@ const UNEVEN: f32 = 2.0;
 /// it is within 1.02 to 1.15 x of the best lobe there.
 ///
 /// `fast` takes the lobes of level 1 as parts from level 3 on: they are in memory, they stand for the whole footprint
-/// up to level 6, and a merge of four texels hardly drifts. At level 2 they would be too few. From level 6 on, the
-/// lobes of level 2 do as well if they are alike. Searches up to level 4 are short: with long ones, a bake of a map
-/// with many uneven texels takes 1.5 x the time.
+/// up to level 6, and a merge of four texels hardly drifts. For level 2 they are too few: four for each texel. From
+/// level 6 on, the lobes of level 2 do as well if they are alike. Searches up to level 4 are short, since these levels
+/// have the most texels; docs/accuracy.md has what that costs and saves.
 const FAST: [LevelFit; 7] = [
     level_fit(true, [0, 0], DRAWN, 64, SHORT, 0),
     level_fit(true, [1, 1], DRAWN, 64, SHORT, 0),

@@ -48,7 +48,7 @@ impl Mixture {
     pub fn densities(&self, batches: &[Batch]) -> Vec<[f32; BATCH]> {
         let mut densities = vec![[0.0; BATCH]; batches.len()];
         let pairs = densities.iter_mut().zip(batches);
-        // Closures of `for_each` are compiled into the loop. Those of `collect` would not be vectorised.
+        // The compiler vectorises the closure of `for_each`, but not that of `collect`.
         dispatch!(fearless_simd::Level::new(), _simd => match self.family {
             Family::Ggx => pairs.for_each(|(densities, batch)| *densities = sums(&self.terms, batch, ggx)),
             Family::Beckmann => pairs.for_each(|(densities, batch)| *densities = sums(&self.terms, batch, beckmann)),
