@@ -7,13 +7,24 @@ use crate::material::magnified::Magnified;
 use crate::math::symmetric::Symmetric2;
 use crate::mip::{AreaResampled, Magnification, Sampler, TexelRows};
 
-/// Level 0 of the moments of a bump map: what a sampler interpolates within each texel, or the moments themselves where
-/// it does not interpolate them.
-pub struct MagnifiedBumps<'a> {
-    /// The bumps.
-    pub rows: AreaResampled<&'a BumpMap>,
-    /// The modes of their sampler.
-    pub sampler: Sampler,
+/// The moments of a bump map: what a sampler interpolates within each texel, or the moments themselves where it does
+/// not interpolate them.
+pub struct MagnifiedMap<'a> {
+    bump_map: &'a BumpMap,
+    /// The modes of the map's sampler.
+    sampler: Sampler,
+}
+
+/// Level 0 of a magnified bump map on a grid. Engines magnify the map that they are given and not the resampled one, so
+/// a texel of another size stands for what is interpolated within its area.
+pub type MagnifiedBumps<'a> = AreaResampled<MagnifiedMap<'a>>;
+
+impl<'a> MagnifiedBumps<'a> {
+    /// Magnifies the bump map of `bumps`, and puts it on their grid.
+    pub fn of(bumps: AreaResampled<&'a BumpMap>, sampler: Sampler) -> Self {
+        let map = MagnifiedMap { bump_map: bumps.source(), sampler };
+        Self::new(map, bumps.width(), bumps.height())
+    }
 }
 
 /// The normals of a bump map as lobes without width.
@@ -39,23 +50,28 @@ impl TexelRows for Normals<'_> {
     }
 }
 
-impl TexelRows for MagnifiedBumps<'_> {
+impl TexelRows for MagnifiedMap<'_> {
     type Texel = Moments;
 
     fn width(&self) -> u32 {
-        self.rows.width()
+        self.bump_map.width()
     }
 
     fn height(&self) -> u32 {
-        self.rows.height()
+        self.bump_map.height()
     }
 
     fn row(&self, y: u32, out: &mut [Moments]) {
-        let unchanged = self.rows.unchanged().filter(|_| self.sampler.magnification == Magnification::Linear);
-        let Some(bump_map) = unchanged else { return self.rows.row(y, out) };
+        self.rows(y, out);
+    }
+
+    fn rows(&self, first: u32, out: &mut [Moments]) {
+        if self.sampler.magnification != Magnification::Linear {
+            return self.bump_map.rows(first, out);
+        }
         let mut lobes = vec![OrientedLobe::default(); out.len()];
         let wrap = Some(self.sampler.wrap);
-        Magnified { source: &Normals(bump_map), wrap, is_isotropic: true }.row(y, &mut lobes);
+        Magnified { source: &Normals(self.bump_map), wrap, is_isotropic: true }.rows(first, &mut lobes);
         for (moments, lobe) in out.iter_mut().zip(lobes) {
             // A lobe without width is widened by twice the covariance.
             *moments = Moments { mean: lobe.offset(), covariance: 0.5 * lobe.squared_alpha.0 };

@@ -77,9 +77,7 @@ impl Filter for Area {
         let fine_width = source.width() as usize;
         let down = overlaps(source.height(), height, y);
         let mut rows = vec![R::Texel::default(); fine_width * down.len()];
-        for (&(source_y, _), row) in down.iter().zip(rows.chunks_exact_mut(fine_width)) {
-            source.row(source_y, row);
-        }
+        source.rows(down[0].0, &mut rows);
         let (mut weights, mut parts) = (Vec::new(), Vec::new());
         for (x, texel) in out.iter_mut().enumerate() {
             weights.clear();

@@ -1,8 +1,12 @@
 use super::*;
+use crate::bump::{NormalLayout, NormalMap};
 use crate::codec::uastc::Effort;
+use crate::image::{Image, Samples};
+use crate::material::base::BaseRows;
+use crate::material::bump_map::BumpMap;
 use crate::material::rust_and_steel::{RustAndSteel, SIDE, is_steel};
 use crate::metric::{Lobe, Precision, sample_sites};
-use crate::mip::level_sizes;
+use crate::mip::{Magnification, Wrap, level_sizes};
 
 fn lobes<'a>(material: &'a RustAndSteel, has_reflectance: bool, settings: &Settings) -> Lobes<'a> {
     let bumps = Bumps::new(&material.bump_map, (SIDE, SIDE));
@@ -72,5 +76,33 @@ fn level_0_has_the_reflectance_of_its_texels() {
     for (x, (lobe, texel)) in (0..).zip(row.iter().zip(&texels)) {
         assert_eq!(*lobe, texel.lobe);
         assert_eq!(is_steel(x, 1), texel.reflectance > 0.5, "{x}: {}", texel.reflectance);
+    }
+}
+
+#[test]
+fn resampling_keeps_what_a_sampler_interpolates() {
+    // White noise of slopes has 4/9 of its variance where a sampler interpolates it.
+    const SIDE: u32 = 65;
+    let mut state = 1_u32;
+    let mut component = || {
+        state = state.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
+        100 + (56 * (state >> 24) / 256) as u8
+    };
+    let samples = (0..SIDE * SIDE).flat_map(|_| [component(), component(), 250]).collect();
+    let image = Image { width: SIDE, height: SIDE, channels: 3, samples: Samples::U8(samples) };
+    let bump_map = BumpMap::Normals(NormalMap::new(image, NormalLayout::Xyz, false).unwrap());
+    let settings = Settings::default();
+    let coarsest = |side, magnification| {
+        let base = Base::new(BaseRows::new(side, side, None, 0.3, None, [Wrap::Repeat; 2]));
+        let sampler = Sampler { magnification, ..Sampler::default() };
+        let lobes = Lobes::new(&base, &Bumps::new(&bump_map, (side, side)), 1.0, sampler, &settings);
+        lobes.coarsest().squared_alpha.0.trace()
+    };
+    let widening = |side, magnification| coarsest(side, magnification) - 2.0 * 0.3_f32.powi(4);
+    let own = widening(SIDE, Magnification::Linear);
+    for side in [64, 68, 128] {
+        let linear = widening(side, Magnification::Linear);
+        assert!((linear / own - 1.0).abs() < 0.05, "{side}: {linear} {own}");
+        assert!(linear < 0.6 * widening(side, Magnification::Nearest), "{side}");
     }
 }
