@@ -168,8 +168,8 @@ impl<'a> LayerLobes<'a> {
             return self;
         }
         let roughening = self.roughening.map(|roughening| roughening.with_base_levels(levels));
-        let of_lobes = roughening.as_ref().filter(|_| self.can_decide).map(lost_variance_of_lobes);
-        let needed_variance = self.needed_variance.map(|needed| of_lobes.unwrap_or(needed));
+        let deciding = roughening.as_ref().filter(|_| self.can_decide);
+        let needed_variance = self.needed_variance.map(|needed| deciding.map(lost_variance_of_lobes).unwrap_or(needed));
         Self { roughening, needed_variance, ..self }
     }
 

@@ -15,7 +15,7 @@ use crate::mip::{FinerRows, MipTail, TexelRows, level_sizes};
 struct LevelFit {
     /// Only texels are fitted whose finer texels differ in width by more than [`UNEVEN`], at this level or below.
     uneven_only: bool,
-    /// The level whose texels are the parts of a footprint, in rows with uneven texels and in other rows.
+    /// The level whose texels are the parts of a footprint: for uneven texels, and for all others.
     parts: [usize; 2],
     /// Strata of these texels along each axis of a footprint.
     strata: u32,
@@ -30,17 +30,17 @@ const UNEVEN: f32 = 2.0;
 /// it is within 1.02 to 1.15 x of the best lobe there.
 ///
 /// `fast` takes the lobes of level 1 as parts from level 3 on: they are in memory, they stand for the whole footprint
-/// up to level 6, and a merge of four texels hardly drifts. For level 2 they are too few: four for each texel. From
-/// level 6 on, the lobes of level 2 do as well if they are alike. Searches up to level 4 are short, since these levels
-/// have the most texels; docs/accuracy.md has what that costs and saves.
+/// up to level 6, and a merge of four texels hardly drifts. For level 2 they are too few: four for each texel. Merges of
+/// even texels drift less, so that the lobes of level 2, and from level 7 on of level 3, do as well for them. Searches up
+/// to level 4 are short, since these levels have the most texels; docs/accuracy.md has what that costs and saves.
 const FAST: [LevelFit; 7] = [
     level_fit(true, [0, 0], DRAWN, 64, SHORT, 0),
     level_fit(true, [1, 1], DRAWN, 64, SHORT, 0),
     level_fit(true, [1, 1], DRAWN, 64, Search { rounds: 4, ..SHORT }, 0),
-    level_fit(false, [1, 1], DRAWN, 64, Search { descents: 1, ..LONG }, 0),
+    level_fit(false, [1, 2], DRAWN, 64, Search { descents: 1, ..LONG }, 0),
     level_fit(false, [1, 2], DRAWN, 128, Search { descents: 1, ..LONG }, 0),
-    level_fit(false, [1, 2], DRAWN, 256, LONG, 4),
-    level_fit(false, [1, 2], DRAWN, 512, LONG, 4),
+    level_fit(false, [1, 3], DRAWN, 256, LONG, 4),
+    level_fit(false, [1, 3], DRAWN, 512, LONG, 4),
 ];
 const BEST: [LevelFit; 6] = [
     level_fit(false, [0, 0], DRAWN, 128, LONG, 0),
@@ -91,11 +91,11 @@ pub fn fit_levels<R: TexelRows<Texel: LobeTexel>>(
                 mark_uneven(&|y, out: &mut [_]| finer(level - 1, y, out), finer_size, &finer_uneven, y, is_uneven);
             }
             let is_uneven: Vec<bool> = is_uneven.iter().map(|flag| flag.load(Ordering::Relaxed)).collect();
-            let is_even_row = !is_uneven.contains(&true);
-            if !(fit.uneven_only && is_even_row) {
-                let parts = fit.parts[usize::from(is_even_row)];
-                let is_fitted = |x: u32| !fit.uneven_only || is_uneven[x as usize];
-                fit_row(finer, (parts, sizes[parts]), (y, size), family, fit, is_fitted, out);
+            for (uneven, parts) in [true, false].into_iter().zip(fit.parts) {
+                if is_uneven.contains(&uneven) && (uneven || !fit.uneven_only) {
+                    let is_fitted = |x: u32| is_uneven[x as usize] == uneven;
+                    fit_row(finer, (parts, sizes[parts]), (y, size), family, fit, is_fitted, out);
+                }
             }
         });
         finer_uneven = is_uneven.into_iter().map(AtomicBool::into_inner).collect();
