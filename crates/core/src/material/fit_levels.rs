@@ -30,9 +30,10 @@ const UNEVEN: f32 = 2.0;
 /// it is within 1.02 to 1.15 x of the best lobe there.
 ///
 /// `fast` takes the lobes of level 1 as parts from level 3 on: they are in memory, they stand for the whole footprint
-/// up to level 6, and a merge of four texels hardly drifts. For level 2 they are too few: four for each texel. Merges of
-/// even texels drift less, so that the lobes of level 2, and from level 7 on of level 3, do as well for them. Searches up
-/// to level 4 are short, since these levels have the most texels; docs/accuracy.md has what that costs and saves.
+/// up to level 6, and a merge of four texels hardly drifts. For level 2 they are too few: four for each texel. Merges
+/// of even texels drift less, so that the lobes of level 2, and from level 7 on of level 3, do as well for them.
+/// Searches up to level 4 are short, since these levels have the most texels; docs/accuracy.md has what that costs and
+/// saves.
 const FAST: [LevelFit; 7] = [
     level_fit(true, [0, 0], DRAWN, 64, SHORT, 0),
     level_fit(true, [1, 1], DRAWN, 64, SHORT, 0),
