@@ -168,9 +168,9 @@ impl<'a> LayerLobes<'a> {
             return self;
         }
         let roughening = self.roughening.map(|roughening| roughening.with_base_levels(levels));
-        let deciding = roughening.as_ref().filter(|_| self.can_decide);
-        let needed_variance = self.needed_variance.map(|needed| deciding.map(lost_variance_of_lobes).unwrap_or(needed));
-        Self { roughening, needed_variance, ..self }
+        let lobes = Self { roughening, ..self };
+        let of_lobes = |needed| lobes.deciding().map_or(needed, lost_variance_of_lobes);
+        Self { needed_variance: lobes.needed_variance.map(of_lobes), ..lobes }
     }
 
     /// Returns the lobes if they can decide the directions of the bump map's texels: if they are on its grid.

@@ -13,10 +13,11 @@ use crate::mip::{FinerRows, MipTail, TexelRows, level_sizes};
 
 /// Which texels of a level are fitted, and how.
 struct LevelFit {
-    /// Only texels are fitted whose finer texels differ in width by more than [`UNEVEN`], at this level or below.
-    uneven_only: bool,
-    /// The level whose texels are the parts of a footprint: for uneven texels, and for all others.
-    parts: [usize; 2],
+    /// The level whose texels are the parts of uneven texels: those whose finer texels differ in width by more than
+    /// [`UNEVEN`], at this level or below.
+    uneven_parts: usize,
+    /// The level whose texels are the parts of all other texels; `None` if these keep their merged lobes.
+    even_parts: Option<usize>,
     /// Strata of these texels along each axis of a footprint.
     strata: u32,
     effort: FitEffort,
@@ -35,34 +36,33 @@ const UNEVEN: f32 = 2.0;
 /// Searches up to level 4 are short, since these levels have the most texels; docs/accuracy.md has what that costs and
 /// saves.
 const FAST: [LevelFit; 7] = [
-    level_fit(true, [0, 0], DRAWN, 64, SHORT, 0),
-    level_fit(true, [1, 1], DRAWN, 64, SHORT, 0),
-    level_fit(true, [1, 1], DRAWN, 64, Search { rounds: 4, ..SHORT }, 0),
-    level_fit(false, [1, 2], DRAWN, 64, Search { descents: 1, ..LONG }, 0),
-    level_fit(false, [1, 2], DRAWN, 128, Search { descents: 1, ..LONG }, 0),
-    level_fit(false, [1, 3], DRAWN, 256, LONG, 4),
-    level_fit(false, [1, 3], DRAWN, 512, LONG, 4),
+    level_fit((0, None), DRAWN, 64, SHORT, 0),
+    level_fit((1, None), DRAWN, 64, SHORT, 0),
+    level_fit((1, None), DRAWN, 64, Search { rounds: 4, ..SHORT }, 0),
+    level_fit((1, Some(2)), DRAWN, 64, Search { descents: 1, ..LONG }, 0),
+    level_fit((1, Some(2)), DRAWN, 128, Search { descents: 1, ..LONG }, 0),
+    level_fit((1, Some(3)), DRAWN, 256, LONG, 4),
+    level_fit((1, Some(3)), DRAWN, 512, LONG, 4),
 ];
 const BEST: [LevelFit; 6] = [
-    level_fit(false, [0, 0], DRAWN, 128, LONG, 0),
-    level_fit(false, [0, 0], DRAWN, 256, LONG, 0),
-    level_fit(false, [0, 0], DRAWN, 256, LONG, 0),
-    level_fit(false, [0, 0], 2 * DRAWN, 512, LONG, 4),
-    level_fit(false, [0, 0], 2 * DRAWN, 1024, LONG, 4),
-    level_fit(false, [0, 0], 2 * DRAWN, 2048, LONG, 4),
+    level_fit((0, Some(0)), DRAWN, 128, LONG, 0),
+    level_fit((0, Some(0)), DRAWN, 256, LONG, 0),
+    level_fit((0, Some(0)), DRAWN, 256, LONG, 0),
+    level_fit((0, Some(0)), 2 * DRAWN, 512, LONG, 4),
+    level_fit((0, Some(0)), 2 * DRAWN, 1024, LONG, 4),
+    level_fit((0, Some(0)), 2 * DRAWN, 2048, LONG, 4),
 ];
 const SHORT: Search = Search { descents: 1, rounds: 2 };
 const LONG: Search = Search { descents: 2, rounds: 8 };
 
 const fn level_fit(
-    uneven_only: bool,
-    parts: [usize; 2],
+    (uneven_parts, even_parts): (usize, Option<usize>),
     strata: u32,
     half_vectors: usize,
     search: Search,
     likelihood_steps: usize,
 ) -> LevelFit {
-    LevelFit { uneven_only, parts, strata, effort: FitEffort { half_vectors, search, likelihood_steps } }
+    LevelFit { uneven_parts, even_parts, strata, effort: FitEffort { half_vectors, search, likelihood_steps } }
 }
 
 /// The finest level that is fitted: the four texels under a texel of level 1 are too few.
@@ -79,7 +79,7 @@ pub fn fit_levels<R: TexelRows<Texel: LobeTexel>>(
         Effort::Fast => &FAST,
         Effort::Best => &BEST,
     };
-    let needs_marks = fits.iter().any(|fit| fit.uneven_only);
+    let needs_marks = fits.iter().any(|fit| fit.even_parts.is_none());
     let sizes = level_sizes(level_0.width(), level_0.height());
     let mut finer_uneven = Vec::new();
     for level in FIRST..sizes.len() {
@@ -92,11 +92,10 @@ pub fn fit_levels<R: TexelRows<Texel: LobeTexel>>(
                 mark_uneven(&|y, out: &mut [_]| finer(level - 1, y, out), finer_size, &finer_uneven, y, is_uneven);
             }
             let is_uneven: Vec<bool> = is_uneven.iter().map(|flag| flag.load(Ordering::Relaxed)).collect();
-            for (uneven, parts) in [true, false].into_iter().zip(fit.parts) {
-                if is_uneven.contains(&uneven) && (uneven || !fit.uneven_only) {
-                    let is_fitted = |x: u32| is_uneven[x as usize] == uneven;
-                    fit_row(finer, (parts, sizes[parts]), (y, size), family, fit, is_fitted, out);
-                }
+            for (uneven, parts) in [(true, Some(fit.uneven_parts)), (false, fit.even_parts)] {
+                let Some(parts) = parts.filter(|_| is_uneven.contains(&uneven)) else { continue };
+                let is_fitted = |x: u32| is_uneven[x as usize] == uneven;
+                fit_row(finer, (parts, sizes[parts]), (y, size), family, fit, is_fitted, out);
             }
         });
         finer_uneven = is_uneven.into_iter().map(AtomicBool::into_inner).collect();

@@ -12,7 +12,7 @@ use crate::mip::{MipTail, Sampler, TexelRows};
 use crate::settings::Settings;
 use crate::simd::map_row;
 
-use level_0::{Level0, Points, ReflectingRows};
+use level_0::{Level0, MagnifiedLobes, ReflectingRows};
 
 /// Lobes of a material on the grid of its bumps.
 pub struct Lobes<'a> {
@@ -33,7 +33,7 @@ impl<'a> Lobes<'a> {
     /// Roughens `base` by `bumps` on one grid. `slope_scale` multiplies the offsets.
     ///
     /// Under the automatic distribution, GGX lobes are merged from level to level by likelihood, where texels count by
-    /// area x reflectance, and coarse levels are then fitted to level 0. Under a fixed distribution, and for Beckmann
+    /// area x reflectance, and coarse levels are then fitted to finer ones. Under a fixed distribution, and for Beckmann
     /// lobes, levels 1 and coarser are A + 2 c K with the distribution's correction factor c.
     pub fn new<'b: 'a>(
         base: &Base<'a>,
@@ -43,19 +43,18 @@ impl<'a> Lobes<'a> {
         settings: &Settings,
     ) -> Self {
         let level_0 = Level0 { base: base.level_0().clone(), bumps: bumps.rows, slope_scale };
+        let points = MagnifiedLobes { level_0: &level_0, sampler };
         let roughened = || level_0.roughened(base, bumps, sampler, settings).into();
         let family = settings.lobe;
         let tail = match (settings.distribution, settings.quality) {
             (Distribution::Normal | Distribution::Uniform, _) => Tail::ByArea(roughened()),
             (Distribution::Auto, effort) if family == Family::Ggx && !level_0.base.is_reflectance_constant() => {
-                let points = level_0.magnified(sampler);
-                let rows = ReflectingRows { points: &points, base: &level_0.base };
+                let rows = ReflectingRows(points);
                 let mut tail = MipTail::with_max_kept(&rows, MAX_KEPT_TEXELS);
                 fit_levels(&rows, &mut tail, family, effort);
                 Tail::ByReflectance(tail)
             }
             (Distribution::Auto, effort) => {
-                let points = level_0.magnified(sampler);
                 let mut tail = match family {
                     Family::Ggx => MipTail::with_max_kept(&points, MAX_KEPT_TEXELS),
                     // Normal distributions are merged by likelihood when their moments are added.
@@ -78,10 +77,9 @@ impl<'a> Lobes<'a> {
         if level == 0 {
             return self.level_0.row(y, out);
         }
-        let points = self.magnified();
         match &self.tail {
-            Tail::ByArea(tail) => tail.row(&points, level, y, out),
-            Tail::ByReflectance(tail) => tail.with_row(&self.reflecting(&points), level, y, |texels| {
+            Tail::ByArea(tail) => tail.row(&self.magnified(), level, y, out),
+            Tail::ByReflectance(tail) => tail.with_row(&self.reflecting(), level, y, |texels| {
                 out.iter_mut().zip(texels).for_each(|(lobe, texel)| *lobe = texel.lobe);
             }),
         }
@@ -95,7 +93,7 @@ impl<'a> Lobes<'a> {
 
     /// Works like [`Self::magnified_rows`], with the reflectance of each texel.
     pub fn reflecting_rows(&self, first: u32, out: &mut [ReflectingLobe]) {
-        self.reflecting(&self.magnified()).rows(first, out);
+        self.reflecting().rows(first, out);
     }
 
     /// Returns whether all texels have the same reflectance.
@@ -115,12 +113,12 @@ impl<'a> Lobes<'a> {
         }
     }
 
-    fn magnified(&self) -> Points<'_, 'a> {
-        self.level_0.magnified(self.sampler)
+    fn magnified(&self) -> MagnifiedLobes<'_, 'a> {
+        MagnifiedLobes { level_0: &self.level_0, sampler: self.sampler }
     }
 
-    fn reflecting<'r>(&'r self, points: &'r Points<'r, 'a>) -> ReflectingRows<'r, 'a> {
-        ReflectingRows { points, base: &self.level_0.base }
+    fn reflecting(&self) -> ReflectingRows<'_, 'a> {
+        ReflectingRows(self.magnified())
     }
 
     /// Writes the squared alphas of row `y` of `level` to `out`.
@@ -155,10 +153,9 @@ impl<'a> Lobes<'a> {
 
     /// Returns the only texel of the coarsest level.
     pub fn coarsest(&self) -> OrientedLobe {
-        let points = self.magnified();
         match &self.tail {
-            Tail::ByArea(tail) => tail.coarsest(&points),
-            Tail::ByReflectance(tail) => tail.coarsest(&self.reflecting(&points)).lobe,
+            Tail::ByArea(tail) => tail.coarsest(&self.magnified()),
+            Tail::ByReflectance(tail) => tail.coarsest(&self.reflecting()).lobe,
         }
     }
 }

@@ -26,8 +26,8 @@ pub type LinearResampled<R> = Resampled<R, Linear>;
 
 /// How new texels are made of old ones.
 pub trait Filter: Sync {
-    /// Writes row `y` of `source`, resampled to `size` (columns, rows), to `out`.
-    fn row<R: TexelRows>(&self, source: &R, size: [u32; 2], y: u32, out: &mut [R::Texel]);
+    /// Writes row `first` of `source`, resampled to `size` (columns, rows), and the rows below to `out`.
+    fn rows<R: TexelRows>(&self, source: &R, size: [u32; 2], first: u32, out: &mut [R::Texel]);
 }
 
 impl<R: TexelRows, F> Resampled<R, F> {
@@ -56,7 +56,14 @@ impl<R: TexelRows, F: Filter> TexelRows for Resampled<R, F> {
     fn row(&self, y: u32, out: &mut [R::Texel]) {
         match self.unchanged() {
             Some(source) => source.row(y, out),
-            None => self.filter.row(&self.source, [self.width, self.height], y, out),
+            None => self.rows(y, out),
+        }
+    }
+
+    fn rows(&self, first: u32, out: &mut [R::Texel]) {
+        match self.unchanged() {
+            Some(source) => source.rows(first, out),
+            None => self.filter.rows(&self.source, [self.width, self.height], first, out),
         }
     }
 }
@@ -73,23 +80,30 @@ impl<R: TexelRows> AreaResampled<R> {
 }
 
 impl Filter for Area {
-    fn row<R: TexelRows>(&self, source: &R, [width, height]: [u32; 2], y: u32, out: &mut [R::Texel]) {
+    fn rows<R: TexelRows>(&self, source: &R, [width, height]: [u32; 2], first: u32, out: &mut [R::Texel]) {
         let fine_width = source.width() as usize;
-        let down = overlaps(source.height(), height, y);
-        let mut rows = vec![R::Texel::default(); fine_width * down.len()];
-        source.rows(down[0].0, &mut rows);
+        let across: Vec<_> = (0..width).map(|x| overlaps(source.width(), width, x)).collect();
+        let down: Vec<_> =
+            (first..).take(out.len() / width as usize).map(|y| overlaps(source.height(), height, y)).collect();
+        // Adjacent new rows share old rows, and old rows that are computed from their neighbours are faster together.
+        let (top, bottom) =
+            down.iter().flatten().fold((u32::MAX, 0), |(top, bottom), (y, _)| (top.min(*y), bottom.max(*y + 1)));
+        let mut rows = vec![R::Texel::default(); fine_width * bottom.saturating_sub(top) as usize];
+        source.rows(top, &mut rows);
         let (mut weights, mut parts) = (Vec::new(), Vec::new());
-        for (x, texel) in out.iter_mut().enumerate() {
-            weights.clear();
-            parts.clear();
-            let across = overlaps(source.width(), width, x as u32);
-            for (&(_, weight_y), row) in down.iter().zip(rows.chunks_exact(fine_width)) {
-                for &(source_x, weight_x) in &across {
-                    weights.push(weight_x * weight_y);
-                    parts.push(row[source_x as usize]);
+        for (down, out) in down.iter().zip(out.chunks_exact_mut(width as usize)) {
+            for (across, texel) in across.iter().zip(out) {
+                weights.clear();
+                parts.clear();
+                for &(source_y, weight_y) in down {
+                    let row = &rows[(source_y - top) as usize * fine_width..][..fine_width];
+                    for &(source_x, weight_x) in across {
+                        weights.push(weight_x * weight_y);
+                        parts.push(row[source_x as usize]);
+                    }
                 }
+                *texel = R::Texel::merge(&weights, &parts);
             }
-            *texel = R::Texel::merge(&weights, &parts);
         }
     }
 }
@@ -121,6 +135,14 @@ impl<R: TexelRows> LinearResampled<R> {
 }
 
 impl Filter for Linear {
+    fn rows<R: TexelRows>(&self, source: &R, size: [u32; 2], first: u32, out: &mut [R::Texel]) {
+        let rows = out.chunks_exact_mut(size[0] as usize);
+        (first..).zip(rows).for_each(|(y, row)| self.row(source, size, y, row));
+    }
+}
+
+impl Linear {
+    /// Writes row `y` of `source`, resampled to `size`, to `out`.
     fn row<R: TexelRows>(&self, source: &R, [width, height]: [u32; 2], y: u32, out: &mut [R::Texel]) {
         let fine_width = source.width() as usize;
         let down = neighbours(source.height(), height, y, self.wrap[1]);

@@ -23,15 +23,6 @@ pub struct Level0<'a> {
 }
 
 impl<'a> Level0<'a> {
-    /// Returns the points of this level that count in coarser levels.
-    pub fn magnified(&self, sampler: Sampler) -> Points<'_, 'a> {
-        if self.bumps.unchanged().is_none() {
-            return Points::Resampled { level_0: self, bumps: MagnifiedBumps::of(self.bumps, sampler) };
-        }
-        let wrap = (sampler.magnification == Magnification::Linear).then_some(sampler.wrap);
-        Points::Magnified(Magnified { source: self, wrap, is_isotropic: !self.base.is_anisotropic() })
-    }
-
     /// Returns the unit normal of an offset of the bumps.
     #[inline(always)]
     fn normal(&self, [u, v]: [f32; 2]) -> [f32; 3] {
@@ -43,14 +34,17 @@ impl<'a> Level0<'a> {
         map_row(offsets, out, |offset| self.normal(offset), |lobe, normal| lobe.normal = normal);
     }
 
-    /// Writes a row of lobes that are widened by `bumps`, which vary within a texel.
-    fn widened_row(&self, bumps: &impl TexelRows<Texel = Moments>, y: u32, out: &mut [OrientedLobe]) {
-        let (mut texels, mut row) = (vec![BaseTexel::default(); out.len()], vec![Moments::default(); out.len()]);
-        self.base.row(y, &mut texels);
-        bumps.row(y, &mut row);
-        self.point(row.iter().map(|m| [m.mean.u, m.mean.v]), out);
-        for ((lobe, texel), m) in out.iter_mut().zip(&texels).zip(&row) {
-            lobe.squared_alpha = base_lobe(texel).roughen(m.covariance.scaled([self.slope_scale; 2]));
+    /// Writes row `first` of the lobes that are widened by `bumps`, which vary within a texel, and the rows below.
+    fn widened_rows(&self, bumps: &impl TexelRows<Texel = Moments>, first: u32, out: &mut [OrientedLobe]) {
+        let width = bumps.width() as usize;
+        let (mut texels, mut rows) = (vec![BaseTexel::default(); width], vec![Moments::default(); out.len()]);
+        bumps.rows(first, &mut rows);
+        for ((y, out), row) in (first..).zip(out.chunks_exact_mut(width)).zip(rows.chunks_exact(width)) {
+            self.base.row(y, &mut texels);
+            self.point(row.iter().map(|m| [m.mean.u, m.mean.v]), out);
+            for ((lobe, texel), m) in out.iter_mut().zip(&texels).zip(row) {
+                lobe.squared_alpha = base_lobe(texel).roughen(m.covariance.scaled([self.slope_scale; 2]));
+            }
         }
     }
 
@@ -156,68 +150,55 @@ impl TexelRows for Level0<'_> {
             out.iter_mut().zip(&texels).for_each(|(lobe, texel)| lobe.squared_alpha = base_lobe(texel));
             return;
         }
-        self.widened_row(&self.bumps, y, out);
+        self.widened_rows(&self.bumps, y, out);
     }
 }
 
-/// The lobes of level 0 that coarser levels stand for.
-pub enum Points<'r, 'a> {
-    /// Bumps on their own grid, as samplers magnify them with the base lobe.
-    Magnified(Magnified<'r, Level0<'a>>),
-    /// Bumps on another grid.
-    Resampled { level_0: &'r Level0<'a>, bumps: MagnifiedBumps<'a> },
+/// The lobes of level 0 as samplers magnify it, which coarser levels stand for.
+#[derive(Clone, Copy)]
+pub struct MagnifiedLobes<'r, 'a> {
+    pub level_0: &'r Level0<'a>,
+    /// The modes of the sampler.
+    pub sampler: Sampler,
 }
 
-impl TexelRows for Points<'_, '_> {
+impl TexelRows for MagnifiedLobes<'_, '_> {
     type Texel = OrientedLobe;
 
     fn width(&self) -> u32 {
-        match self {
-            Self::Magnified(points) => points.width(),
-            Self::Resampled { bumps, .. } => bumps.width(),
-        }
+        self.level_0.width()
     }
 
     fn height(&self) -> u32 {
-        match self {
-            Self::Magnified(points) => points.height(),
-            Self::Resampled { bumps, .. } => bumps.height(),
-        }
+        self.level_0.height()
     }
 
     fn row(&self, y: u32, out: &mut [OrientedLobe]) {
-        match self {
-            Self::Magnified(points) => points.row(y, out),
-            Self::Resampled { level_0, bumps } => level_0.widened_row(bumps, y, out),
-        }
+        self.rows(y, out);
     }
 
     fn rows(&self, first: u32, out: &mut [OrientedLobe]) {
-        match self {
-            Self::Magnified(points) => points.rows(first, out),
-            Self::Resampled { bumps, .. } => {
-                let rows = out.chunks_exact_mut(bumps.width() as usize);
-                (first..).zip(rows).for_each(|(y, row)| self.row(y, row));
-            }
+        let Self { level_0, sampler } = *self;
+        if level_0.bumps.unchanged().is_none() {
+            return level_0.widened_rows(&MagnifiedBumps::of(level_0.bumps, sampler), first, out);
         }
+        let wrap = (sampler.magnification == Magnification::Linear).then_some(sampler.wrap);
+        Magnified { source: level_0, wrap, is_isotropic: !level_0.base.is_anisotropic() }.rows(first, out);
     }
 }
 
-/// The lobes of level 0 with their reflectance.
-pub struct ReflectingRows<'r, 'a> {
-    pub points: &'r Points<'r, 'a>,
-    pub base: &'r BaseRows<'a>,
-}
+/// The lobes of level 0 as samplers magnify it, with their reflectance.
+pub struct ReflectingRows<'r, 'a>(pub MagnifiedLobes<'r, 'a>);
 
 impl TexelRows for ReflectingRows<'_, '_> {
     type Texel = ReflectingLobe;
 
     fn width(&self) -> u32 {
-        self.points.width()
+        self.0.width()
     }
 
     fn height(&self) -> u32 {
-        self.points.height()
+        self.0.height()
     }
 
     fn row(&self, y: u32, out: &mut [ReflectingLobe]) {
@@ -226,9 +207,9 @@ impl TexelRows for ReflectingRows<'_, '_> {
 
     fn rows(&self, first: u32, out: &mut [ReflectingLobe]) {
         let (mut lobes, mut reflectance) = (vec![OrientedLobe::default(); out.len()], vec![0.0; out.len()]);
-        self.points.rows(first, &mut lobes);
+        self.0.rows(first, &mut lobes);
         for (y, row) in (first..).zip(reflectance.chunks_exact_mut(self.width() as usize)) {
-            self.base.reflectance_row(y, row);
+            self.0.level_0.base.reflectance_row(y, row);
         }
         for ((texel, lobe), reflectance) in out.iter_mut().zip(lobes).zip(reflectance) {
             *texel = ReflectingLobe { lobe, reflectance };
