@@ -33,8 +33,8 @@ impl<'a> Lobes<'a> {
     /// Roughens `base` by `bumps` on one grid. `slope_scale` multiplies the offsets.
     ///
     /// Under the automatic distribution, GGX lobes are merged from level to level by likelihood, where texels count by
-    /// area x reflectance, and coarse levels are then fitted to finer ones. Under a fixed distribution, and for Beckmann
-    /// lobes, levels 1 and coarser are A + 2 c K with the distribution's correction factor c.
+    /// area x reflectance, and coarse levels are then fitted to finer ones. Under a fixed distribution, and for
+    /// Beckmann lobes, levels 1 and coarser are A + 2 c K with the distribution's correction factor c.
     pub fn new<'b: 'a>(
         base: &Base<'a>,
         bumps: &Bumps<'b>,
