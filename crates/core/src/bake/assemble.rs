@@ -186,6 +186,7 @@ impl<'a> Assembly<'a> {
     /// Moves files into a .glb, and removes what only replaced images needed from the binary chunk.
     fn finish_container(&mut self) -> Result<(), BakeError> {
         let source = self.reader.source;
+        output_document::check_images(self.document.json(), source)?;
         if self.document.container() == Container::Glb {
             output_document::embed_images(&mut self.document, source)?;
             output_document::compact_glb(&mut self.document, source.document)?;

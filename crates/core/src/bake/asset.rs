@@ -72,6 +72,7 @@ fn check_files(source: &Source<'_>) -> Result<(), BakeError> {
 
 /// Returns the asset as it is.
 fn unchanged(source: &Source<'_>, layers: Vec<LayerReport>) -> Result<BakedAsset, BakeError> {
+    output_document::check_images(source.document.json(), source)?;
     let document = source.document.to_bytes()?;
     let sizes = output_sizes(source.document, document.len(), &[])?;
     Ok(BakedAsset {

@@ -12,7 +12,8 @@ use super::error::ContainerError;
 use super::names::portable_stem;
 use super::new_file::NewFile;
 use super::reader::Reader;
-use super::source::Source;
+use super::source::{Source, SourceError};
+use crate::foreign::Foreign;
 use crate::gltf::document::{Container, Document, DocumentError};
 use crate::gltf::json::{Json, JsonError};
 use crate::gltf::uri::{Uri, encode_path};
@@ -116,6 +117,24 @@ pub fn embed_images(document: &mut Document, source: &Source<'_>) -> Result<(), 
         json.remove(&format!("/images/{index}/uri"))?;
         json.set(&format!("/images/{index}/bufferView"), &view)?;
         json.set(&format!("/images/{index}/mimeType"), mime)?;
+    }
+    Ok(())
+}
+
+/// Most bytes of a Git LFS pointer, by the specification of Git LFS.
+const MAX_POINTER: u64 = 1024;
+
+/// Checks that no image file which `json` names is a Git LFS pointer, an empty file or another small file that holds no
+/// image. A bake reads only some of the images, and the others would be copied as they are.
+pub fn check_images(json: &Json, source: &Source<'_>) -> Result<(), ContainerError> {
+    for path in named(&[("images", image_uris(json)?)])? {
+        if source.files.known_length(&path).is_none_or(|length| length > MAX_POINTER) {
+            continue;
+        }
+        let bytes = source.files.read(&path).map_err(|error| SourceError::Read { path: path.clone(), error })?;
+        if let Some(found) = Foreign::detect(&bytes) {
+            return Err(SourceError::ForeignImage { path, found }.into());
+        }
     }
     Ok(())
 }

@@ -97,6 +97,14 @@ pub enum SourceError {
         /// What the file is.
         found: Foreign,
     },
+    /// A file holds something else than an image.
+    #[error("expected an image at {}, found {found}", path.display())]
+    ForeignImage {
+        /// Relative to the document.
+        path: PathBuf,
+        /// What the file is.
+        found: Foreign,
+    },
     /// A buffer view leads nowhere.
     #[error(transparent)]
     Document(#[from] DocumentError),

@@ -25,11 +25,15 @@ fn missing_files_are_named_together() {
 
 #[test]
 fn errors_on_git_lfs_pointers_name_the_command_to_run() {
-    for name in ["brushed.gltf", "brushed_normal.png", "brushed_surface.png", "brushed.bin"] {
-        let sphere = Sphere::new();
-        fs::write(sphere.file(name), POINTER).expect("a file");
-        let line = sphere.error_line(&[]);
-        assert!(line.contains("found a Git LFS pointer instead of the file; run `git lfs pull`"), "{name}: {line}");
+    let baked = ["brushed.gltf", "brushed_normal.png", "brushed_surface.png", "brushed.bin"];
+    // The last one is copied as it is, or into a .glb.
+    for name in baked.into_iter().chain(["brushed_colour.png"]) {
+        for options in [&[][..], &["--glb"]] {
+            let sphere = Sphere::new();
+            fs::write(sphere.file(name), POINTER).expect("a file");
+            let line = sphere.error_line(options);
+            assert!(line.contains("found a Git LFS pointer instead of the file; run `git lfs pull`"), "{name}: {line}");
+        }
     }
 }
 
