@@ -123,6 +123,10 @@ export interface TextureReport {
 
 /** What was done; schemas/report.schema.json of Roughcast describes all members. */
 export interface Report {
+  /** The version of Roughcast. */
+  version: string;
+  /** The settings that change the bytes of textures, with their defaults. */
+  settings: Record<string, unknown>;
   layers: LayerReport[];
   textures: TextureReport[];
 }

@@ -1,7 +1,7 @@
 // The command line on WebAssembly prints what the native tool prints.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { cpSync, writeFileSync } from 'node:fs';
+import { cpSync, readFileSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import process from 'node:process';
 import test from 'node:test';
@@ -48,21 +48,39 @@ test('characters that a terminal acts on are escaped', () => {
   assert.equal(printable('é\u001b[0m\n\u202e'), 'é\\u{1b}[0m\\u{a}\\u{202e}');
 });
 
-for (const options of [[], ['--verbose'], ['--gltf', 'fallback', '--glb=false', '--textures', 'all'], ['--glb']]) {
-  test(`summaries of ${options.join(' ') || 'the defaults'}`, { skip: noBinary || noModule }, (t) => {
+/** Returns a report without what only one of the tools has: times, ids of jobs, and the beginnings of messages. */
+function comparable(file, output) {
+  const { assets, ...run } = JSON.parse(readFileSync(file));
+  const stable = ({ job, seconds, error, output: document, ...asset }) => {
+    assert.equal(typeof seconds, 'number');
+    return { ...asset, failed: Boolean(error), output: document && path.relative(output, document) };
+  };
+  return { ...run, assets: assets.map(stable) };
+}
+
+const ALL = [
+  [],
+  ['--verbose'],
+  ['--engine', 'godot'],
+  ['--gltf', 'fallback', '--glb=false', '--textures', 'all'],
+  ['--glb'],
+];
+for (const options of ALL) {
+  test(`summaries and reports of ${options.join(' ') || 'the defaults'}`, { skip: noBinary || noModule }, (t) => {
     const folder = temporary(t);
     cpSync(fixtures, path.join(folder, 'assets'), { recursive: true });
     writeFileSync(path.join(folder, 'assets/flat.gltf'), '{"asset": {"version": "2.0"}}');
     writeFileSync(path.join(folder, 'assets/broken.gltf'), '{');
     const printed = (output, ...command) => {
-      const args = [...command, 'bake', 'assets', '-o', output, '--no-config', ...options];
+      const report = path.join(folder, `${output}.json`);
+      const args = [...command, 'bake', 'assets', '-o', output, '--no-config', '--report', report, ...options];
       const env = { ...process.env, ROUGHCAST_BACKEND: 'wasm' };
       const { status, stdout } = spawnSync(args[0], args.slice(1), { cwd: folder, env, encoding: 'utf8' });
       assert.equal(status, 1, 'one asset is broken');
-      return stdout.replace(/\d+\.\d\d s$/gm, 'TIME').split('\n');
+      return [stdout.replace(/\d+\.\d\d s$/gm, 'TIME').split('\n'), comparable(report, output)];
     };
     const native = printed('native', binary);
-    assert.match(native.at(-2), /^total of \d+ assets and 1 failed: .* TIME$/);
+    assert.match(native[0].join('\n'), /^total of \d+ assets and 1 failed: .* TIME$/m);
     assert.deepEqual(printed('wasm', process.execPath, path.join(npm, 'roughcast/bin/roughcast.js')), native);
   });
 }

@@ -5,7 +5,7 @@ import { bakeMap } from 'roughcast/bake';
 import type { Report } from 'roughcast';
 
 export async function transform(document: Document): Promise<Report> {
-  let report: Report = { layers: [], textures: [] };
+  let report: Report = { version: '', settings: {}, layers: [], textures: [] };
   await document.transform(
     roughcast({ profile: 'both', engine: 'three', maxError: 0.05, onReport: (made) => (report = made) }),
   );

@@ -14,7 +14,7 @@ use super::terminal::outcome::Outcome;
 use super::terminal::summary::{summary, total};
 use super::work::{Work, Worked};
 use crate::cache::CacheError;
-use crate::note::Note;
+use crate::note::{Note, unnamed_engine};
 use crate::output::lock::{Kind, OutputLock};
 use crate::output::{OutputPath, PublishError};
 use crate::project::{InputError, NamedServer, Selected, SelectionError};
@@ -93,6 +93,8 @@ struct Order {
     server: Option<NamedServer>,
     /// Notes on the engines of the presets; none for a plan, which has no presets.
     notes: Vec<Note>,
+    /// Whether nothing says how the engine of an asset shades anisotropic lobes.
+    leaves_engine_open: bool,
     /// The output folder; `None` for a plan, whose jobs name their own.
     output: Option<PathBuf>,
     /// The lock on the output folder, held until all outputs are written. A plan takes no lock, because other parts of
@@ -148,6 +150,9 @@ impl Args {
         if self.depfile.is_some() {
             touch_cached(&worked.assets);
         }
+        if order.leaves_engine_open && worked.assets.iter().any(|asset| asset.report.has_anisotropic_lobes()) {
+            order.notes.push(unnamed_engine());
+        }
         if !self.quiet && !self.json {
             out.write_all(total(&worked.assets, start.elapsed()).as_bytes())?;
             order.notes.iter().try_for_each(|note| writeln!(out, "note: {note}"))?;
@@ -180,10 +185,12 @@ impl Args {
         }
         let _lock = self.lock(&selected, err)?;
         let planned = plan_assets(&selected.assets);
-        let notes = selected.notes_on_engines();
+        let (notes, leaves_engine_open) = (selected.notes_on_engines(), selected.leaves_engine_open());
         let Selected { output, errors, settings, configs, remote: server, .. } = selected;
         let output = Some(output);
-        Ok(ControlFlow::Continue(Order { planned, errors, settings, configs, server, notes, output, _lock, outcome }))
+        let order =
+            Order { planned, errors, settings, configs, server, notes, leaves_engine_open, output, _lock, outcome };
+        Ok(ControlFlow::Continue(order))
     }
 
     /// Locks the output folder, and says so when that takes long.

@@ -110,3 +110,35 @@ fn a_run_names_the_limiter_of_the_engine_once() {
     assert!(candidates.iter().all(|candidate| candidate["model"] != "anisotropic"), "{candidates:?}");
     assert!(candidates.iter().any(|candidate| candidate["model"] == "isotropic"), "{candidates:?}");
 }
+
+#[test]
+fn a_run_with_anisotropic_lobes_asks_for_the_engine_unless_it_knows_the_lobes() {
+    let baked = tempdir().expect("a folder");
+    let (document, note) = (fixtures().join("brushed/brushed.gltf"), "name your engine by `--engine`");
+    let printed = |options: &[&str]| bake(&document, baked.path(), options).out.matches(note).count();
+    assert_eq!(printed(&[]), 1);
+    assert_eq!(printed(&["--profile", "both"]), 1);
+    for options in [
+        ["--engine", "three"],
+        ["--max-model", "isotropic"],
+        ["--max-model", "anisotropic"],
+        ["--model", "anisotropic"],
+        ["--profile", "pyramid"],
+    ] {
+        assert_eq!(printed(&options), 0, "{options:?}");
+    }
+    let report: Value = serde_json::from_str(&bake(&document, baked.path(), &["--json"]).out).expect("a report");
+    assert_eq!(report["notes"][0]["kind"], "unnamedEngine");
+}
+
+#[test]
+fn a_glb_for_godot_has_a_note_on_its_mips() {
+    let baked = tempdir().expect("a folder");
+    let (document, note) = (fixtures().join("brushed/brushed.gltf"), "Godot drops the mips of images inside a .glb");
+    for (options, count) in [(&["--glb"][..], 1), (&[], 0), (&["--glb", "--profile", "pyramid"], 0)] {
+        let out = bake(&document, baked.path(), &[&["--engine", "godot"], options].concat()).out;
+        assert_eq!(out.matches(note).count(), count, "{out}");
+    }
+    let named = baked.path().join("named.glb");
+    assert!(bake(&document, &named, &["--engine", "godot"]).out.contains(note));
+}

@@ -74,6 +74,10 @@ pub enum NoteKind {
     LayerWithoutPyramid,
     /// The engine widens lobes a second time for bumps that the bake has counted.
     EngineLimiter,
+    /// The engine does not show the mips of the container.
+    MipsDropped,
+    /// Lobes are anisotropic, and no engine was named.
+    UnnamedEngine,
     /// The base colour was not darkened for suns.
     BaseColourUnchanged,
 }
@@ -90,8 +94,8 @@ impl NoteKind {
             | Self::UnknownTexelSize
             | Self::OtherTextureCoordinates
             | Self::CompressedMesh => true,
-            // A setting of the engine is better.
-            Self::EngineLimiter => true,
+            // A setting of the engine or the bake is better.
+            Self::EngineLimiter | Self::MipsDropped | Self::UnnamedEngine => true,
             Self::NoBumpMap
             | Self::MissedBound
             | Self::SteepSlopes
@@ -339,6 +343,22 @@ pub fn engine_limiter(engine: &str, switch: &str) -> Note {
     note(NoteKind::EngineLimiter, text)
 }
 
+/// Returns the note on a .glb for `engine`, which drops the mips of images inside a .glb.
+pub fn mips_dropped(engine: &str) -> Note {
+    let text = format!(
+        "{engine} drops the mips of images inside a .glb, and with them the baked roughness: write a .gltf, by `-o` with \
+         a .gltf name or a folder"
+    );
+    note(NoteKind::MipsDropped, text)
+}
+
+/// Returns the note on anisotropic lobes in a bake for no engine in particular.
+pub fn unnamed_engine() -> Note {
+    let text = "some lobes are anisotropic, and the engines of `--engine` shade such lobes wrongly or leave the \
+                anisotropy out: name your engine by `--engine`, or by `--max-model` the lobes that it shades right";
+    note(NoteKind::UnnamedEngine, text)
+}
+
 /// Why a base colour was not darkened for suns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum KeptColour {
@@ -397,6 +417,8 @@ mod tests {
             unknown_texel_size(&"the material is in no scene"),
             other_texture_coordinates("roughness"),
             engine_limiter("Godot", "turn its limiter off"),
+            mips_dropped("Godot"),
+            unnamed_engine(),
             compressed_mesh("KHR_draco_mesh_compression", Unread::Layout),
             unknown_reflectance(&"the image is damaged"),
             base_colour_unchanged(KeptColour::Ktx2),

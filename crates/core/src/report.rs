@@ -32,6 +32,13 @@ pub struct AssetReport {
     pub sizes: OutputSizes,
 }
 
+impl AssetReport {
+    /// Returns whether a layer was baked to anisotropic lobes.
+    pub fn has_anisotropic_lobes(&self) -> bool {
+        self.layers.iter().any(|layer| layer.model == Some(Model::Anisotropic))
+    }
+}
+
 /// Bytes of outputs by what they hold.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]

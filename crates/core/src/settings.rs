@@ -26,7 +26,7 @@ use crate::lobe::{Distribution, Family};
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum Profile {
-    /// Normal and roughness mips that any engine shades right.
+    /// Normal, roughness and anisotropy mips that engines load as they are.
     #[default]
     Portable,
     /// Offset and roughness maps for engines with a plugin. The core material stays as it was.

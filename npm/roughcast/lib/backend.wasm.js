@@ -45,12 +45,24 @@ export function wasmBackend({ load, canShare, processors }) {
     return callThreads(await module(SHARED), header, files, number, onProgress);
   }
 
+  /**
+   * Returns the report of a run with these settings, without assets, and the note that it gets if some lobes are
+   * anisotropic, or null.
+   */
+  async function startRun(settings) {
+    const { header } = await callModule(await module(SINGLE), { command: 'run', settings }, []);
+    return { report: header.report, onAnisotropy: header.onAnisotropy };
+  }
+
   return {
+    startRun,
+
     async bakeDocument({ name, input, beside, settings, threads, onProgress }) {
       const header = { command: 'bake', stem: name, settings };
+      const { report: runReport } = await startRun(settings);
       const response = await call(header, [input, ...beside], { threads, onProgress });
       const [document, ...files] = response.files;
-      return { document, files, copies: response.header.copies, report: response.header.report };
+      return { document, files, copies: response.header.copies, runReport, report: response.header.report };
     },
 
     async bakeImage({ output, files, options, settings, threads }) {

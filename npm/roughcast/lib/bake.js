@@ -5,13 +5,14 @@ import { tomlSettings } from './settings.js';
 
 /** Bakes the materials of a glTF document; bake.d.ts describes the arguments and the result. */
 export async function bake(document, options) {
-  const baked = await bakeWithSizes(document, options);
+  const { runReport, report, ...baked } = await bakeWithSizes(document, options);
   // The command line counts copied files in its other members, and this function does not copy files.
-  const { layers, textures } = baked.report;
-  return { ...baked, report: { layers, textures } };
+  const { layers, textures } = report;
+  const { version, settings } = runReport;
+  return { ...baked, report: { version, settings, layers, textures } };
 }
 
-/** Bakes as `bake` does, with all members of the backend's report. */
+/** Bakes as `bake` does, with all members of the backend's report, and with the report of the run. */
 export async function bakeWithSizes(document, options = {}) {
   const { name = 'model', files = {}, settings = {}, threads, onProgress, backend: kind } = options;
   const { bakeDocument } = await backend(kind);

@@ -19,7 +19,8 @@ export function nativeBackend(binary) {
         const options = [...flags({ threads, ...settings }), '--no-config', '--quiet', '--report', report];
         await run(binary, ['bake', path.join(source, input.path), '-o', output, ...options], folder);
         onProgress?.(1);
-        const { output: document, layers, textures } = JSON.parse(await readFile(report)).assets[0];
+        const { assets, ...runReport } = JSON.parse(await readFile(report));
+        const { output: document, layers, textures } = assets[0];
         const files = await readFiles(output);
         const isDocument = (file) => file.path === path.basename(document);
         const copies = files.filter((file) => beside.some(({ path }) => path === file.path)).map(({ path }) => path);
@@ -27,6 +28,7 @@ export function nativeBackend(binary) {
           document: files.find(isDocument),
           files: files.filter((file) => !isDocument(file) && !copies.includes(file.path)),
           copies,
+          runReport,
           report: { layers, textures },
         };
       }),

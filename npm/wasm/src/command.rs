@@ -2,9 +2,10 @@
 
 use roughcast_core::bake::planned_files;
 use roughcast_core::gltf::document::Document;
-use roughcast_core::report::{AssetReport, MapReport};
+use roughcast_core::note::{Note, unnamed_engine};
+use roughcast_core::report::{AssetReport, MapReport, RunReport};
 use roughcast_core::settings::values::Values;
-use roughcast_core::settings::{Settings, SettingsError};
+use roughcast_core::settings::{RecordedSettings, Settings, SettingsError};
 use serde::{Deserialize, Serialize};
 
 use crate::message::{self, File};
@@ -16,6 +17,8 @@ use crate::{bake, map};
 enum Command {
     /// Lists the files that the document, the first file, names.
     Files,
+    /// Returns the report of a run with these settings, without assets.
+    Run { settings: Values },
     /// Bakes the document, the first file; the others are the files that it names.
     Bake(bake::Request),
     /// Bakes a standalone map, the first file; the second file is its roughness map.
@@ -28,6 +31,8 @@ enum Command {
 pub enum Reply {
     /// The names of the files that a document names.
     Files { names: Vec<String>, has_bumps: bool },
+    /// The report of a run, and the note that it gets if some lobes are anisotropic.
+    Run { report: RunReport, on_anisotropy: Option<Note> },
     /// A baked document, the first file, with the names of files that did not change.
     Baked { copies: Vec<String>, report: AssetReport },
     /// A baked standalone map.
@@ -48,6 +53,7 @@ pub fn answer(request: &[u8], progress: &dyn Fn(f32)) -> Vec<u8> {
         message::read(request).map_err(|error| error.to_string()).and_then(
             |(header, files)| match serde_json::from_str(header).map_err(|error| error.to_string())? {
                 Command::Files => list_files(&files),
+                Command::Run { settings } => report_of_run(&settings),
                 Command::Bake(request) => bake::bake(&request, &files, progress),
                 Command::Map(request) => map::bake(&request, &files),
             },
@@ -73,4 +79,14 @@ fn list_files(files: &[File<'_>]) -> Result<Response, Refusal> {
     let planned = planned_files(&document).map_err(|error| error.to_string())?;
     let names = planned.files.iter().map(|path| path.display().to_string()).collect();
     Ok((Reply::Files { names, has_bumps: planned.has_bumps }, Vec::new()))
+}
+
+fn report_of_run(values: &Values) -> Result<Response, Refusal> {
+    let settings = settings(values).map_err(|error| error.to_string())?;
+    let recorded = RecordedSettings::new(&settings, settings.model);
+    let baked = values.engine.filter(|_| settings.profile.is_portable());
+    let notes = baked.map(|engine| [engine.container_note(&settings), engine.limiter_note()]);
+    let notes = notes.into_iter().flatten().flatten().collect();
+    let on_anisotropy = values.leaves_engine_open(values.max_model.is_some()).then(unnamed_engine);
+    Ok((Reply::Run { report: RunReport::new(recorded, Vec::new(), notes, None), on_anisotropy }, Vec::new()))
 }

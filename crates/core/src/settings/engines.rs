@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::codec::Target;
 use crate::note::{self, Note};
-use crate::settings::{Form, MaxModel, Model, OwnAnisotropy, Profile};
+use crate::settings::{Form, MaxModel, Model, OwnAnisotropy, Profile, Settings};
 
 /// An engine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -112,6 +112,11 @@ impl Engine {
                 ..defaults("godot")
             },
         }
+    }
+
+    /// Returns the note on a bake to a .glb, if the engine cannot show its mips.
+    pub fn container_note(self, settings: &Settings) -> Option<Note> {
+        (self == Self::Godot && settings.glb == Some(true)).then(|| note::mips_dropped("Godot"))
     }
 
     /// Returns the note on the engine's own limiter; `None` if the engine has none that is on by default.

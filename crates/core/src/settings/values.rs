@@ -136,7 +136,21 @@ fn text(value: &impl Serialize) -> String {
     serde_json::to_string(value).unwrap_or_default()
 }
 
+impl Origins {
+    /// Returns whether a source has set the largest model.
+    pub fn has_max_model(&self) -> bool {
+        self.max_model.is_some()
+    }
+}
+
 impl Values {
+    /// Returns whether nothing says how the engine shades anisotropic lobes, and lobes may become anisotropic.
+    /// `has_max_model` says whether a largest model is set, and not its default.
+    pub fn leaves_engine_open(&self, has_max_model: bool) -> bool {
+        let is_free = self.engine.is_none() && self.model.unwrap_or_default() == Model::Auto && !has_max_model;
+        is_free && self.profile.unwrap_or_default().is_portable()
+    }
+
     /// Returns the defaults; settings without a default are unset.
     pub fn defaults() -> Self {
         let defaults = Settings::default();

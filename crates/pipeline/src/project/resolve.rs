@@ -55,6 +55,13 @@ pub fn resolve(sources: &[ConfigSource]) -> Result<Resolved, SettingsError> {
     Ok(Resolved { settings: values.settings()?, values, engine, origins })
 }
 
+impl Resolved {
+    /// Returns whether nothing says how the engine shades anisotropic lobes, and lobes may become anisotropic.
+    pub fn leaves_engine_open(&self) -> bool {
+        self.engine.is_none() && self.values.leaves_engine_open(self.origins.has_max_model())
+    }
+}
+
 /// Writes lines of TOML, each with the origin of its value, as a terminal may show them.
 impl Display for Resolved {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

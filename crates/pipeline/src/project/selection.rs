@@ -69,11 +69,18 @@ impl Selected {
         !self.errors.iter().any(|error| matches!(error, InputError::OutputIsInput { .. }))
     }
 
-    /// Returns a note for each engine of a preset whose own limiter should be turned off.
+    /// Returns the notes on the engines of presets: on limiters of their own that should be turned off, and on
+    /// containers whose mips they drop.
     pub fn notes_on_engines(&self) -> Vec<Note> {
-        let baked = self.assets.iter().filter(|(_, resolved)| resolved.settings.profile.is_portable());
-        let engines: BTreeSet<Engine> = baked.filter_map(|(_, resolved)| resolved.engine).collect();
-        engines.into_iter().filter_map(Engine::limiter_note).collect()
+        let baked = self.assets.iter().map(|(_, resolved)| resolved).filter(|r| r.settings.profile.is_portable());
+        let engines: BTreeSet<Engine> = baked.clone().filter_map(|resolved| resolved.engine).collect();
+        let containers = baked.filter_map(|resolved| resolved.engine?.container_note(&resolved.settings));
+        containers.take(1).chain(engines.into_iter().filter_map(Engine::limiter_note)).collect()
+    }
+
+    /// Returns whether nothing says how the engine of an asset shades anisotropic lobes.
+    pub fn leaves_engine_open(&self) -> bool {
+        self.assets.iter().any(|(_, resolved)| resolved.leaves_engine_open())
     }
 
     /// Returns a note on documents that were left out; `None` where there are none.

@@ -2,13 +2,24 @@
 import { readFile, realpath, writeFile } from 'node:fs/promises';
 import { existsSync } from 'node:fs';
 import path from 'node:path';
+import { backend } from '#backend';
 import { bakeWithSizes } from '../bake.js';
 import { stem } from '../names.js';
 import { bufferPaths, findAssets, readIfThere, writeOutput } from './files.js';
 import { DOCUMENT, UsageError, parse } from './options.js';
-import { sum, summary, total } from './summary.js';
+import { printable, sum, summary, total } from './summary.js';
 
 const OWN = { ...DOCUMENT, report: { type: 'string' }, 'no-config': { type: 'boolean' } };
+
+/** What the report says of an asset that failed. */
+const NOTHING = {
+  seconds: 0,
+  inputBytes: 0,
+  bytes: 0,
+  layers: [],
+  textures: [],
+  sizes: { ktx2: 0, fallback: 0, images: 0, geometry: 0, json: 0 },
+};
 
 /** Bakes inputs one after the other. Returns the exit code. */
 export async function bakeCommand(args, stdout, stderr) {
@@ -16,6 +27,7 @@ export async function bakeCommand(args, stdout, stderr) {
   const { inputs, settings, values } = parse(args, OWN);
   const assets = (await Promise.all(inputs.map(findAssets))).flat();
   const place = placeOf(values.output, assets, settings);
+  const { report: run, onAnisotropy } = await (await backend('wasm')).startRun(settings);
   const outcomes = [];
   for (const asset of assets) {
     if (!values['no-config']) warnOfConfig(asset.file, stderr);
@@ -24,12 +36,20 @@ export async function bakeCommand(args, stdout, stderr) {
     if (outcome.error) stderr.write(`error: ${asset.file}: ${outcome.error}\n`);
     else if (!values.quiet && !values.json) stdout.write(summary(outcome, values.verbose));
   }
-  if (!values.quiet && !values.json) stdout.write(total(outcomes, secondsSince(started)));
-  const report = `${JSON.stringify({ formatVersion: 1, assets: outcomes }, null, 2)}\n`;
+  const notes = [...(run.notes ?? [])];
+  if (onAnisotropy && outcomes.some(hasAnisotropicLobes)) notes.push(onAnisotropy);
+  if (!values.quiet && !values.json) {
+    stdout.write(total(outcomes, secondsSince(started)));
+    for (const note of notes) stdout.write(`note: ${printable(note.text)}\n`);
+  }
+  const report = `${JSON.stringify({ ...run, assets: outcomes, ...(notes.length > 0 && { notes }) }, null, 2)}\n`;
   if (values.json) stdout.write(report);
   if (values.report) await writeFile(values.report, report);
   return outcomes.some((outcome) => outcome.error) ? 1 : 0;
 }
+
+/** Returns whether a layer of an asset was baked to anisotropic lobes. */
+const hasAnisotropicLobes = ({ layers }) => layers.some((layer) => layer.model === 'anisotropic');
 
 /** Returns a function from an asset to the path of its output document. */
 function placeOf(output, assets, settings) {
@@ -44,7 +64,7 @@ function placeOf(output, assets, settings) {
 
 async function bakeAsset({ file }, place, settings, threads) {
   const started = performance.now();
-  const outcome = { input: file, status: 'failed' };
+  const outcome = { input: file, status: 'failed', ...NOTHING };
   try {
     const [document, folder] = [await readFile(file), path.dirname(file)];
     const sources = new Set([await realpath(file)]);

@@ -16,7 +16,8 @@ Usage:
   roughcast view [ASSET|FOLDER]...                        assets and bakes in a browser
 
 Settings: --profile portable|pyramid|both, --model auto|none|isotropic|anisotropic, --engine NAME, --quality fast|best,
---max-error E, --rdo DB, --target basis|float, --gltf fallback|strict|dual, --glb, --frame, --height-scale, ...
+--max-error E, --rdo DB, --target basis|float, --gltf fallback|strict|dual, --glb, --textures bumps|all, --max-size N,
+--frame, --height-scale, ...
 --threads N (default: one for each processor, at most 16)
 They are those of the native tool, which has more commands and is faster. It is in the package
 ${platformPackage}, which is not installed: WebAssembly runs in its place.
@@ -34,7 +35,8 @@ const NATIVE = ['watch', 'check', 'inspect', 'compare', 'render', 'plan', 'init'
  */
 export async function run([command, ...args], { stdin, stdout, stderr }) {
   try {
-    switch (command) {
+    const asksForHelp = ['bake', 'map'].includes(command) && args.some((arg) => arg === '--help' || arg === '-h');
+    switch (asksForHelp ? 'help' : command) {
       case 'bake':
         return await bakeCommand(args, stdout, stderr);
       case 'map':
