@@ -92,6 +92,7 @@ export const BEFORE = [
     'etc1s',
     'optimize',
     'optimize --compress draco --texture-compress webp',
+    'optimize --texture-compress ktx2',
   ].map(transform),
   ...['', '-c'].map(pack),
 ];
