@@ -45,13 +45,20 @@ export function wasmBackend({ load, canShare, processors }) {
     return callThreads(await module(SHARED), header, files, number, onProgress);
   }
 
+  /** Calls on this thread the module that a bake with `threads` threads uses, so that no other one is loaded. */
+  async function ask(header, files, threads) {
+    const isSingle = count(threads) === 1;
+    const options = isSingle ? {} : { memory: sharedMemory() };
+    return (await callModule(await module(isSingle ? SINGLE : SHARED), header, files, options)).header;
+  }
+
   /**
    * Returns the report of a run with these settings, without assets, and the note that it gets if some lobes are
    * anisotropic, or null.
    */
-  async function startRun(settings) {
-    const { header } = await callModule(await module(SINGLE), { command: 'run', settings }, []);
-    return { report: header.report, onAnisotropy: header.onAnisotropy };
+  async function startRun(settings, threads) {
+    const { report, onAnisotropy } = await ask({ command: 'run', settings }, [], threads);
+    return { report, onAnisotropy };
   }
 
   return {
@@ -59,7 +66,7 @@ export function wasmBackend({ load, canShare, processors }) {
 
     async bakeDocument({ name, input, beside, settings, threads, onProgress }) {
       const header = { command: 'bake', stem: name, settings };
-      const { report: runReport } = await startRun(settings);
+      const { report: runReport } = await startRun(settings, threads);
       const response = await call(header, [input, ...beside], { threads, onProgress });
       const [document, ...files] = response.files;
       return { document, files, copies: response.header.copies, runReport, report: response.header.report };
@@ -73,11 +80,7 @@ export function wasmBackend({ load, canShare, processors }) {
 
     /** Lists the files that a document names, by the module that a bake with `threads` threads uses. */
     async listFiles(document, threads) {
-      const isSingle = count(threads) === 1;
-      const options = isSingle ? {} : { memory: sharedMemory() };
-      const files = [{ path: 'document', bytes: document }];
-      const listing = await module(isSingle ? SINGLE : SHARED);
-      return (await callModule(listing, { command: 'files' }, files, options)).header;
+      return ask({ command: 'files' }, [{ path: 'document', bytes: document }], threads);
     },
   };
 }

@@ -27,7 +27,7 @@ export async function bakeCommand(args, stdout, stderr) {
   const { inputs, settings, values } = parse(args, OWN);
   const assets = (await Promise.all(inputs.map(findAssets))).flat();
   const place = placeOf(values.output, assets, settings);
-  const { report: run, onAnisotropy } = await (await backend('wasm')).startRun(settings);
+  const { report: run, onAnisotropy } = await (await backend('wasm')).startRun(settings, values.threads);
   const outcomes = [];
   for (const asset of assets) {
     if (!values['no-config']) warnOfConfig(asset.file, stderr);
