@@ -48,7 +48,7 @@ test('characters that a terminal acts on are escaped', () => {
   assert.equal(printable('é\u001b[0m\n\u202e'), 'é\\u{1b}[0m\\u{a}\\u{202e}');
 });
 
-/** Returns a report without what only one of the tools has: times, ids of jobs, and the beginnings of messages. */
+/** Returns a report without what differs between the tools: times, ids of jobs, messages, and the output folder. */
 function comparable(file, output) {
   const { assets, ...run } = JSON.parse(readFileSync(file));
   const stable = ({ job, seconds, error, output: document, ...asset }) => {

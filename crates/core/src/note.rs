@@ -346,16 +346,16 @@ pub fn engine_limiter(engine: &str, switch: &str) -> Note {
 /// Returns the note on a .glb for `engine`, which drops the mips of images inside a .glb.
 pub fn mips_dropped(engine: &str) -> Note {
     let text = format!(
-        "{engine} drops the mips of images inside a .glb, and with them the baked roughness: write a .gltf, by `-o` with \
-         a .gltf name or a folder"
+        "{engine} drops the mips of images inside a .glb, and with them the baked roughness: write a .gltf (`-o \
+         NAME.gltf`, without `--glb`)"
     );
     note(NoteKind::MipsDropped, text)
 }
 
 /// Returns the note on anisotropic lobes in a bake for no engine in particular.
 pub fn unnamed_engine() -> Note {
-    let text = "some lobes are anisotropic, and the engines of `--engine` shade such lobes wrongly or leave the \
-                anisotropy out: name your engine by `--engine`, or by `--max-model` the lobes that it shades right";
+    let text = "some lobes are anisotropic, and no engine of `--engine` shades these right: name your engine by \
+                `--engine`; for an engine that shades them right, set `--max-model anisotropic`";
     note(NoteKind::UnnamedEngine, text)
 }
 

@@ -74,7 +74,7 @@ pub fn check_file(path: &Path) -> io::Result<u64> {
 
 fn length_of(metadata: &Metadata) -> io::Result<u64> {
     if metadata.is_dir() {
-        return Err(io::Error::new(io::ErrorKind::InvalidInput, "a folder; name a file in it"));
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, "a folder"));
     }
     if !metadata.is_file() {
         return Err(io::Error::new(io::ErrorKind::InvalidInput, "not an ordinary file"));

@@ -52,24 +52,22 @@ export function wasmBackend({ load, canShare, processors }) {
     return (await callModule(await module(isSingle ? SINGLE : SHARED), header, files, options)).header;
   }
 
-  /**
-   * Returns the report of a run with these settings, without assets, and the note that it gets if some lobes are
-   * anisotropic, or null.
-   */
-  async function startRun(settings, threads) {
-    const { report, onAnisotropy } = await ask({ command: 'run', settings }, [], threads);
-    return { report, onAnisotropy };
-  }
-
   return {
-    startRun,
+    /**
+     * Returns the report of a run with these settings, without assets, and the note that it gets if some lobes are
+     * anisotropic, or null.
+     */
+    async startRun(settings, threads) {
+      const { report, onAnisotropy } = await ask({ command: 'run', settings }, [], threads);
+      return { report, onAnisotropy };
+    },
 
     async bakeDocument({ name, input, beside, settings, threads, onProgress }) {
       const header = { command: 'bake', stem: name, settings };
-      const { report: runReport } = await startRun(settings, threads);
       const response = await call(header, [input, ...beside], { threads, onProgress });
       const [document, ...files] = response.files;
-      return { document, files, copies: response.header.copies, runReport, report: response.header.report };
+      const { copies, run: runReport, report } = response.header;
+      return { document, files, copies, runReport, report };
     },
 
     async bakeImage({ output, files, options, settings, threads }) {

@@ -9,7 +9,7 @@ use roughcast_core::bake::{Files, output_stem};
 use roughcast_core::settings::values::Values;
 use serde::Deserialize;
 
-use crate::command::{Refusal, Reply, Response, first, settings};
+use crate::command::{Refusal, Reply, Response, first, run_report, settings};
 use crate::message::File;
 
 /// The header of a request.
@@ -38,7 +38,7 @@ impl Files for Beside<'_> {
 }
 
 /// Bakes the first of `files`. The response has the new document, new files, the names of files that did not change,
-/// and the report.
+/// and the reports of the run and of the document.
 pub fn bake(request: &Request, files: &[File<'_>], progress: &dyn Fn(f32)) -> Result<Response, Refusal> {
     let document = first(files)?;
     let beside = Beside(files.iter().skip(1).map(|file| (Path::new(file.path), file.bytes)).collect());
@@ -49,5 +49,6 @@ pub fn bake(request: &Request, files: &[File<'_>], progress: &dyn Fn(f32)) -> Re
     let copies = baked.copies.iter().map(|path| path.display().to_string()).collect();
     let mut outputs = vec![(format!("{stem}.{}", baked.container.extension()), baked.document)];
     outputs.extend(baked.files.into_iter().map(|file| (file.path.display().to_string(), file.bytes)));
-    Ok((Reply::Baked { copies, report: baked.report }, outputs))
+    let run = run_report(&request.settings, &settings);
+    Ok((Reply::Baked { copies, run, report: baked.report }, outputs))
 }

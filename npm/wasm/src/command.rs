@@ -34,7 +34,7 @@ pub enum Reply {
     /// The report of a run, and the note that it gets if some lobes are anisotropic.
     Run { report: RunReport, on_anisotropy: Option<Note> },
     /// A baked document, the first file, with the names of files that did not change.
-    Baked { copies: Vec<String>, report: AssetReport },
+    Baked { copies: Vec<String>, run: RunReport, report: AssetReport },
     /// A baked standalone map.
     Map { report: MapReport },
     /// Why a request is not answered, for a person.
@@ -53,7 +53,7 @@ pub fn answer(request: &[u8], progress: &dyn Fn(f32)) -> Vec<u8> {
         message::read(request).map_err(|error| error.to_string()).and_then(
             |(header, files)| match serde_json::from_str(header).map_err(|error| error.to_string())? {
                 Command::Files => list_files(&files),
-                Command::Run { settings } => report_of_run(&settings),
+                Command::Run { settings } => start_run(&settings),
                 Command::Bake(request) => bake::bake(&request, &files, progress),
                 Command::Map(request) => map::bake(&request, &files),
             },
@@ -81,12 +81,14 @@ fn list_files(files: &[File<'_>]) -> Result<Response, Refusal> {
     Ok((Reply::Files { names, has_bumps: planned.has_bumps }, Vec::new()))
 }
 
-fn report_of_run(values: &Values) -> Result<Response, Refusal> {
+fn start_run(values: &Values) -> Result<Response, Refusal> {
     let settings = settings(values).map_err(|error| error.to_string())?;
-    let recorded = RecordedSettings::new(&settings, settings.model);
-    let baked = values.engine.filter(|_| settings.profile.is_portable());
-    let notes = baked.map(|engine| [engine.container_note(&settings), engine.limiter_note()]);
-    let notes = notes.into_iter().flatten().flatten().collect();
     let on_anisotropy = values.leaves_engine_open(values.max_model.is_some()).then(unnamed_engine);
-    Ok((Reply::Run { report: RunReport::new(recorded, Vec::new(), notes, None), on_anisotropy }, Vec::new()))
+    Ok((Reply::Run { report: run_report(values, &settings), on_anisotropy }, Vec::new()))
+}
+
+/// Returns the report, without assets, of a run with `settings`, which `values` set.
+pub fn run_report(values: &Values, settings: &Settings) -> RunReport {
+    let notes = values.engine.map(|engine| engine.notes(settings)).unwrap_or_default();
+    RunReport::new(RecordedSettings::new(settings, settings.model), Vec::new(), notes, None)
 }

@@ -41,12 +41,12 @@ fn each_command_says_what_a_file_is_instead_and_what_to_do() {
         for name in ["scene.fbx", "scene.obj", "scene.usdc", "scene.blend"] {
             cases.push((command, name, export));
         }
-        cases.push((command, "folder", "found: a folder; name a file in it; check the path"));
+        cases.push((command, "folder", "found: a folder; check the path"));
     }
     for name in ["pointer.png", "pointer.ktx2"] {
         cases.push(("map -o out.ktx2", name, lfs));
     }
-    let (asset, path) = ("found a glTF asset", "found: a folder; name a file in it; check the path");
+    let (asset, path) = ("found a glTF asset", "found: a folder; check the path");
     for (name, part) in [("empty.png", empty), ("scene.fbx", export), ("scene.glb", asset), ("folder", path)] {
         cases.push(("map -o out.ktx2", name, part));
     }

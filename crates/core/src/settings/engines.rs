@@ -32,6 +32,8 @@ pub enum Engine {
 pub struct Preset {
     /// The name in `roughcast.toml` and on the command line.
     pub name: &'static str,
+    /// The name for a person.
+    title: &'static str,
     /// The payload that its loader reads.
     pub target: Target,
     /// The references to textures that its loader reads.
@@ -42,8 +44,11 @@ pub struct Preset {
     pub glb: Option<bool>,
     /// Its support of `KHR_materials_anisotropy`.
     anisotropy: Anisotropy,
-    /// How its user turns off what widens baked lobes a second time; `None` if nothing does so by default.
-    limiter: Option<Limiter>,
+    /// Whether it shows the mips of images inside a .glb.
+    keeps_mips_of_glb: bool,
+    /// How its user turns off what widens baked lobes wherever the normals of pixels differ; `None` if nothing does so
+    /// by default.
+    limiter: Option<&'static str>,
 }
 
 /// An engine's own support of `KHR_materials_anisotropy`. No engine of the table shades such lobes correctly.
@@ -55,24 +60,11 @@ enum Anisotropy {
     Wrong,
 }
 
-/// What an engine does by default to roughness wherever the normals of pixels differ.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Limiter {
-    /// The name of the engine for a person.
-    engine: &'static str,
-    /// How its user turns that off.
-    switch: &'static str,
-}
+const BABYLON_LIMITER: &str =
+    "set enableSpecularAntiAliasing of each loaded material to false, in onMaterialLoaded of the glTF loader";
 
-const BABYLON_LIMITER: Limiter = Limiter {
-    engine: "Babylon.js",
-    switch: "set enableSpecularAntiAliasing of each loaded material to false, in onMaterialLoaded of the glTF loader",
-};
-
-const GODOT_LIMITER: Limiter = Limiter {
-    engine: "Godot",
-    switch: "turn the project setting rendering/anti_aliasing/screen_space_roughness_limiter/enabled off",
-};
+const GODOT_LIMITER: &str =
+    "turn the project setting rendering/anti_aliasing/screen_space_roughness_limiter/enabled off";
 
 impl Engine {
     /// Every engine.
@@ -86,20 +78,31 @@ impl Engine {
     /// Returns the preset of the engine.
     pub fn preset(self) -> Preset {
         // Loaders that read KTX2 need no PNG copies.
-        let (target, form, anisotropy, limiter) = (Target::Basis, Form::Strict, Anisotropy::Wrong, None);
-        let defaults = |name| Preset { name, target, form, glb: None, reads_normal_scale: true, anisotropy, limiter };
+        let defaults = |name, title| Preset {
+            name,
+            title,
+            target: Target::Basis,
+            form: Form::Strict,
+            glb: None,
+            reads_normal_scale: true,
+            anisotropy: Anisotropy::Wrong,
+            keeps_mips_of_glb: true,
+            limiter: None,
+        };
         match self {
             // Its shader looks the environment up once, with the shorter axis of the lobe and a bent normal.
-            Self::Three => defaults("three"),
+            Self::Three => defaults("three", "three.js"),
             // Its shader has the formulas of three.js.
-            Self::Babylon => Preset { limiter: Some(BABYLON_LIMITER), ..defaults("babylon") },
+            Self::Babylon => Preset { limiter: Some(BABYLON_LIMITER), ..defaults("babylon", "Babylon.js") },
             // Its shader squares the alphas of anisotropic lobes once more.
             // For normalTexture.scale it mixes the normal with that of the surface.
-            Self::Playcanvas => Preset { reads_normal_scale: false, ..defaults("playcanvas") },
-            Self::Filament => Preset { anisotropy: Anisotropy::Unread, ..defaults("filament") },
+            Self::Playcanvas => Preset { reads_normal_scale: false, ..defaults("playcanvas", "PlayCanvas") },
+            Self::Filament => Preset { anisotropy: Anisotropy::Unread, ..defaults("filament", "Filament") },
             // Its loader refuses files that need KHR_texture_basisu and ignores normalTexture.scale, and its shader
             // squares the alphas of anisotropic lobes once more. The dual form needs external files.
-            Self::Bevy => Preset { form: Form::Dual, glb: Some(false), reads_normal_scale: false, ..defaults("bevy") },
+            Self::Bevy => {
+                Preset { form: Form::Dual, glb: Some(false), reads_normal_scale: false, ..defaults("bevy", "Bevy") }
+            }
             // Its editor saves images inside a .glb as PNG and makes mips of its own. No test of ours runs it, so that
             // the form is the one that every importer of glTF reads. For normalTexture.scale it mixes the normal with
             // that of the surface.
@@ -108,20 +111,22 @@ impl Engine {
                 glb: Some(false),
                 reads_normal_scale: false,
                 anisotropy: Anisotropy::Unread,
+                keeps_mips_of_glb: false,
                 limiter: Some(GODOT_LIMITER),
-                ..defaults("godot")
+                ..defaults("godot", "Godot")
             },
         }
     }
 
-    /// Returns the note on a bake to a .glb, if the engine cannot show its mips.
-    pub fn container_note(self, settings: &Settings) -> Option<Note> {
-        (self == Self::Godot && settings.glb == Some(true)).then(|| note::mips_dropped("Godot"))
-    }
-
-    /// Returns the note on the engine's own limiter; `None` if the engine has none that is on by default.
-    pub fn limiter_note(self) -> Option<Note> {
-        self.preset().limiter.map(|Limiter { engine, switch }| note::engine_limiter(engine, switch))
+    /// Returns the notes on a bake for the engine with `settings`: on a container whose mips it drops, and on a limiter
+    /// of its own that is on by default.
+    pub fn notes(self, settings: &Settings) -> Vec<Note> {
+        let Preset { title, keeps_mips_of_glb, limiter, .. } = self.preset();
+        if !settings.profile.is_portable() {
+            return Vec::new();
+        }
+        let dropped = (settings.glb == Some(true) && !keeps_mips_of_glb).then(|| note::mips_dropped(title));
+        dropped.into_iter().chain(limiter.map(|switch| note::engine_limiter(title, switch))).collect()
     }
 }
 

@@ -5,7 +5,6 @@ mod error;
 
 pub use error::SelectionError;
 
-use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use self::configs::{Configs, FoundConfig};
@@ -18,7 +17,6 @@ use crate::gltf::document::Container;
 use crate::note::Note;
 use crate::output::folder_of;
 use crate::settings::Settings;
-use crate::settings::engines::Engine;
 use crate::settings::values::Values;
 
 /// Which `roughcast.toml` holds for an asset.
@@ -69,13 +67,17 @@ impl Selected {
         !self.errors.iter().any(|error| matches!(error, InputError::OutputIsInput { .. }))
     }
 
-    /// Returns the notes on the engines of presets: on limiters of their own that should be turned off, and on
-    /// containers whose mips they drop.
+    /// Returns the different notes on bakes for the engines of presets.
     pub fn notes_on_engines(&self) -> Vec<Note> {
-        let baked = self.assets.iter().map(|(_, resolved)| resolved).filter(|r| r.settings.profile.is_portable());
-        let engines: BTreeSet<Engine> = baked.clone().filter_map(|resolved| resolved.engine).collect();
-        let containers = baked.filter_map(|resolved| resolved.engine?.container_note(&resolved.settings));
-        containers.take(1).chain(engines.into_iter().filter_map(Engine::limiter_note)).collect()
+        let mut notes = Vec::new();
+        for (_, resolved) in &self.assets {
+            for note in resolved.engine.map(|engine| engine.notes(&resolved.settings)).unwrap_or_default() {
+                if !notes.contains(&note) {
+                    notes.push(note);
+                }
+            }
+        }
+        notes
     }
 
     /// Returns whether nothing says how the engine of an asset shades anisotropic lobes.

@@ -11,15 +11,10 @@ import { printable, sum, summary, total } from './summary.js';
 
 const OWN = { ...DOCUMENT, report: { type: 'string' }, 'no-config': { type: 'boolean' } };
 
+const NO_BYTES = { ktx2: 0, fallback: 0, images: 0, geometry: 0, json: 0 };
+
 /** What the report says of an asset that failed. */
-const NOTHING = {
-  seconds: 0,
-  inputBytes: 0,
-  bytes: 0,
-  layers: [],
-  textures: [],
-  sizes: { ktx2: 0, fallback: 0, images: 0, geometry: 0, json: 0 },
-};
+const NOTHING = { seconds: 0, inputBytes: 0, bytes: 0, layers: [], textures: [], sizes: NO_BYTES };
 
 /** Bakes inputs one after the other. Returns the exit code. */
 export async function bakeCommand(args, stdout, stderr) {
@@ -105,7 +100,7 @@ function copiedSizes(copies, buffers) {
   const [geometry, images] = [true, false].map((wanted) =>
     lengthOf(copies.filter((copy) => buffers.has(path.posix.normalize(copy.path)) === wanted)),
   );
-  return { ktx2: 0, fallback: 0, images, geometry, json: 0 };
+  return { ...NO_BYTES, images, geometry };
 }
 
 /** Returns the bytes of files together. */

@@ -35,6 +35,12 @@ fn errors_on_git_lfs_pointers_name_the_command_to_run() {
             assert!(line.contains("found a Git LFS pointer instead of the file; run `git lfs pull`"), "{name}: {line}");
         }
     }
+    // A document without bumps is copied as it is.
+    let sphere = Sphere::new();
+    sphere.edit(|root| drop(root["materials"][0].as_object_mut().expect("a material").remove("normalTexture")));
+    fs::write(sphere.file("brushed_colour.png"), POINTER).expect("a file");
+    let line = sphere.error_line(&[]);
+    assert!(line.contains("expected an image at brushed_colour.png, found a Git LFS pointer"), "{line}");
 }
 
 #[test]

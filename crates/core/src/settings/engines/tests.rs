@@ -28,12 +28,13 @@ fn presets_bake_isotropic_lobes_into_core_materials() {
 
 #[test]
 fn notes_name_the_switches_of_limiters_that_are_on_by_default() {
-    let with_notes: Vec<&str> =
-        Engine::ALL.iter().filter(|e| e.limiter_note().is_some()).map(|e| e.preset().name).collect();
-    assert_eq!(with_notes, ["babylon", "godot"]);
-    let note = Engine::Godot.limiter_note().expect("a note");
-    assert!(note.asks_for_action);
-    assert!(note.text.contains("screen_space_roughness_limiter/enabled"), "{note}");
+    let settings = Settings::default();
+    let with_notes = Engine::ALL.into_iter().filter(|engine| !engine.notes(&settings).is_empty());
+    assert_eq!(with_notes.collect::<Vec<_>>(), [Engine::Babylon, Engine::Godot]);
+    let notes = Engine::Godot.notes(&settings);
+    assert!(notes[0].asks_for_action);
+    assert!(notes[0].text.contains("screen_space_roughness_limiter/enabled"), "{notes:?}");
+    assert_eq!(Engine::Godot.notes(&settings.with_profile(Profile::Pyramid)), []);
 }
 
 #[test]
