@@ -34,7 +34,8 @@ const UNEVEN: f32 = 2.0;
 /// up to level 6, and a merge of four texels hardly drifts. For level 2 they are too few: four for each texel. Merges
 /// of even texels drift less, so that the lobes of level 2, and from level 7 on of level 3, do as well for them.
 /// Searches up to level 4 are short, since these levels have the most texels; docs/accuracy.md has what that costs and
-/// saves.
+/// saves. If level 1 is too large to be kept, as for 16384 x 16384, each of these levels would compute it again. Then
+/// the first kept level stands for it wherever it has at least 4 x 4 texels for each fitted texel.
 const FAST: [LevelFit; 7] = [
     level_fit((0, None), DRAWN, 64, SHORT, 0),
     level_fit((1, None), DRAWN, 64, SHORT, 0),
@@ -81,7 +82,7 @@ pub fn fit_levels<R: TexelRows<Texel: LobeTexel>>(
     };
     let needs_marks = fits.iter().any(|fit| fit.even_parts.is_none());
     let sizes = level_sizes(level_0.width(), level_0.height());
-    let mut finer_uneven = Vec::new();
+    let (mut finer_uneven, first_kept) = (Vec::new(), tail.first_kept());
     for level in FIRST..sizes.len() {
         let fit = &fits[(level - FIRST).min(fits.len() - 1)];
         let (size, finer_size) = (sizes[level], sizes[level - 1]);
@@ -89,11 +90,13 @@ pub fn fit_levels<R: TexelRows<Texel: LobeTexel>>(
         tail.update_level(level_0, level, |y, finer, out| {
             let is_uneven = &is_uneven[(y * size.0) as usize..][..out.len()];
             if needs_marks {
-                mark_uneven(&|y, out: &mut [_]| finer(level - 1, y, out), finer_size, &finer_uneven, y, is_uneven);
+                let rows = |first: u32, out: &mut [_]| finer(level - 1, first, out);
+                mark_uneven(&rows, finer_size, &finer_uneven, y, is_uneven);
             }
             let is_uneven: Vec<bool> = is_uneven.iter().map(|flag| flag.load(Ordering::Relaxed)).collect();
             for (uneven, parts) in [(true, Some(fit.uneven_parts)), (false, fit.even_parts)] {
                 let Some(parts) = parts.filter(|_| is_uneven.contains(&uneven)) else { continue };
+                let parts = if parts == 0 { 0 } else { parts.max(first_kept.min(level - 2)) };
                 let is_fitted = |x: u32| is_uneven[x as usize] == uneven;
                 fit_row(finer, (parts, sizes[parts]), (y, size), family, fit, is_fitted, out);
             }
@@ -103,7 +106,7 @@ pub fn fit_levels<R: TexelRows<Texel: LobeTexel>>(
 }
 
 /// Marks those texels of row `y` of a level whose four finer texels differ in width, or of which one is marked in
-/// `finer_marks`. `finer` writes rows of the finer level, which has `size` texels.
+/// `finer_marks`. `finer` writes adjacent rows of the finer level, which has `size` texels.
 fn mark_uneven<T: LobeTexel>(
     finer: &dyn Fn(u32, &mut [T]),
     size: (u32, u32),
@@ -111,21 +114,18 @@ fn mark_uneven<T: LobeTexel>(
     y: u32,
     marks: &[AtomicBool],
 ) {
-    let rows = [0, 1].map(|i| (2 * y + i).min(size.1 - 1));
-    let texels = rows.map(|y| {
-        let mut row = vec![T::default(); size.0 as usize];
-        finer(y, &mut row);
-        row
-    });
+    let rows = 2 * y..(2 * y + 2).min(size.1);
+    let mut texels = vec![T::default(); size.0 as usize * rows.len()];
+    finer(rows.start, &mut texels);
     for (x, mark) in (0..).zip(marks) {
         let columns = [2 * x, 2 * x + 1].map(|x: u32| x.min(size.0 - 1));
-        let widths =
-            texels.iter().flat_map(|row| columns.map(|x| row[x as usize].lobe().squared_alpha.0.determinant()));
+        let finer_texels = texels.chunks_exact(size.0 as usize).flat_map(|row| columns.map(|x| row[x as usize]));
+        let widths = finer_texels.map(|texel| texel.lobe().squared_alpha.0.determinant());
         let (least, most) = widths.fold((f32::MAX, 0.0_f32), |(least, most), d| (least.min(d), most.max(d)));
         // The determinant of squared alphas is a fourth power of alpha. The least alpha is 0.001.
         let differ = most > least.max(1e-12) * (UNEVEN * UNEVEN * UNEVEN * UNEVEN);
         let is_marked = |y: u32| columns.iter().any(|x| finer_marks.get((y * size.0 + x) as usize) == Some(&true));
-        mark.store(differ || rows.iter().any(|y| is_marked(*y)), Ordering::Relaxed);
+        mark.store(differ || rows.clone().any(is_marked), Ordering::Relaxed);
     }
 }
 
@@ -164,3 +164,6 @@ fn fit_row<T: LobeTexel>(
         texel.set_lobe(fit(family, &parts, *texel.lobe(), *effort, first));
     }
 }
+
+#[cfg(test)]
+mod tests;

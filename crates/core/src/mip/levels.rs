@@ -1,11 +1,9 @@
 //! Mip tails: small levels are kept, and large levels are computed whenever they are read.
 
-use fearless_simd::Level as InstructionSet;
-
 use rayon::prelude::*;
 
 use crate::mip::merge::Merge;
-use crate::mip::reduce::{Level, Taps, build, level_size, level_sizes, reduce_row};
+use crate::mip::reduce::{Level, build, finer_rows_for, level_size, level_sizes, reduce_rows};
 use crate::mip::rows::TexelRows;
 
 /// Levels 1 and coarser of a source. Methods take the source, because the tail does not own it.
@@ -80,6 +78,11 @@ impl<T: Merge> MipTail<T> {
         rows.for_each(|(y, row)| update(y as u32, &finer_rows, row));
     }
 
+    /// Returns the finest level that is kept.
+    pub fn first_kept(&self) -> usize {
+        self.unkept + 1
+    }
+
     /// Returns the single texel of the coarsest level.
     pub fn coarsest(&self, source: &impl TexelRows<Texel = T>) -> T {
         let mut texel = [T::default()];
@@ -115,18 +118,17 @@ impl<R: TexelRows> TexelRows for UnkeptLevel<'_, R> {
     }
 
     fn row(&self, y: u32, out: &mut [R::Texel]) {
-        let Some(level) = self.level.checked_sub(1) else { return self.source.row(y, out) };
-        let finer = Self { source: self.source, level };
-        let (width, down) = (finer.width() as usize, Taps::new(finer.height(), y));
-        let mut rows = vec![R::Texel::default(); width * down.count];
-        finer.rows(down.first, &mut rows);
-        reduce_row(InstructionSet::new(), &rows, width, &down, out);
+        self.rows(y, out);
     }
 
     fn rows(&self, first: u32, out: &mut [R::Texel]) {
-        match self.level {
-            0 => self.source.rows(first, out),
-            _ => (first..).zip(out.chunks_exact_mut(self.width() as usize)).for_each(|(y, row)| self.row(y, row)),
+        match self.level.checked_sub(1) {
+            None => self.source.rows(first, out),
+            Some(level) => {
+                let rows = out.len() / self.width() as usize;
+                let finer = Self { source: self.source, level };
+                reduce_rows(&finer, first, &mut finer_rows_for(&finer, rows), out);
+            }
         }
     }
 }

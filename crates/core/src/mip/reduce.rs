@@ -95,25 +95,14 @@ fn reduce<R: TexelRows>(finer: &R, sizes: &[(u32, u32)]) -> Vec<Level<R::Texel>>
         let chunks = level.texels.chunks_exact_mut(rows * level.width as usize);
         parts.iter_mut().zip(chunks).for_each(|(part, chunk)| part.push(chunk));
     }
-    let fine_width = finer.width() as usize;
     let simd = InstructionSet::new();
     parts.into_par_iter().enumerate().for_each_init(
-        || vec![R::Texel::default(); fine_width * (2 * ROWS_TOGETHER + 1)],
+        || finer_rows_for(finer, ROWS_TOGETHER),
         |rows, (band, mut levels)| {
             let (first, tail) = levels.split_at_mut(1);
             let first = &mut *first[0];
             let height = first.len() / sizes[0].0 as usize;
-            let width = sizes[0].0 as usize;
-            for (group, out) in first.chunks_mut(width * ROWS_TOGETHER).enumerate() {
-                let down = |y| Taps::new(finer.height(), (band * height + group * ROWS_TOGETHER + y) as u32);
-                let (top, last) = (down(0).first, down(out.len() / width - 1));
-                let count = (last.first - top) as usize + last.count;
-                finer.rows(top, &mut rows[..count * fine_width]);
-                for (y, out) in out.chunks_exact_mut(width).enumerate() {
-                    let down = down(y);
-                    reduce_row(simd, &rows[(down.first - top) as usize * fine_width..], fine_width, &down, out);
-                }
-            }
+            reduce_rows(finer, (band * height) as u32, rows, first);
             // All heights beyond the first level of a band are even.
             let down = Taps::new(2, 0);
             let mut above: &[R::Texel] = first;
@@ -127,6 +116,29 @@ fn reduce<R: TexelRows>(finer: &R, sizes: &[(u32, u32)]) -> Vec<Level<R::Texel>>
         },
     );
     levels
+}
+
+/// Returns room for the rows of `finer` under `rows` rows of the next coarser level, as [`reduce_rows`] needs it.
+pub(super) fn finer_rows_for<R: TexelRows>(finer: &R, rows: usize) -> Vec<R::Texel> {
+    vec![R::Texel::default(); finer.width() as usize * (2 * rows.min(ROWS_TOGETHER) + 1)]
+}
+
+/// Computes row `first` of the level below `finer` and the rows below it, `out`. `rows` is scratch memory.
+///
+/// Rows of `finer` are read in groups, since rows that are computed from their neighbours are faster together.
+pub(super) fn reduce_rows<R: TexelRows>(finer: &R, first: u32, rows: &mut [R::Texel], out: &mut [R::Texel]) {
+    let (fine_width, width) = (finer.width() as usize, level_size(finer.width()) as usize);
+    for (top, out) in (first..).step_by(ROWS_TOGETHER).zip(out.chunks_mut(width * ROWS_TOGETHER)) {
+        let down = |y: usize| Taps::new(finer.height(), top + y as u32);
+        let (top, last) = (down(0).first, down(out.len() / width - 1));
+        let count = (last.first - top) as usize + last.count;
+        finer.rows(top, &mut rows[..count * fine_width]);
+        for (y, out) in out.chunks_exact_mut(width).enumerate() {
+            let down = down(y);
+            let rows = &rows[(down.first - top) as usize * fine_width..];
+            reduce_row(InstructionSet::new(), rows, fine_width, &down, out);
+        }
+    }
 }
 
 /// Returns default texels, written by all threads. The first write to a page of memory waits until the system has
