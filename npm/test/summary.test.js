@@ -11,7 +11,7 @@ import { binary, fixtures, noBinary, noModule, npm, temporary } from './common.j
 /** Returns the outcome of a bake to `a.glb`, whose first material has the note `use another`. */
 function outcome(sizes, inputBytes) {
   const layer = (index, notes) => ({ index, material: `M${index}`, layer: 'base', model: 'isotropic', notes });
-  const note = { kind: 'jpegSource', asksForAction: true, text: 'use another' };
+  const note = { kind: 'lossySource', asksForAction: true, text: 'use another' };
   const bytes = Object.values(sizes).reduce((a, b) => a + b);
   const layers = [layer(0, [note]), { ...layer(0, []), layer: 'clearcoat' }, layer(1, [note])];
   return { input: 'a.glb', status: 'baked', inputBytes, bytes, seconds: 0.5, layers, textures: [{}, {}], sizes };

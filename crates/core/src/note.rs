@@ -30,8 +30,8 @@ pub enum NoteKind {
     NoBumpMap,
     /// The chosen model exceeds the error bound at some levels.
     MissedBound,
-    /// The bump map is a JPEG.
-    JpegSource,
+    /// The format of the bump map changes the bumps, such as JPEG.
+    LossySource,
     /// Rounding of the bump map roughens the surface.
     SmallDepth,
     /// Normals point along the surface or below it.
@@ -88,7 +88,7 @@ impl NoteKind {
     fn asks_for_action(self) -> bool {
         match self {
             // Another source file is better.
-            Self::JpegSource | Self::SmallDepth | Self::NormalsBelowSurface | Self::UnknownReflectance => true,
+            Self::LossySource | Self::SmallDepth | Self::NormalsBelowSurface | Self::UnknownReflectance => true,
             // The document or the command line does not fit the purpose.
             Self::SamplerWithoutMips
             | Self::UnknownTexelSize
@@ -137,11 +137,13 @@ pub fn missed_bound(text: String, is_avoidable: bool) -> Note {
     Note { kind: NoteKind::MissedBound, asks_for_action: is_avoidable, text }
 }
 
-/// Returns the note on a bump map that is a JPEG.
-pub fn jpeg_source() -> Note {
-    let text = "the bump map is a JPEG: its compression changes the bumps, and the bake cannot tell these \
-                changes from the surface; use a lossless source";
-    note(NoteKind::JpegSource, text)
+/// Returns the note on a bump map that is `format`, such as "a JPEG".
+pub fn lossy_source(format: &str) -> Note {
+    let text = format!(
+        "the bump map is {format}: its compression changes the bumps, and the bake cannot tell these changes from the \
+         surface; use a lossless source"
+    );
+    note(NoteKind::LossySource, text)
 }
 
 /// Returns the note on rounding of a bump map that moves the lobes of a smooth surface. `error` is the lobe error of
@@ -410,7 +412,7 @@ mod tests {
     #[test]
     fn notes_on_sources_and_documents_ask_for_action() {
         let asking = [
-            jpeg_source(),
+            lossy_source("a JPEG"),
             small_depth(0.1),
             normals_below_surface(1, 4),
             sampler_without_mips(),

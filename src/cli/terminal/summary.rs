@@ -154,7 +154,7 @@ mod tests {
     use crate::report::AssetReport;
 
     fn layer(index: usize, notes: &[&str]) -> Value {
-        let note = |text: &&str| json!({ "kind": "jpegSource", "asksForAction": true, "text": text });
+        let note = |text: &&str| json!({ "kind": "lossySource", "asksForAction": true, "text": text });
         let notes: Vec<Value> = notes.iter().map(note).collect();
         json!({ "index": index, "material": format!("M{index}"), "layer": "base", "model": "isotropic", "notes": notes })
     }

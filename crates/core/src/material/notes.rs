@@ -1,18 +1,12 @@
 //! The notes to the user on a bump map and its bake, and the thresholds above which they are made.
 
 use crate::bump::Outliers;
-use crate::image::FileFormat;
 use crate::material::bump_map::BumpMap;
 use crate::material::roughening::Roughening;
 use crate::math::symmetric::Symmetric2;
 use crate::mip::TexelRows;
 use crate::note::{self, Note};
 use crate::settings::Model;
-
-/// Returns whether a file is a JPEG.
-pub fn is_jpeg(file: &[u8]) -> bool {
-    FileFormat::detect(file, None) == Some(FileFormat::Jpeg)
-}
 
 /// Smallest share of texels with opposed neighbours that is reported. A map with one seam across 1024 texels has 0.3 %.
 const MIN_OPPOSED: f32 = 0.001;
