@@ -4,6 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use serde_json::Value;
 use tempfile::tempdir;
 
 use super::shell::{in_repository, run, script};
@@ -45,6 +46,20 @@ fn the_archive_is_what_binstall_expects() {
     for file in files.iter().map(|file| format!("{root}/{file}")).chain([binstall("bin-dir")]) {
         assert!(list.lines().any(|line| line == file), "no {file} in {list}");
     }
+}
+
+/// The sample of a release is baked by the tool of the archive, and has the extension with its base lobe.
+#[test]
+fn the_sample_has_the_vendor_extension() {
+    let folder = tempdir().expect("a folder");
+    let archive = pack(folder.path());
+    let (code, text) = run(script(".github/release/sample", &[]).arg(archive).arg(folder.path()));
+    assert_eq!(code, 0, "{text}");
+    let sample = fs::read(folder.path().join(format!("roughcast-sample-{VERSION}.glb"))).expect("a sample");
+    let length = u32::from_le_bytes(sample[12..16].try_into().expect("four bytes")) as usize;
+    let document: Value = serde_json::from_slice(&sample[20..20 + length]).expect("JSON");
+    let extension = &document["materials"][0]["extensions"]["ROUGHCAST_materials_roughness_pyramid"];
+    assert!(extension["baseLobe"].is_object(), "{document}");
 }
 
 /// The digests of a bake are compared between platforms, so that they must not depend on the order of a folder.
