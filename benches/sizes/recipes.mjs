@@ -1,6 +1,6 @@
 // The recipes that docs/sizes.md compares: each makes the textures of an asset and returns its document.
 import { readFileSync, writeFileSync } from 'node:fs';
-import { join } from 'node:path';
+import { dirname, join } from 'node:path';
 import process from 'node:process';
 import { fileURLToPath } from 'node:url';
 
@@ -45,6 +45,14 @@ const gltfpack = (...options) =>
 
 const gltfTransform = (command, ...options) =>
   converted((input, output) => run(process.execPath, GLTF_TRANSFORM, command, input, output, ...options));
+
+/** Encodes the colours as ETC1S, which a bake leaves as they are, and bakes everything else. */
+const colourEtc1sAndRoughcast = (...options) =>
+  converted((input, output, tool) => {
+    const colours = join(dirname(output), 'colours.glb');
+    run(process.execPath, GLTF_TRANSFORM, 'etc1s', input, colours, '--slots', '{baseColor,emissive}*');
+    run(tool, 'bake', colours, '-o', output, '--quiet', ...options);
+  });
 
 /** Encodes every image with `encode`, in the format that `format` returns for colours or data. */
 const encoded = (encode, format) => async (input) => {
@@ -146,6 +154,10 @@ export const RECIPES = [
   ...encoders('basisu', basisu, 'basisu', [UASTC, UASTC_RDO, ETC1S, MIXED]),
   ...rows('gltf-transform', gltfTransform, 'ktx', ['uastc', 'etc1s']),
   ...rows('gltf-transform', gltfTransform, undefined, ['optimize --texture-compress webp']),
+  ...rows('colours by gltf-transform `etc1s`, then roughcast', colourEtc1sAndRoughcast, 'ktx', [
+    '--textures all',
+    '--textures all --rdo 2',
+  ]),
   ...encoders('basisu as WebAssembly', webAssembly, undefined, [UASTC, ETC1S]),
   ...slow(encoders('basisu as WebAssembly', webAssembly, undefined, [UASTC_RDO, MIXED])),
   ...slow(rows('gltf-transform', gltfTransform, 'ktx', ['optimize --texture-compress ktx2'])),
