@@ -60,8 +60,10 @@ const MODULES = ['roughcast.wasm', 'roughcast.threads.wasm'];
 const VIEWER = [
   'bytes.js',
   'compose.js',
+  'density.js',
   'direction.js',
   'measure.js',
+  'start.js',
   'subject.js',
   'supersample.js',
   'surroundings.js',

@@ -1,4 +1,5 @@
 // What a bake did, as text.
+import { footprint } from './viewer/density.js';
 
 /** Returns a size for a person. */
 export function size(bytes) {
@@ -16,11 +17,9 @@ export function headline(before, { bytes, report, seconds }) {
   return `${size(before)} before, ${size(bytes.byteLength)} baked, with ${textures}, in ${seconds.toFixed(1)} s.`;
 }
 
-/** Returns the sentence on the texels that a pixel covers, and on the samples of the truth. */
-export function footprint(texels, samples) {
-  const side = texels.toFixed(texels < 10 ? 1 : 0);
-  const covered = texels > 0 ? `A pixel covers about ${side} x ${side} texels. ` : '';
-  return covered + (samples > 0 ? `The truth has ${samples} samples per pixel.` : '');
+/** Returns the sentences on the texels that a pixel covers, and on the samples of the truth. */
+export function measured(texels, samples) {
+  return `${footprint(texels)} ${samples > 0 ? `The truth has ${samples} samples per pixel.` : ''}`;
 }
 
 /** Returns a row for each texture that was written: name, content, size in texels, and bytes. */

@@ -1,6 +1,6 @@
 // The page: takes a .glb, bakes it, shows both, and offers the result.
 import { Baker } from './baker.js';
-import { footprint, headline, layerRows, notes, size, textureRows } from './facts.js';
+import { headline, layerRows, measured, notes, size, textureRows } from './facts.js';
 import { control } from './input.js';
 import { label } from './labels.js';
 import { nameOf, settingsOf } from './settings.js';
@@ -20,7 +20,7 @@ const view = { azimuth: 20, elevation: 35, split: 0.5 };
 for (const name of VIEW) view[name] = form.elements[name].value;
 const stage = new Stage(element('canvas'), view, ({ places, samples, errors, texels }) => {
   label(element('labels'), places, errors, element('frame').clientHeight);
-  element('measured').textContent = footprint(texels, samples);
+  element('measured').textContent = measured(texels, samples);
 });
 
 /** The file that is shown: its name without extension, and its bytes. */
@@ -114,8 +114,8 @@ async function takeFile(chosen) {
     return fail(new Error(`${chosen.name}: expected a .glb, found something else; ${remedy}`));
   }
   form.elements.sample.value = '';
-  // A person wants to see the own model first, as large as the picture.
-  change({ kind: 'asset', distance: 'near' });
+  // A person wants to see the own model first, where a bake shows.
+  change({ kind: 'asset', distance: 'middle' });
   return take(chosen.name, bytes);
 }
 

@@ -1,12 +1,13 @@
 // One scene, drawn from one camera: before, baked, and the supersampled truth.
 import * as THREE from 'three';
-import { texelsPerUnit } from './density.js';
 import { lamps } from './lights.js';
 import { newLoader } from './loader.js';
 import { Screen, places } from './screen.js';
 import { texturesOf } from './viewer/bytes.js';
+import { texelsPerUnit } from './viewer/density.js';
 import { direction } from './viewer/direction.js';
 import { Meter } from './viewer/measure.js';
+import { HALF, TEXELS, first, pixelWidth } from './viewer/start.js';
 import { subject } from './viewer/subject.js';
 import { Accumulator, unfiltered } from './viewer/supersample.js';
 import { surroundings } from './viewer/surroundings.js';
@@ -21,17 +22,13 @@ const MEASURED_AT = [32, ENOUGH];
 const PAUSE = 150;
 /**
  * What the distances mean. Maps repeat so often on a plane or a sphere that a pixel covers so many `texels`. The camera
- * is so many units away from a `model`, which is about 2 units large.
+ * is so many `times` as far away from a model as in the first view of the viewer.
  */
 const DISTANCES = {
-  near: { texels: 0.5, model: 5 },
-  middle: { texels: 6, model: 10 },
-  far: { texels: 24, model: 20 },
+  near: { texels: 0.5, times: 0.5 },
+  middle: { texels: TEXELS, times: 1 },
+  far: { texels: 24, times: 2 },
 };
-/** Distance of the camera from the other subjects, in units: they fill the picture. */
-const CAMERA = { plane: 4, sphere: 4.5 };
-/** Tangent of half of the field of view along the shorter side: 30 degrees in all. */
-const HALF = Math.tan(THREE.MathUtils.degToRad(15));
 
 /** Members of the view that need no new pictures, and those that change what is in the scene. */
 const ONLY_SHOWN = ['split', 'left', 'right'];
@@ -57,7 +54,6 @@ export class Stage {
    */
   constructor(canvas, view, onFrame) {
     Object.assign(this, { view, onFrame });
-    this.view.radius = this.#radius;
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: false });
     this.screen = new Screen(this.renderer);
     this.renderer.setClearColor(0x000000, 0);
@@ -74,6 +70,7 @@ export class Stage {
     const names = name === 'before' ? [...this.#assets.keys()] : [name];
     for (const old of names) this.#remove(old);
     this.#assets.set(name, scene);
+    if (name === 'before') this.view.radius = null;
     this.#arrange();
   }
 
@@ -90,13 +87,13 @@ export class Stage {
   set(change) {
     Object.assign(this.view, change);
     const names = Object.keys(change);
-    if (names.includes('kind') || names.includes('distance')) this.view.radius = this.#radius;
+    if (names.includes('kind') || names.includes('distance')) this.view.radius = null;
     if (names.some((name) => ARRANGED.includes(name))) this.#arrange();
     else if (names.length === 0 || !names.every((name) => ONLY_SHOWN.includes(name))) this.#expire();
     else this.#request();
   }
 
-  /** Puts the subjects and lamps of the view into the scene. */
+  /** Puts the subjects and lamps of the view into the scene. A camera without a radius gets its first one. */
   #arrange() {
     const { kind, distance, light } = this.view;
     this.#lamps.removeFromParent();
@@ -106,8 +103,9 @@ export class Stage {
     this.#subjects.clear();
     const before = this.#assets.get('before');
     if (before) {
-      const once = texelsPerUnit(subject(before, kind, 1));
-      const repeats = once > 0 ? DISTANCES[distance].texels / (once * this.#pixel(this.#radius)) : undefined;
+      const { texels, times } = DISTANCES[distance];
+      const { distance: start, repeats } = first(before, kind, this.#pixels, texels);
+      this.view.radius ??= kind === 'asset' ? times * start : start;
       this.#subjects = new Map([...this.#assets].map(([name, scene]) => [name, subject(scene, kind, repeats)]));
       this.#density = texelsPerUnit(this.#subjects.get('before'));
       this.#subjects.set('supersampled', unfiltered(this.#subjects.get('before')));
@@ -116,15 +114,10 @@ export class Stage {
     this.#expire();
   }
 
-  /** The distance of the camera from the subject's centre before a person zooms, in units. */
-  get #radius() {
-    return CAMERA[this.view.kind] ?? DISTANCES[this.view.distance].model;
-  }
-
-  /** Returns the width of a pixel at a distance from the camera, in units. */
-  #pixel(radius) {
+  /** Pixels along the shorter side of a picture. */
+  get #pixels() {
     const [, , width, height] = this.#places()[0].box;
-    return (2 * HALF * radius) / (Math.min(width, height) * this.#ratio);
+    return Math.min(width, height) * this.#ratio;
   }
 
   get #ratio() {
@@ -171,7 +164,7 @@ export class Stage {
       places: shown,
       samples: isNeeded ? truth.count : 0,
       errors: this.#errors,
-      texels: this.#density * this.#pixel(this.view.radius),
+      texels: this.#density * pixelWidth(this.view.radius, this.#pixels),
     });
     if (isRunning) this.#request();
   }

@@ -210,6 +210,11 @@ test('takes a file, a dropped file, and says why another is refused', options, a
   await finished(page);
   await openFile(page, 'lake.glb', readFileSync(path.join(fixtures, 'waves/waves.glb')));
   await page.locator('#download[download="lake-baked.glb"]').waitFor();
+  // The model is first seen where a bake shows, as in the viewer.
+  assert.ok(await page.locator('[name=distance][value=middle]').isChecked());
+  await measured(page);
+  const [plain, baked] = await labels(page);
+  assert.ok(baked.error < plain.error, `${plain.error} ${baked.error}`);
   await page.evaluate(async () => {
     const bytes = await (await fetch('samples/knobs.glb')).arrayBuffer();
     const data = new DataTransfer();

@@ -2,8 +2,10 @@
 
 /** The farthest distance is so many times the nearest. */
 const RANGE = 60;
+/** Distance of the slider's left end, in units. */
+const NEAREST = 2.2;
 /** Maps 0 to 100 of the slider to units. */
-const distanceOf = (value) => 2.2 * RANGE ** (value / 100);
+const distanceOf = (value) => NEAREST * RANGE ** (value / 100);
 
 const SHOWN = {
   distance: (v) => distanceOf(v).toFixed(1),
@@ -30,8 +32,20 @@ export class Controls {
     return element.type === 'range' ? Number(element.value) : element.value;
   }
 
+  /** The distance of the camera in units. */
   get distance() {
     return distanceOf(this.value('distance'));
+  }
+
+  set distance(units) {
+    this.form.elements.distance.value = (100 * Math.log(units / NEAREST)) / Math.log(RANGE);
+    this.#label('distance');
+  }
+
+  /** Whether a control has another value than that of the document: browsers keep values when a page reloads. */
+  isChanged(name) {
+    const { value, defaultValue } = this.form.elements[name];
+    return value !== defaultValue;
   }
 
   /** Multiplies the distance. */

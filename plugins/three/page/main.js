@@ -2,6 +2,7 @@
 import * as THREE from 'three';
 import { Controls } from './controls.js';
 import { VIEWS, switches } from './debug.js';
+import { footprint } from './density.js';
 import { Divider } from './divider.js';
 import { documents, listen as listenToDrops } from './drop.js';
 import { Figures } from './figures.js';
@@ -23,6 +24,10 @@ const PAUSE = 150;
 const ANISOTROPY = 16;
 /** Degrees of the camera per pixel of a drag, and pixels of the magnifier per key. */
 const [PER_PIXEL, PER_KEY] = [0.4, 8];
+
+/** Follows the texels that a pixel covers if these are less than one. */
+const TOO_NEAR =
+  'Few bumps are lost so near: a bake shows from farther away, or on the subject “Sphere”, which repeats the maps.';
 
 const element = (id) => document.getElementById(id);
 const [canvas, frame, status, play, loupe] = ['canvas', 'frame', 'status', 'play', 'loupe'].map(element);
@@ -68,7 +73,7 @@ const controls = new Controls({
     'Shift+ArrowDown': () => look(0, PER_KEY),
   },
   changed: (name) => {
-    if (name === 'subject') stage.show(controls.value('subject'));
+    if (name === 'subject' && assets.size > 0) present();
     if (ONLY_SHOWN.includes(name)) request();
     else expire();
   },
@@ -109,20 +114,26 @@ listenToPointers(canvas, {
 play.addEventListener('click', () => turn(!turntable.isTurning));
 loupe.addEventListener('click', () => magnify(!magnifier.isOn));
 
-function draw(now) {
-  turntable.advance(now);
-  const size = screen.fit();
+/** Returns what is to be shown, where, and the size of each picture in CSS pixels, of `ratio` screen pixels each. */
+function arrangement() {
+  const { ratio } = screen.fit();
   const what = { ...values('layout', 'left', 'right', 'view'), names: stage.variants };
   const places = screen.places(what);
   const [, , width, height] = places[0].box;
-  const wanted = [width, height, size.ratio].join();
+  return { what, places, width, height, ratio, shorter: Math.min(width, height) * ratio };
+}
+
+function draw(now) {
+  turntable.advance(now);
+  const { what, places, width, height, ratio, shorter } = arrangement();
+  const wanted = [width, height, ratio].join();
   if (wanted !== shape) {
     shape = wanted;
     stage.resize(width, height);
-    pictures.resize(Math.round(width * size.ratio), Math.round(height * size.ratio));
+    pictures.resize(Math.round(width * ratio), Math.round(height * ratio));
     isStale = true;
   }
-  if (isStale || turntable.isTurning) place();
+  if (isStale || turntable.isTurning) place(shorter);
   divider.element.hidden = what.layout !== 'slider';
   for (const pair of document.querySelectorAll('.pair')) pair.hidden = divider.element.hidden;
 
@@ -151,8 +162,8 @@ const values = (...names) => Object.fromEntries(names.map((name) => [name, contr
 const state = (isMoving) =>
   isMoving ? `${pictures.samples} samples each frame` : `${pictures.samples} of ${ENOUGH} samples`;
 
-/** Sets the scene up, and drops the pictures. */
-function place() {
+/** Sets the scene up for pictures of `shorter` pixels along their shorter side, and drops the pictures. */
+function place(shorter) {
   isStale = false;
   measuredAt = 0;
   stage.look({ distance: controls.distance, ...values('azimuth', 'elevation') });
@@ -172,6 +183,8 @@ function place() {
   switches.level.value = level;
   pictures.expire();
   figures.expire();
+  const texels = stage.texelsOfPixel(controls.distance, shorter);
+  element('footprint').textContent = `${footprint(texels)} ${0 < texels && texels < 1 ? TOO_NEAR : ''}`;
 }
 
 /** Measures errors whenever the truth is good enough to be worth it. The other views are no radiance. */
@@ -192,11 +205,18 @@ function request() {
   });
 }
 
+/** Shows the subject from its first distance, unless the camera `isPlaced`. */
+function present(isPlaced = false) {
+  const distance = stage.showFirst(controls.value('subject'), arrangement().shorter);
+  if (!isPlaced) controls.distance = distance;
+}
+
 /** Shows sources by the name of the variant. An original replaces all that was shown before. */
-async function open(sources) {
+async function open(sources, isPlaced = false) {
   const loaded = await Promise.all(
     Object.entries(sources).map(async ([name, source]) => [name, await stage.loader.load(source)]),
   );
+  const isNew = 'original' in sources || assets.size === 0;
   if ('original' in sources) {
     for (const name of assets.keys()) stage.remove(name);
     assets.clear();
@@ -205,11 +225,11 @@ async function open(sources) {
     stage.add(name, scene);
     assets.set(name, bytes);
   }
-  stage.show(controls.value('subject'));
   const { variants } = stage;
   const entries = variants.map((name) => [name, TITLES[name]]);
   controls.options('left', entries, variants[0]);
   controls.options('right', entries, ['portable', 'pyramid', 'supersampled'].find((name) => variants.includes(name)));
+  present(isPlaced || !isNew);
   figures.show(new Map(VARIANTS.filter((name) => assets.has(name)).map((name) => [name, assets.get(name)])));
   element('empty').hidden = true;
   expire();
@@ -237,15 +257,16 @@ listenToDrops(document.documentElement, element('files'), (files) =>
 );
 
 await attempt(async () => {
+  // Browsers keep the values of controls when a page reloads.
+  const isPlaced = controls.isChanged('distance');
   const { variants, subject } = await (await fetch('/view/variants.json')).json();
-  element('controls').elements.subject.value = subject;
+  if (!isPlaced) element('controls').elements.subject.value = subject;
   // The first thing that moves is the subject, unless a person asked for less motion or has moved something.
   mayStart = !matchMedia('(prefers-reduced-motion: reduce)').matches;
   for (const event of ['pointerdown', 'keydown']) addEventListener(event, () => (mayStart = false), { once: true });
   if (Object.keys(variants).length === 0) status.textContent = '';
-  else await open(Object.fromEntries(Object.entries(variants).map(([name, url]) => [name, { url }])));
+  else await open(Object.fromEntries(Object.entries(variants).map(([name, url]) => [name, { url }])), isPlaced);
 });
 new ResizeObserver(request).observe(frame);
 document.documentElement.dataset.ready = 'true';
-// Browsers keep the values of controls when a page reloads.
 new EventSource('/events').onmessage = () => location.reload();

@@ -2,16 +2,23 @@
 import * as THREE from 'three';
 import { texturesOf } from './bytes.js';
 import { debuggable } from './debug.js';
+import { texelsPerUnit } from './density.js';
 import { direction } from './direction.js';
 import { Loader } from './loader.js';
+import { HALF, first, pixelWidth } from './start.js';
 import { surroundings } from './surroundings.js';
 import { bumpy, subject } from './subject.js';
 import { Accumulator, unfiltered } from './supersample.js';
 import { VARIANTS } from './variants.js';
 
+/** Returns what belongs to the original or, without an original, to the first variant. */
+const ofOriginal = (variants) => variants.get('original') ?? variants.values().next().value;
+
 export class Stage {
   #assets = new Map();
   #subjects = new Map();
+  /** Texels along a unit of the subject, once they are known. */
+  #density = null;
   #scene = new THREE.Scene();
   #light = new THREE.DirectionalLight(0xffffff, 3);
   /** Carries the subjects. */
@@ -67,6 +74,7 @@ export class Stage {
   /** Shows the asset, or a plane or a sphere with its material, and with `repeats` of the maps if given. */
   show(kind, repeats) {
     for (const object of this.#subjects.values()) object.removeFromParent();
+    this.#density = null;
     this.#subjects = new Map([...this.#assets].map(([name, scene]) => [name, subject(scene, kind, repeats)]));
     const original = this.#subjects.get('original');
     if (original) this.#subjects.set('supersampled', unfiltered(original));
@@ -75,6 +83,20 @@ export class Stage {
       object.visible = false;
       this.#table.add(object);
     }
+  }
+
+  /** Shows a subject as it is seen first, in a picture of `pixels` along its shorter side. Returns the distance. */
+  showFirst(kind, pixels) {
+    const { distance, repeats } = first(ofOriginal(this.#assets), kind, pixels);
+    // The turntable shows the whole sphere, where the first repeat and the last one meet.
+    this.show(kind, repeats && Math.max(Math.round(repeats), 1));
+    return distance;
+  }
+
+  /** Returns how many texels a pixel covers along each side in the middle of the subject. */
+  texelsOfPixel(distance, pixels) {
+    this.#density ??= texelsPerUnit(ofOriginal(this.#subjects));
+    return this.#density * pixelWidth(distance, pixels);
   }
 
   /** Places the camera. `distance` is in units of a subject about 2 units large, and angles are in degrees. */
@@ -100,8 +122,7 @@ export class Stage {
 
   /** Sets a field of view of 30 degrees along the shorter side. */
   resize(width, height) {
-    const half = Math.tan(THREE.MathUtils.degToRad(15)) * Math.max(1, height / width);
-    this.camera.fov = THREE.MathUtils.radToDeg(2 * Math.atan(half));
+    this.camera.fov = THREE.MathUtils.radToDeg(2 * Math.atan(HALF * Math.max(1, height / width)));
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
   }

@@ -37,16 +37,17 @@ export function bumpy(scene) {
  * @param {THREE.Object3D} scene What a loader returned.
  * @param {'asset' | 'plane' | 'sphere'} kind
  * @param {number} [repeats] Repeats of the maps on a plane or around a sphere.
- * @returns {THREE.Object3D} centred, about 2 units large
+ * @returns {THREE.Object3D} centred, about 2 units large, with its size along each axis in `userData.size`
  */
 export function subject(scene, kind, repeats = REPEATS[kind]) {
   const object = kind === 'asset' ? scene.clone() : sample(kind, bumpy(scene), repeats);
   const box = new THREE.Box3().setFromObject(object);
-  const size = box.getSize(new THREE.Vector3()).length() || 1;
+  const size = box.getSize(new THREE.Vector3());
   const group = new THREE.Group().add(object);
-  const scale = kind === 'asset' ? 2.4 / size : 1;
+  const scale = kind === 'asset' ? 2.4 / (size.length() || 1) : 1;
   group.scale.setScalar(scale);
   group.position.copy(box.getCenter(new THREE.Vector3())).multiplyScalar(-scale);
+  group.userData.size = size.multiplyScalar(scale);
   return group;
 }
 

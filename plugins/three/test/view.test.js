@@ -5,7 +5,7 @@ import path from 'node:path';
 import test from 'node:test';
 import { launch } from '../browser.js';
 import { repository, roughcast, temporary } from './roughcast.js';
-import { SHOTS, brightness, control, options, ready, view } from './viewer.js';
+import { SHOTS, brightness, control, errors, options, ready, view } from './viewer.js';
 
 /** Returns the place of the divider, in percent. */
 const place = async (page) => Number(await page.locator('#divider').getAttribute('aria-valuenow'));
@@ -49,6 +49,28 @@ test('shows and compares pictures and follows the keyboard', options, async (t) 
   await page.waitForTimeout(500);
   assert.notEqual(await brightness(page), auto, 'a level of its own');
   for (const environment of ['sky', 'none']) await control(page, 'environment').selectOption(environment);
+  assert.deepEqual(page.problems, []);
+});
+
+test('shows a bake at first, and says where an asset has too few texels for that', options, async (t) => {
+  const { url } = await view(t);
+  const browser = await launch();
+  t.after(() => browser.close());
+  const page = await ready(browser, url, { viewport: { width: 760, height: 200 } });
+  const footprint = page.locator('#footprint');
+  assert.match(await footprint.textContent(), /about (5\.[5-9]|6\.[0-5]) x/);
+  const found = await errors(page);
+  assert.ok(found['Plain mips'] > 1.2 * found['Portable bake'], JSON.stringify(found));
+
+  await control(page, 'subject').selectOption('asset');
+  await page.getByText(/about 1\.[45] x/).waitFor();
+  const shown = () => control(page, 'distance').locator('xpath=../output').textContent();
+  assert.equal(await shown(), '7.8');
+  await control(page, 'distance').fill('0');
+  await page.getByText('Few bumps are lost so near').waitFor();
+  // Another layout leaves the camera where it is.
+  await control(page, 'layout').selectOption('all');
+  assert.equal(await shown(), '2.2');
   assert.deepEqual(page.problems, []);
 });
 

@@ -14,11 +14,13 @@ use crate::text::xml_escaped;
 /// Width of a chart in pixels.
 pub const WIDTH: f64 = 760.0;
 /// Height of a chart in pixels.
-pub const HEIGHT: f64 = 430.0;
+pub const HEIGHT: f64 = 446.0;
 const LEFT: f64 = 56.0;
 const RIGHT: f64 = 150.0;
-const TOP: f64 = 34.0;
+const TOP: f64 = 50.0;
 const BOTTOM: f64 = 48.0;
+/// Left end of the titles of a chart and of its vertical axis, which stand above the numbers of that axis.
+const TITLES: f64 = 8.0;
 /// Space for labels to the left of the first point.
 const BEFORE: f64 = 150.0;
 
@@ -67,6 +69,14 @@ impl Measure {
             Self::Picture => "picture error",
         }
     }
+
+    /// Returns the title of the vertical axis.
+    fn axis_title(self) -> &'static str {
+        match self {
+            Self::Lobe => "Mean lobe error: share of misplaced half-vectors (lower is better)",
+            Self::Picture => "Picture error: relative L1 of radiance (lower is better)",
+        }
+    }
 }
 
 /// Draws all charts, one above the other, as an SVG file.
@@ -96,7 +106,7 @@ pub fn cost(comparison: &Comparison, axis: Axis, measure: Measure, y: f64) -> St
     let at = |v: f64| start + (v / least).ln() / span * (WIDTH - RIGHT - start);
     let scale = Scale::new(&comparison.entries, error);
     let against = axis.title().to_lowercase().replace("gpu", "GPU");
-    let mut svg = open(comparison, &format!("{} against {against}", measure.title()), y);
+    let mut svg = open(comparison, &format!("{} against {against}", measure.title()), measure.axis_title(), y);
     let oracles: Vec<&Entry> =
         comparison.entries.iter().filter(|e| e.kind == Kind::Oracle && measure == Measure::Lobe).collect();
     scale.draw(&mut svg, &oracles, has_blanks.then_some("not measured"));
@@ -111,9 +121,7 @@ pub fn cost(comparison: &Comparison, axis: Axis, measure: Measure, y: f64) -> St
             amount(axis, tick)
         );
     }
-    let middle = 0.5 * (LEFT + WIDTH - RIGHT);
-    let title = axis.title();
-    let _ = write!(svg, "<text x=\"{middle}\" y=\"{}\" text-anchor=\"middle\">{title}</text>", HEIGHT - 12.0);
+    axis_below(&mut svg, &format!("{}, on a logarithmic scale", axis.title()));
     let mut placed: Vec<(f64, f64, &Entry)> =
         points.iter().map(|e| (value(e).map_or(LEFT + 10.0, at), scale.y(error(e)), *e)).collect();
     placed.sort_by(|a, b| a.1.total_cmp(&b.1));
@@ -154,7 +162,8 @@ pub fn levels(comparison: &Comparison, y: f64) -> String {
     let end = WIDTH - RIGHT - 20.0;
     let at = |level: usize| LEFT + 10.0 + level as f64 * (end - LEFT - 10.0) / count.saturating_sub(1).max(1) as f64;
     let scale = Scale::new(entries, |e| e.level_errors.iter().copied().fold(0.0, f64::max));
-    let mut svg = open(comparison, "lobe error by mip level", y);
+    let vertical = "Lobe error: share of misplaced half-vectors (lower is better)";
+    let mut svg = open(comparison, "lobe error by mip level", vertical, y);
     scale.draw(&mut svg, &[], None);
     for level in 0..count {
         let _ = write!(
@@ -164,8 +173,7 @@ pub fn levels(comparison: &Comparison, y: f64) -> String {
             HEIGHT - BOTTOM + 15.0
         );
     }
-    let middle = 0.5 * (LEFT + end);
-    let _ = write!(svg, "<text x=\"{middle:.1}\" y=\"{}\" text-anchor=\"middle\">Level</text>", HEIGHT - 12.0);
+    axis_below(&mut svg, "Mip level (0 is the finest)");
     let last = |entry: &Entry| entry.level_errors.last().map_or(HEIGHT - BOTTOM, |e| scale.y(*e));
     let mut ends: Vec<&Entry> = entries.iter().collect();
     ends.sort_by(|a, b| last(a).total_cmp(&last(b)));
@@ -204,13 +212,20 @@ fn begin(svg: &mut String, entry: &Entry, detail: &str) {
     );
 }
 
-fn open(comparison: &Comparison, title: &str, y: f64) -> String {
+/// Writes the title of the horizontal axis, at the left, since the detail of an entry appears at the right.
+fn axis_below(svg: &mut String, title: &str) {
+    let _ = write!(svg, "<text x=\"{LEFT}\" y=\"{}\">{title}</text>", HEIGHT - 12.0);
+}
+
+/// Begins a chart with its title and the title of its vertical axis.
+fn open(comparison: &Comparison, title: &str, vertical: &str, y: f64) -> String {
     let name = xml_escaped(&comparison.material.chars().take(60).collect::<String>());
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" y=\"{y}\" width=\"{WIDTH}\" height=\"{HEIGHT}\" \
          viewBox=\"0 0 {WIDTH} {HEIGHT}\" class=\"chart\" role=\"group\"><title>{name}: {title}</title>\
          <rect class=\"paper\" width=\"{WIDTH}\" height=\"{HEIGHT}\"/>\
-         <text class=\"title\" x=\"{LEFT}\" y=\"20\">{name}: {title}</text>"
+         <text class=\"title\" x=\"{TITLES}\" y=\"18\">{name}: {title}</text>\
+         <text x=\"{TITLES}\" y=\"36\">{vertical}</text>"
     )
 }
 

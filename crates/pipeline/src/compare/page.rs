@@ -34,8 +34,8 @@ pub fn page(comparisons: &[Comparison], version: &str) -> String {
         let _ = write!(html, "<li><b>{}</b>: {}</li>", xml_escaped(material), xml_escaped(verdict));
     }
     html += "</ul><p>Of both errors, lower is better. Lobe error: the share of reflected half-vectors in the wrong \
-        place, 0 to 1. Circles are bakes of Roughcast, decoded as engines decode them. Squares are other tools' formulas on exact moments, with our \
-        encoded normals. \
+        place, 0 to 1. Circles are bakes of Roughcast, decoded as engines decode them. Squares are other tools' \
+        formulas on exact moments, with our encoded normals. \
         The dashed line is the best single lobe. Picture error: the relative L1 of the radiance of a sphere at two \
         distances against a supersampled picture, 0 being equal; it has no best lobe, since none is searched for each \
         pixel. The ring marks the choice of <code>--model auto</code>. Bake times \

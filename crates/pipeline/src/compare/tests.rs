@@ -60,6 +60,17 @@ fn labels_every_entry_and_escapes_hostile_names() {
 }
 
 #[test]
+fn every_chart_names_both_axes() {
+    let svg = chart(&comparison("m"));
+    for vertical in ["Mean lobe error: share", "Picture error: relative L1", ">Lobe error: share"] {
+        assert_eq!(svg.matches(vertical).count(), 1, "{vertical}");
+    }
+    assert_eq!(svg.matches("(lower is better)").count(), 3);
+    assert_eq!(svg.matches(">Size on the GPU, on a logarithmic scale<").count(), 2);
+    assert_eq!(svg.matches(">Mip level (0 is the finest)<").count(), 1);
+}
+
+#[test]
 fn labels_of_lines_keep_their_distance_and_stay_near() {
     assert_eq!(stack(&[50.0, 100.0], [0.0, 400.0]), [50.0, 100.0]);
     // Three labels that want one place lie around it, and labels at a border lie inside.

@@ -1,4 +1,4 @@
-// How many texels of a normal map lie on a surface.
+// How many texels of a normal map lie on a surface, and in a pixel.
 import { Triangle, Vector2 } from 'three';
 
 /** Returns the name that three.js gives to a set of texture coordinates. */
@@ -36,4 +36,10 @@ export function texelsPerUnit(object) {
     [units, texels] = [units + inSpace, texels + inMap];
   });
   return units > 0 ? Math.sqrt(texels / units) : 0;
+}
+
+/** Returns the sentence on the texels that a pixel covers along each side, or nothing if that is not known. */
+export function footprint(texels) {
+  const side = texels.toFixed(texels < 10 ? 1 : 0);
+  return texels > 0 ? `A pixel covers about ${side} x ${side} texels.` : '';
 }
