@@ -13,28 +13,37 @@ const RESOLUTION: Duration = Duration::from_secs(2);
 pub struct Look {
     bytes: u64,
     modified: Option<SystemTime>,
-    /// Inode and time of the last change of the inode, where the system has them. They differ for a file that was
-    /// replaced by one of equal size and time.
-    identity: (u64, i64, i64),
+    inode: Inode,
+}
+
+/// Number of the inode and time of its last change, where the system has them. They differ for a file that was replaced
+/// by one of equal size and time. A rename changes the inode, too, and unlike the file's own time no program can set
+/// the time of that change.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Inode {
+    number: u64,
+    changed: Option<SystemTime>,
 }
 
 impl Look {
     /// Looks at the file at `path`; returns `None` where there is none.
     pub fn at(path: &Path) -> Option<Self> {
         let facts = fs::metadata(path).ok()?;
-        Some(Self { bytes: facts.len(), modified: facts.modified().ok(), identity: identity(&facts) })
+        Some(Self { bytes: facts.len(), modified: facts.modified().ok(), inode: inode(&facts) })
     }
 }
 
 #[cfg(unix)]
-fn identity(facts: &fs::Metadata) -> (u64, i64, i64) {
+fn inode(facts: &fs::Metadata) -> Inode {
     use std::os::unix::fs::MetadataExt;
-    (facts.ino(), facts.ctime(), facts.ctime_nsec())
+    let seconds = u64::try_from(facts.ctime()).unwrap_or_default();
+    let since_1970 = Duration::from_secs(seconds) + Duration::from_nanos(facts.ctime_nsec().unsigned_abs());
+    Inode { number: facts.ino(), changed: SystemTime::UNIX_EPOCH.checked_add(since_1970) }
 }
 
 #[cfg(not(unix))]
-fn identity(_: &fs::Metadata) -> (u64, i64, i64) {
-    (0, 0, 0)
+fn inode(_: &fs::Metadata) -> Inode {
+    Inode::default()
 }
 
 /// A file as it looked when it was read.
@@ -49,10 +58,9 @@ impl Seen {
     /// Returns what is known of a file that had `look` after it was read. Reading began at `since`, and `was_found`
     /// says whether it found a file.
     pub fn new(look: Option<Look>, was_found: bool, since: SystemTime) -> Self {
-        let is_old = |look: Look| {
-            let age = look.modified.and_then(|modified| since.duration_since(modified).ok());
-            age.is_some_and(|age| age > RESOLUTION)
-        };
+        let is_before = |time: SystemTime| since.duration_since(time).is_ok_and(|age| age > RESOLUTION);
+        // A file with an old time may have been moved into the place of the file that was read.
+        let is_old = |look: Look| look.modified.is_some_and(is_before) && look.inode.changed.is_none_or(is_before);
         Self { look, is_certain: look.is_some() == was_found && look.is_none_or(is_old) }
     }
 
