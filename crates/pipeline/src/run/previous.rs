@@ -32,11 +32,14 @@ impl Previous {
     /// # Errors
     /// [`RunError::OtherSource`] where the document was baked from another source. Without this check, bakes of the two
     /// sources would overwrite each other in turn. A document that the user names may be replaced.
+    /// [`RunError::Changed`] where the source, which was read before, cannot be read any more.
     pub fn check(&self, job: &Job) -> Result<(), RunError> {
         let Some(found) = self.provenance.source.as_ref().filter(|_| job.name.is_none()) else { return Ok(()) };
         let mut magic = Vec::new();
         let opened = check_file(&job.source).and_then(|_| File::open(&job.source));
-        opened.and_then(|file| file.take(4).read_to_end(&mut magic)).map_err(RunError::Read)?;
+        opened
+            .and_then(|file| file.take(4).read_to_end(&mut magic))
+            .map_err(|_| RunError::Changed { path: job.source.clone() })?;
         let container = if magic == GLB_MAGIC { Container::Glb } else { Container::Gltf };
         let source_name = DocumentProvenance::source_name(&job.source_stem(), container);
         if *found == source_name {

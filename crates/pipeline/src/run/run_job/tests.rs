@@ -30,8 +30,8 @@ fn compares_digests_that_the_reader_computed() {
     }
 }
 
-#[test]
-fn reports_files_that_change_after_planning() {
+/// Returns a folder with a copy of the fixture `brushed`, and the job of its bake.
+fn brushed() -> (tempfile::TempDir, Job) {
     let folder = tempfile::tempdir().unwrap();
     for file in std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/brushed")).unwrap() {
         let file = file.unwrap();
@@ -39,6 +39,25 @@ fn reports_files_that_change_after_planning() {
     }
     let source = folder.path().join("brushed.gltf");
     let job = Job::new(&source, &folder.path().join("baked"), None, &crate::project::Values::default()).unwrap();
+    (folder, job)
+}
+
+/// A watched folder may go and return during a bake. An error that another try would not have must say so.
+#[test]
+fn a_source_that_is_gone_when_outputs_are_written_has_changed() {
+    let (_folder, job) = brushed();
+    let prepared = || prepare(&job, None, &MemoryBudget::new(1), &|_| ());
+    let finish = |prepared| finish(&job, prepared, &mut Guard::default(), &mut |_| ());
+    assert!(finish(prepared()).is_ok());
+    let again = prepared();
+    std::fs::remove_file(&job.source).unwrap();
+    let error = finish(again).err();
+    assert!(matches!(&error, Some(RunError::Changed { path }) if *path == job.source), "{error:?}");
+}
+
+#[test]
+fn reports_files_that_change_after_planning() {
+    let (_folder, job) = brushed();
     let bake = || {
         let prepared = prepare(&job, None, &MemoryBudget::new(1), &|_| ());
         finish(&job, prepared, &mut Guard::default(), &mut |_| ())
