@@ -9,8 +9,7 @@ use crate::digest::digest;
 use crate::image::DecodeOptions;
 use crate::input_file::read_file;
 use crate::ktx2::SourceDigest;
-use crate::material::lossy_source;
-use crate::note;
+use crate::material::notes;
 use crate::output::{Guard, PublishError};
 use crate::report::{Content, MapReport};
 use crate::settings::Settings;
@@ -101,13 +100,13 @@ pub fn bake_map_file(options: &MapOptions) -> Result<WrittenMap, MapFileError> {
     let bytes = read_source(image, &mut sources)?;
     let bump_map = read_bump_map(&bytes, &options.texels, &options.decode_options(image, options.layer.clone()))
         .map_err(|error| MapFileError::Image { path: image.clone(), error: error.into() })?;
-    let lossy_format = lossy_source(&bytes);
+    let note = notes::of_file(&bytes);
     drop(bytes);
     let base = options.base_roughness(&mut sources)?;
     let mut baked = encode_map(&bump_map, base.as_ref(), settings)?;
     // The decoded images take more memory than the baked levels and are not needed any more.
     drop((bump_map, base));
-    baked.notes.extend(lossy_format.map(note::lossy_source));
+    baked.notes.extend(note);
     let provenance = MapProvenance {
         texels: options.texels,
         layer: options.layer.as_deref(),

@@ -8,9 +8,8 @@ use roughcast_core::bump::NormalLayout;
 use roughcast_core::digest::digest;
 use roughcast_core::image::DecodeOptions;
 use roughcast_core::ktx2::SourceDigest;
-use roughcast_core::material::lossy_source;
+use roughcast_core::material::notes;
 use roughcast_core::mip::Wrap;
-use roughcast_core::note;
 use roughcast_core::report::MapReport;
 use roughcast_core::settings::Settings;
 use roughcast_core::settings::values::Values;
@@ -74,7 +73,7 @@ pub fn bake(request: &Request, files: &[File<'_>]) -> Result<Response, Refusal> 
         None => request.roughness_factor.map(|factor| BaseRoughness { image: None, factor }),
     };
     let mut baked = encode_map(&bump_map, base.as_ref(), &settings).map_err(|error| error.to_string())?;
-    baked.notes.extend(lossy_source(image.bytes).map(note::lossy_source));
+    baked.notes.extend(notes::of_file(image.bytes));
     let provenance = MapProvenance {
         texels: request.texels(),
         layer: request.layer.as_deref(),

@@ -13,8 +13,8 @@ use crate::digest::{Digest, digest};
 use crate::gltf::texture::{ImageLocation, TextureSource};
 use crate::image::{DecodeOptions, Image};
 use crate::ktx2::{Ktx2, PROVENANCE_KEY};
-use crate::material::{BumpMap, lossy_source};
-use crate::note::{self, Note};
+use crate::material::{BumpMap, notes};
+use crate::note::Note;
 
 /// A decoder of image bytes: [`decode`] for bumps, [`decode_colours`] for all other textures.
 type Decode = fn(&[u8], &DecodeOptions) -> Result<Image, DecodeError>;
@@ -49,8 +49,7 @@ impl<'a> Images<'a> {
         let image = self.decoded(&file, &group.source, &material, decode)?;
         let failed = |error| ImageError::Map { material, texture: describe(&group.source.location), error };
         let bump_map = bump_map_of(image, group.kind).map_err(failed)?;
-        let notes = lossy_source(&file).map(note::lossy_source).into_iter().collect();
-        Ok((bump_map, notes))
+        Ok((bump_map, notes::of_file(&file).into_iter().collect()))
     }
 
     /// Decodes the images of the base lobe of `layer`.

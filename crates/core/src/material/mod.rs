@@ -14,7 +14,7 @@ mod diffuse_light;
 mod filter_loss;
 mod fit_levels;
 mod lobes;
-mod lossy_source;
+mod lossy_format;
 mod magnified;
 mod magnified_bumps;
 mod metalness;
@@ -41,7 +41,6 @@ pub use bump_map::{BumpMap, FrameTransforms, Framed};
 pub use bumps::Bumps;
 pub use diffuse_light::{DiffuseLight, DiffuseSource};
 pub use filter_loss::filter_loss;
-pub use lossy_source::lossy_source;
 pub(crate) use mip_chain::EDGE;
 pub use mip_chain::{
     Encoding, GridError, LevelRow, LevelRows, LobeRow, MipChain, encode_mip_chain, first_within, grid, kept_bytes,

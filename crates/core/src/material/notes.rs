@@ -2,6 +2,7 @@
 
 use crate::bump::Outliers;
 use crate::material::bump_map::BumpMap;
+use crate::material::lossy_format::lossy_format;
 use crate::material::roughening::Roughening;
 use crate::math::symmetric::Symmetric2;
 use crate::mip::TexelRows;
@@ -16,6 +17,11 @@ const MIN_ROUNDING: f32 = 0.05;
 
 /// Smallest share of the variance lost by filtering that is reported: 5 % of alpha.
 const MIN_FILTER_LOSS: f32 = 0.1;
+
+/// Returns the note of the file of a bump map whose format changes the bumps.
+pub fn of_file(file: &[u8]) -> Option<Note> {
+    lossy_format(file).map(note::lossy_source)
+}
 
 /// Returns the notes of a bump map that is baked on a grid of `grid` (columns, rows).
 pub fn of_bump_map(bump_map: &BumpMap, grid: (u32, u32)) -> Vec<Note> {
