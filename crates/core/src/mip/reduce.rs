@@ -120,7 +120,9 @@ fn reduce<R: TexelRows>(finer: &R, sizes: &[(u32, u32)]) -> Vec<Level<R::Texel>>
 
 /// Returns room for the rows of `finer` under `rows` rows of the next coarser level, as [`reduce_rows`] needs it.
 pub(super) fn finer_rows_for<R: TexelRows>(finer: &R, rows: usize) -> Vec<R::Texel> {
-    vec![R::Texel::default(); finer.width() as usize * (2 * rows.min(ROWS_TOGETHER) + 1)]
+    // Each row has two rows above it. A map of odd height shares one more row between two rows, or has one row in all.
+    let count = 2 * rows.min(ROWS_TOGETHER) + finer.height() as usize % 2;
+    vec![R::Texel::default(); finer.width() as usize * count]
 }
 
 /// Computes row `first` of the level below `finer` and the rows below it, `out`. `rows` is scratch memory.

@@ -1,3 +1,5 @@
+use std::sync::atomic::AtomicUsize;
+
 use super::*;
 use crate::lobe::{OrientedLobe, SquaredAlpha};
 use crate::math::symmetric::Symmetric2;
@@ -47,4 +49,38 @@ fn the_first_kept_level_stands_for_level_1() {
         error(&level_0, &tail)
     });
     assert!(unkept < kept + 0.01 && unkept < merged + 0.01, "{unkept} {kept} {merged}");
+}
+
+/// Counts the rows that are read.
+struct Counted<'a> {
+    level_0: &'a Level<OrientedLobe>,
+    rows: AtomicUsize,
+}
+
+impl TexelRows for Counted<'_> {
+    type Texel = OrientedLobe;
+
+    fn width(&self) -> u32 {
+        self.level_0.width
+    }
+
+    fn height(&self) -> u32 {
+        self.level_0.height
+    }
+
+    fn row(&self, y: u32, out: &mut [OrientedLobe]) {
+        self.rows.fetch_add(1, Ordering::Relaxed);
+        self.level_0.row(y, out);
+    }
+}
+
+/// Level 1 is computed to mark uneven texels of level 2 and to fit level 3. Besides, level 2 is fitted to level 0.
+#[test]
+fn coarse_levels_do_not_compute_level_1_again() {
+    let level_0 = mirrors_beside_rough_texels();
+    let counted = Counted { level_0: &level_0, rows: AtomicUsize::default() };
+    let mut tail = MipTail::with_max_kept(&counted, 16 * 16);
+    counted.rows.store(0, Ordering::Relaxed);
+    fit_levels(&counted, &mut tail, Family::Ggx, Effort::Fast);
+    assert_eq!(counted.rows.into_inner(), 3 * SIDE as usize);
 }
