@@ -28,7 +28,7 @@ mod tests {
     #[test]
     fn reads_how_much_is_taken() {
         let taken = number_after("/proc/self/status", "VmSize:").expect("a number");
-        // More than the threads of other tests give back meanwhile: 64 MiB for each arena of their allocations.
+        // Threads of other tests that end meanwhile give back 64 MiB each, which this block must exceed.
         let block: Vec<u8> = Vec::with_capacity(2 << 30);
         let more = number_after("/proc/self/status", "VmSize:").expect("a number");
         assert!(more >= taken + (1 << 20), "{taken} KiB, then {more} KiB with {} bytes more", block.capacity());

@@ -13,7 +13,7 @@ export const HALF = Math.tan(ANGLE);
  * pixel, and at 6 texels engines sample levels 2 and 3. Planes and spheres fill the picture, and repeat their maps
  * until a pixel covers so many texels. The maps of an asset repeat as its document says, so the camera moves away until
  * then. It stays so near that the longest side of the asset takes at least a third of the picture, and so far that the
- * whole asset is in the picture. At a third, small maps may still show each of their bumps, and a bake shows nothing.
+ * whole asset is in the picture. Small maps may still show each of their bumps there. Then a bake has nothing to show.
  */
 export const TEXELS = 6;
 /** Distance of the camera from planes and spheres in units: they fill the picture. */

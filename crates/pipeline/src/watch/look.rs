@@ -17,8 +17,8 @@ pub struct Look {
 }
 
 /// Number of the inode and time of its last change, where the system has them. They differ for a file that was replaced
-/// by one of equal size and time. A rename changes the inode, too, and unlike the file's own time no program can set
-/// the time of that change.
+/// by one of equal size and time. Programs can set the time of a file, but not the time of this change, which a rename
+/// on most file systems renews, too.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Inode {
     number: u64,

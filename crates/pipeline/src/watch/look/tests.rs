@@ -1,5 +1,3 @@
-use tempfile::tempdir;
-
 use super::*;
 
 impl Look {
@@ -42,7 +40,7 @@ fn a_file_that_came_or_went_while_it_was_read_is_read_again() {
 #[cfg(unix)]
 #[test]
 fn a_file_that_an_older_one_replaced_is_read_again() {
-    let folder = tempdir().expect("a folder");
+    let folder = tempfile::tempdir().expect("a folder");
     let (path, other) = (folder.path().join("a"), folder.path().join("b"));
     fs::write(&path, "read").expect("a file");
     let since = SystemTime::now();
