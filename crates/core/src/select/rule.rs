@@ -11,14 +11,19 @@ const NEGLIGIBLE: f64 = 0.001;
 ///
 /// The most accurate candidate is the one with the smallest mean excess over `max_error`. Taken is the cheapest
 /// candidate that is as accurate: at each level it is allowed `max_error` where the most accurate candidate meets
-/// `max_error`, and elsewhere the error of that candidate plus `NOISE`; its mean excess over these bounds is below
-/// `NEGLIGIBLE`. So a bound that can be met is met at the least cost, and a bound that cannot be met is no reason to
-/// save anything visible.
+/// `max_error`, and elsewhere the error of that candidate plus `NOISE`. Its mean excess over these bounds is below
+/// `NEGLIGIBLE`, and no level exceeds its bound by more than `NOISE`, because an object far away shows coarse levels
+/// only. So a bound that can be met is met at the least cost, and a bound that cannot be met is no reason to save
+/// anything visible.
 pub fn choose(errors: &[Vec<f32>], max_error: f32) -> Option<usize> {
     let excess = |errors: &[f32]| mean(errors, |_, e| (e - max_error).max(0.0));
     let best = errors.iter().min_by(|a, b| excess(a).total_cmp(&excess(b)))?;
     let bound = |level: usize| if best[level] <= max_error { max_error } else { best[level] + NOISE };
-    errors.iter().position(|errors| mean(errors, |level, e| (e - bound(level)).max(0.0)) < NEGLIGIBLE)
+    let above_bound = |level: usize, e: f32| (e - bound(level)).max(0.0);
+    errors.iter().position(|errors| {
+        errors.iter().enumerate().all(|(level, e)| above_bound(level, *e) <= NOISE)
+            && mean(errors, above_bound) < NEGLIGIBLE
+    })
 }
 
 /// Returns the mean of `of(level, error)` over the screen. A plane that reaches to the horizon shows each level on half

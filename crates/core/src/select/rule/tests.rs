@@ -29,3 +29,15 @@ fn noise_does_not_widen_the_bound() {
     assert_eq!(choose(&[vec![0.105], vec![0.05]], 0.1), Some(1));
     assert_eq!(choose(&[vec![0.1], vec![0.05]], 0.1), Some(0));
 }
+
+/// Coarse levels have a small share of the mean. They are all that an object far away shows.
+#[test]
+fn coarse_levels_keep_to_the_bound_as_well() {
+    let coarse = |error: f32| {
+        let mut errors = vec![0.05; 9];
+        errors.extend([error; 2]);
+        errors
+    };
+    assert_eq!(choose(&[coarse(0.3), coarse(0.08)], 0.1), Some(1));
+    assert_eq!(choose(&[coarse(0.105), coarse(0.08)], 0.1), Some(0), "samples cannot tell this from the bound");
+}
