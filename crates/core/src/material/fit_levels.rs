@@ -7,14 +7,15 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::codec::uastc::Effort;
-use crate::lobe::{Family, LobeTexel};
+use crate::lobe::{Family, LobeTexel, OrientedLobe};
+use crate::math::vector::dot;
 use crate::metric::{DRAWN, DrawnFootprint, FitEffort, Search, fit};
 use crate::mip::{FinerRows, MipTail, TexelRows, level_sizes};
 
 /// Which texels of a level are fitted, and how.
 struct LevelFit {
-    /// The level whose texels are the parts of uneven texels: those whose finer texels differ in width by more than
-    /// [`UNEVEN`], at this level or below.
+    /// The level whose texels are the parts of uneven texels: those whose finer texels [`differ`], at this level or
+    /// below.
     uneven_parts: usize,
     /// The level whose texels are the parts of all other texels; `None` if these keep their merged lobes.
     even_parts: Option<usize>,
@@ -24,7 +25,9 @@ struct LevelFit {
 }
 
 /// Ratio of the alphas of finer texels from which their merged lobe can be far from the best lobe.
-const UNEVEN: f32 = 2.0;
+const UNEVEN: f32 = 4.0;
+/// Ratio of the alphas for finer texels whose normals are further apart than half the least alpha.
+const UNEVEN_APART: f32 = 2.0;
 
 /// Fits of levels 2, 3, 4 and so on; the last one holds for all coarser levels. Coarser levels have fewer texels, which
 /// can have more half-vectors in the same time. A merge is good enough for most texels of levels 2 to 4: on real maps
@@ -105,7 +108,7 @@ pub fn fit_levels<R: TexelRows<Texel: LobeTexel>>(
     }
 }
 
-/// Marks those texels of row `y` of a level whose four finer texels differ in width, or of which one is marked in
+/// Marks those texels of row `y` of a level whose four finer texels [`differ`], or of which one is marked in
 /// `finer_marks`. `finer` writes adjacent rows of the finer level, which has `size` texels.
 fn mark_uneven<T: LobeTexel>(
     finer: &dyn Fn(u32, &mut [T]),
@@ -114,19 +117,31 @@ fn mark_uneven<T: LobeTexel>(
     y: u32,
     marks: &[AtomicBool],
 ) {
-    let rows = 2 * y..(2 * y + 2).min(size.1);
-    let mut texels = vec![T::default(); size.0 as usize * rows.len()];
-    finer(rows.start, &mut texels);
+    let rows = [2 * y, (2 * y + 1).min(size.1 - 1)];
+    let mut texels = vec![T::default(); size.0 as usize * (1 + (rows[1] - rows[0]) as usize)];
+    finer(rows[0], &mut texels);
     for (x, mark) in (0..).zip(marks) {
-        let columns = [2 * x, 2 * x + 1].map(|x: u32| x.min(size.0 - 1));
-        let finer_texels = texels.chunks_exact(size.0 as usize).flat_map(|row| columns.map(|x| row[x as usize]));
-        let widths = finer_texels.map(|texel| texel.lobe().squared_alpha.0.determinant());
-        let (least, most) = widths.fold((f32::MAX, 0.0_f32), |(least, most), d| (least.min(d), most.max(d)));
-        // The determinant of squared alphas is a fourth power of alpha. The least alpha is 0.001.
-        let differ = most > least.max(1e-12) * (UNEVEN * UNEVEN * UNEVEN * UNEVEN);
-        let is_marked = |y: u32| columns.iter().any(|x| finer_marks.get((y * size.0 + x) as usize) == Some(&true));
-        mark.store(differ || rows.clone().any(is_marked), Ordering::Relaxed);
+        let columns = [2 * x, (2 * x + 1).min(size.0 - 1)];
+        let places = [0, 1, 2, 3].map(|i| (columns[i % 2], rows[i / 2]));
+        let lobe = |(x, y): (u32, u32)| *texels[((y - rows[0]) * size.0 + x) as usize].lobe();
+        let is_marked = |(x, y): (u32, u32)| finer_marks.get((y * size.0 + x) as usize) == Some(&true);
+        mark.store(differ(&places.map(lobe)) || places.into_iter().any(is_marked), Ordering::Relaxed);
     }
+}
+
+/// Returns whether the merged lobe of `lobes` can be far from their best lobe. Lobes of one direction merge well up to
+/// a larger ratio of alphas: one lobe then stands for them nearly as well as they do.
+fn differ(lobes: &[OrientedLobe; 4]) -> bool {
+    // The determinant of squared alphas is a fourth power of alpha. The least alpha is 0.001.
+    let widths = lobes.map(|lobe| lobe.squared_alpha.0.determinant().max(1e-12));
+    let narrowest = (0..4).fold(0, |least, i| if widths[i] < widths[least] { i } else { least });
+    let least = widths[narrowest];
+    let ratio = widths.into_iter().fold(0.0, f32::max) / least;
+    let is_apart = |lobe: &OrientedLobe| {
+        let between = [0, 1, 2].map(|i| lobe.normal[i] - lobes[narrowest].normal[i]);
+        dot(between, between) > 0.25 * least.sqrt()
+    };
+    ratio > UNEVEN.powi(4) || (ratio > UNEVEN_APART.powi(4) && lobes.iter().any(is_apart))
 }
 
 /// Fits texels of row `y` of a level of `size`, from the lobes in `out`. The parts are texels of the level

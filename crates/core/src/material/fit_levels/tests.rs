@@ -1,7 +1,7 @@
 use std::sync::atomic::AtomicUsize;
 
 use super::*;
-use crate::lobe::{OrientedLobe, SquaredAlpha};
+use crate::lobe::SquaredAlpha;
 use crate::math::symmetric::Symmetric2;
 use crate::metric::{Lobe, Precision, sample_sites};
 use crate::mip::Level;
@@ -83,4 +83,19 @@ fn coarse_levels_do_not_compute_level_1_again() {
     counted.rows.store(0, Ordering::Relaxed);
     fit_levels(&counted, &mut tail, Family::Ggx, Effort::Fast);
     assert_eq!(counted.rows.into_inner(), 3 * SIDE as usize);
+}
+
+/// Between 2 and 4 times the least alpha, the distance of the normals counts: half of the least alpha, which is 0.1.
+#[test]
+fn lobes_of_one_direction_differ_from_a_larger_ratio_on() {
+    let differ_with = |ratio: f32, distance: f32| {
+        let lobe = |alpha: f32, x: f32| OrientedLobe {
+            normal: [x, 0.0, (1.0 - x * x).sqrt()],
+            squared_alpha: SquaredAlpha(Symmetric2::diagonal(alpha * alpha, alpha * alpha)),
+        };
+        let narrow = lobe(0.1, 0.0);
+        differ(&[narrow, narrow, lobe(0.1 * ratio, distance), narrow])
+    };
+    assert_eq!([1.9, 2.1, 3.9, 4.1].map(|ratio| differ_with(ratio, 0.04)), [false, false, false, true]);
+    assert_eq!([1.9, 2.1, 3.9, 4.1].map(|ratio| differ_with(ratio, 0.06)), [false, true, true, true]);
 }
