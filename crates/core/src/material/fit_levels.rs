@@ -26,7 +26,7 @@ struct LevelFit {
 
 /// Ratio of the alphas of finer texels from which their merged lobe can be far from the best lobe.
 const UNEVEN: f32 = 4.0;
-/// Ratio of the alphas for finer texels whose normals are further apart than half the least alpha.
+/// This ratio, where a normal is further from that of the narrowest lobe than half the alpha of this lobe.
 const UNEVEN_APART: f32 = 2.0;
 
 /// Fits of levels 2, 3, 4 and so on; the last one holds for all coarser levels. Coarser levels have fewer texels, which
@@ -129,10 +129,10 @@ fn mark_uneven<T: LobeTexel>(
     }
 }
 
-/// Returns whether the merged lobe of `lobes` can be far from their best lobe. Lobes of one direction merge well up to
-/// a larger ratio of alphas: one lobe then stands for them nearly as well as they do.
+/// Returns whether the merged lobe of `lobes` can be far from their best lobe. Lobes with nearly the same normal merge
+/// well up to a larger ratio of alphas.
 fn differ(lobes: &[OrientedLobe; 4]) -> bool {
-    // The determinant of squared alphas is a fourth power of alpha. The least alpha is 0.001.
+    // The determinant of squared alphas is the fourth power of alpha. The least alpha is 0.001.
     let widths = lobes.map(|lobe| lobe.squared_alpha.0.determinant().max(1e-12));
     let narrowest = (0..4).fold(0, |least, i| if widths[i] < widths[least] { i } else { least });
     let least = widths[narrowest];
