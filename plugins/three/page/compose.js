@@ -1,5 +1,6 @@
 // Shows pictures of linear radiance on the screen, side by side or on both sides of a divider.
 import * as THREE from 'three';
+import { RAMP } from './ramp.js';
 
 const FRAGMENT = /* glsl */ `
 uniform sampler2D picture, truth;
@@ -11,12 +12,7 @@ uniform vec3 background;
 uniform vec4 part;
 varying vec2 at;
 
-// A colour map from black over purple and orange to white, of rising luminance.
-vec3 ramp( float x ) {
-  float blue = x < 0.35 ? 1.6 * x : 0.56 - 1.6 * ( x - 0.35 ) + 3.5 * max( x - 0.7, 0.0 );
-  return clamp( vec3( 2.2 * x, 2.2 * x - 0.75, blue ), 0.0, 1.0 );
-}
-vec3 tone( vec3 c ) { return c / ( 1.0 + max( max( c.r, c.g ), c.b ) ); }
+${RAMP}vec3 tone( vec3 c ) { return c / ( 1.0 + max( max( c.r, c.g ), c.b ) ); }
 
 void main() {
   vec2 from = part.xy + at * part.zw;
@@ -28,7 +24,7 @@ void main() {
   if ( view == 0 ) c = sRGBTransferOETF( vec4( 1.6 * tone( c ), 1.0 ) ).rgb;
   if ( view == 4 ) {
     vec3 off = abs( tone( exposure * p.rgb ) - tone( exposure * t.rgb ) );
-    c = ramp( sqrt( max( max( off.r, off.g ), off.b ) ) );
+    c = ramp( max( max( off.r, off.g ), off.b ) );
   }
   gl_FragColor = vec4( c, 1.0 );
 }`;

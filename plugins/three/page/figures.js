@@ -1,9 +1,16 @@
 // The table of errors and bytes.
 import { readable } from './bytes.js';
-import { TITLES } from './variants.js';
+import { MISDRAWN, TITLES } from './variants.js';
 
 /** Writes an error for people. */
 export const percent = (error) => `${(100 * error).toFixed(error < 0.1 ? 1 : 0)} %`;
+
+/** Makes a row that explains the row above it. */
+function reason(text) {
+  const row = Object.assign(document.createElement('tr'), { className: 'reason' });
+  row.append(cell('td', text, { colSpan: 4 }));
+  return row;
+}
 
 const cell = (tag, text, settings = {}) =>
   Object.assign(document.createElement(tag), { textContent: text, ...settings });
@@ -17,7 +24,7 @@ export class Figures {
     Object.assign(this, { body, note });
   }
 
-  /** Shows the assets by name: `files` and `textures` are bytes. */
+  /** Shows the assets by name, as a loader returns them. */
   show(assets) {
     this.assets = assets;
     this.#errors = new Map();
@@ -44,18 +51,20 @@ export class Figures {
   }
 
   #render() {
-    const best = Math.min(...[...this.#errors.values()].filter((error) => error !== null));
+    const known = [...this.#errors.values()].filter((error) => error !== null);
+    const best = known.length > 1 ? Math.min(...known) : null;
     this.body.replaceChildren(
-      ...[...this.assets].map(([name, { files, textures }]) => {
+      ...[...this.assets].flatMap(([name, { files, textures, isMisdrawn }]) => {
         const row = document.createElement('tr');
         const error = this.#errors.get(name);
+        const isBest = error != null && error === best;
         row.append(
           cell('th', TITLES[name], { scope: 'row' }),
-          cell('td', error == null ? '–' : percent(error), { className: error === best ? 'error best' : 'error' }),
+          cell('td', error == null ? '–' : percent(error), { className: isBest ? 'error best' : 'error' }),
           cell('td', readable(files)),
           cell('td', readable(textures)),
         );
-        return row;
+        return isMisdrawn ? [row, reason(MISDRAWN)] : [row];
       }),
     );
     this.body.classList.toggle('stale', this.#isStale);

@@ -6,6 +6,7 @@ import { KTX2Loader } from 'three/addons/loaders/KTX2Loader.js';
 import { MeshoptDecoder } from 'three/addons/libs/meshopt_decoder.module.js';
 import { RoughcastPlugin } from 'three-roughcast';
 import { textureBytes, texturesOf } from './bytes.js';
+import { isMisdrawn } from './variants.js';
 
 /** The decoders of three.js' own package. */
 const LIBRARIES = '/three/examples/jsm/libs';
@@ -15,8 +16,9 @@ const DROPPED = '/dropped/';
 /**
  * @typedef {{ url: string } | { file: string, files: Map<string, File> }} Source
  *   The address of a document, or the path of a dropped document among all files of its drop.
- * @typedef {{ scene: import('three').Object3D, files: number, textures: number }} Asset
- *   `files`: bytes of the files that were read; `textures`: bytes of the textures on the GPU.
+ * @typedef {{ scene: import('three').Object3D, files: number, textures: number, isMisdrawn: boolean }} Asset
+ *   `files`: bytes of the files that were read; `textures`: bytes of the textures on the GPU; `isMisdrawn`: three.js
+ *   itself draws the lobes of a bake wrongly.
  */
 
 export class Loader {
@@ -54,12 +56,13 @@ export class Loader {
       .setMeshoptDecoder(MeshoptDecoder)
       .register((parser) => new RoughcastPlugin(parser, { reflections }));
     try {
-      const { scene } = await loader.loadAsync(url).catch((error) => {
+      const { scene, parser } = await loader.loadAsync(url).catch((error) => {
         throw this.#missing.length ? this.#absent(url) : error;
       });
       if (this.#missing.length) throw this.#absent(url);
       for (const texture of texturesOf(scene)) texture.anisotropy = this.anisotropy;
-      return { scene, files: await this.#size(folder), textures: textureBytes(scene) };
+      const bytes = { files: await this.#size(folder), textures: textureBytes(scene) };
+      return { scene, ...bytes, isMisdrawn: !reflections && isMisdrawn(parser.json) };
     } finally {
       this.#missing = [];
       for (const blob of this.#blobs.splice(0)) URL.revokeObjectURL(blob);

@@ -7,7 +7,7 @@ const SCALE = 8;
 /** Largest side of a tile, and the gap around tiles, in CSS pixels. */
 const [LARGEST, GAP] = [176, 8];
 /** CSS pixels at the top and at the bottom of the frame that labels and buttons need. */
-const [ABOVE, BELOW] = [40, 52];
+const [ABOVE, BELOW] = [40, 60];
 
 export class Magnifier {
   isOn = false;

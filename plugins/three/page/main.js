@@ -9,6 +9,7 @@ import { Figures } from './figures.js';
 import { Magnifier } from './magnifier.js';
 import { Pictures } from './pictures.js';
 import { listen as listenToPointers } from './pointer.js';
+import { showScale } from './ramp.js';
 import { Screen } from './screen.js';
 import { Stage } from './stage.js';
 import { Turntable } from './turntable.js';
@@ -29,6 +30,9 @@ const [PER_PIXEL, PER_KEY] = [0.4, 8];
 const TOO_NEAR =
   'Few bumps are lost so near: a bake shows from farther away, or on the subject “Sphere”, which repeats the maps.';
 
+/** Follows the texels that a pixel covers if the sphere was chosen in place of the asset. */
+const ON_SPHERE = 'The maps are shown on a sphere, since a pixel covers less than one texel of the asset at first.';
+
 const element = (id) => document.getElementById(id);
 const [canvas, frame, status, play, loupe] = ['canvas', 'frame', 'status', 'play', 'loupe'].map(element);
 
@@ -47,9 +51,12 @@ const screen = new Screen({
   magnifier,
 });
 const figures = new Figures({ body: element('figures'), note: element('note') });
-/** What is shown: bytes of each variant, by name. */
+/** What is shown: bytes of each variant, and whether three.js draws it wrongly, by name. */
 const assets = new Map();
 let [isStale, changedAt, shape, measuredAt, mayStart, isRequested] = [true, 0, '', 0, false, false];
+/** Whether the sphere was chosen in place of the asset, and no person has chosen a subject since. */
+let isOnSphere = false;
+showScale(element('scale'));
 
 /** Notes that the pictures do not show the scene any more. */
 function expire() {
@@ -73,6 +80,7 @@ const controls = new Controls({
     'Shift+ArrowDown': () => look(0, PER_KEY),
   },
   changed: (name) => {
+    if (name === 'subject') isOnSphere = false;
     if (name === 'subject' && assets.size > 0) present();
     if (ONLY_SHOWN.includes(name)) request();
     else expire();
@@ -135,6 +143,7 @@ function draw(now) {
   }
   if (isStale || turntable.isTurning) place(shorter);
   divider.element.hidden = what.layout !== 'slider';
+  element('scale').hidden = what.view !== 'difference';
   for (const pair of document.querySelectorAll('.pair')) pair.hidden = divider.element.hidden;
 
   const isMoving = turntable.isTurning || performance.now() - changedAt < PAUSE;
@@ -184,7 +193,8 @@ function place(shorter) {
   pictures.expire();
   figures.expire();
   const texels = stage.texelsOfPixel(controls.distance, shorter);
-  element('footprint').textContent = `${footprint(texels)} ${0 < texels && texels < 1 ? TOO_NEAR : ''}`;
+  const reason = 0 < texels && texels < 1 ? TOO_NEAR : isOnSphere ? ON_SPHERE : '';
+  element('footprint').textContent = `${footprint(texels)} ${reason}`;
 }
 
 /** Measures errors whenever the truth is good enough to be worth it. The other views are no radiance. */
@@ -211,6 +221,13 @@ function present(isPlaced = false) {
   if (!isPlaced) controls.distance = distance;
 }
 
+/** Chooses the sphere where the first view of the asset would show no mip level. */
+function choose() {
+  const { subject } = element('controls').elements;
+  isOnSphere = subject.value === 'asset' && stage.firstKind(arrangement().shorter) === 'sphere';
+  if (isOnSphere) subject.value = 'sphere';
+}
+
 /** Shows sources by the name of the variant. An original replaces all that was shown before. */
 async function open(sources, isPlaced = false) {
   const loaded = await Promise.all(
@@ -229,6 +246,7 @@ async function open(sources, isPlaced = false) {
   const entries = variants.map((name) => [name, TITLES[name]]);
   controls.options('left', entries, variants[0]);
   controls.options('right', entries, ['portable', 'pyramid', 'supersampled'].find((name) => variants.includes(name)));
+  if (isNew && !isPlaced) choose();
   present(isPlaced || !isNew);
   figures.show(new Map(VARIANTS.filter((name) => assets.has(name)).map((name) => [name, assets.get(name)])));
   element('empty').hidden = true;

@@ -5,7 +5,7 @@ import { debuggable } from './debug.js';
 import { texelsPerUnit } from './density.js';
 import { direction } from './direction.js';
 import { Loader } from './loader.js';
-import { HALF, first, pixelWidth } from './start.js';
+import { HALF, first, firstKind, pixelWidth } from './start.js';
 import { surroundings } from './surroundings.js';
 import { bumpy, subject } from './subject.js';
 import { Accumulator, unfiltered } from './supersample.js';
@@ -83,6 +83,11 @@ export class Stage {
       object.visible = false;
       this.#table.add(object);
     }
+  }
+
+  /** Returns the subject that is seen first in a picture of `pixels` along its shorter side. */
+  firstKind(pixels) {
+    return firstKind(ofOriginal(this.#assets), pixels);
   }
 
   /** Shows a subject as it is seen first, in a picture of `pixels` along its shorter side. Returns the distance. */

@@ -46,6 +46,24 @@ export function first(scene, kind, pixels, texels = TEXELS) {
   return { distance, repeats: density > 0 ? texels / (density * pixelWidth(distance, pixels)) : undefined };
 }
 
+/** Returns the texels that a pixel covers along each side in the first view of a subject. */
+function texelsAtFirst(scene, kind, pixels) {
+  const { distance, repeats } = first(scene, kind, pixels);
+  return texelsPerUnit(subject(scene, kind, repeats)) * pixelWidth(distance, pixels);
+}
+
+/**
+ * Returns the subject that is seen first in a picture of `pixels` along its shorter side: the sphere if a pixel covers
+ * less than one texel of the asset, so that engines sample no mip level there, and if more texels fit on the sphere.
+ *
+ * @param {import('three').Object3D} scene what a loader returned
+ * @returns {'asset' | 'sphere'}
+ */
+export function firstKind(scene, pixels) {
+  const onAsset = texelsAtFirst(scene, 'asset', pixels);
+  return 0 < onAsset && onAsset < 1 && texelsAtFirst(scene, 'sphere', pixels) > onAsset ? 'sphere' : 'asset';
+}
+
 /** Returns the first distance from an asset of a size, whose surfaces have `density` texels along a unit. */
 function away(size, density, pixels) {
   const nearest = size.length() / 2 / Math.sin(ANGLE);

@@ -30,3 +30,16 @@ export function variantOf(document) {
   if (document.extensionsUsed?.includes(EXTENSION)) return 'pyramid';
   return document.asset?.extras?.roughcast ? 'portable' : 'original';
 }
+
+/** Follows the title of a bake that three.js itself draws wrongly. */
+export const MISDRAWN = 'three.js draws these anisotropic lobes wrongly: bake with --engine three.';
+
+/** Returns whether three.js itself draws anisotropic lobes that Roughcast baked. Bakes store them in KTX2 files. */
+export function isMisdrawn(document) {
+  if (variantOf(document) !== 'portable') return false;
+  const { materials = [], textures = [] } = document;
+  return materials.some(({ extensions }) => {
+    const { index } = extensions?.KHR_materials_anisotropy?.anisotropyTexture ?? {};
+    return textures[index]?.extensions?.KHR_texture_basisu !== undefined;
+  });
+}

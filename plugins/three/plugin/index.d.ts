@@ -35,7 +35,7 @@ interface Shared {
   /** c: squared alphas A become A + 2 c K. At least 0. */
   correctionFactor: number;
   frame: Frame;
-  /** Unit vector in the space of the mesh; null in the other frames. */
+  /** Direction in the space of the mesh, with any length; null in the other frames. */
   mainDirection: number[] | null;
 }
 

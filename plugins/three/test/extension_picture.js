@@ -21,8 +21,8 @@ function baseLobe(material, { e1, e2 }, { t, b }, texel, leastRoughness) {
   return { roughness, lobe: reader.baseLobe(roughness, anisotropyStrength * blue, along) };
 }
 
-/** Returns what is lit at a point of a surface. `texel` samples the texture of a textureInfo there. */
-function point(material, surfaceThere, texel, leastRoughness) {
+/** Returns what is lit at a point of a plane. `texel` samples the texture of a textureInfo there. */
+function point({ material, engine: { leastRoughness } }, surfaceThere, texel) {
   const extension = material.extensions[reader.EXTENSION];
   const frame = reader.frame(extension, surfaceThere);
   const normal = reader.normal(frame, reader.slopes(extension, texel(extension.offsetTexture)));
@@ -49,12 +49,12 @@ function radiance(lit, { baseColorFactor, metallicFactor: metalness }, eye, { di
 }
 
 /**
- * Draws a plane under one directional light: RGB of each pixel, row by row from the bottom, or null where the plane is
- * not seen. `textures` has the levels and the wrap mode of each texture of the document.
+ * Returns what is lit at each pixel of a plane, and the direction to the eye, row by row from the bottom, or null where
+ * the plane is not seen. `textures` has the levels and the wrap mode of each texture of the document.
  */
-export function picture({ material, plane, textures, engine }, { size, camera, light }) {
+export function points(asset, { size, camera }) {
+  const { material, plane, textures, engine } = asset;
   const surfaceThere = surface(plane, material.extensions[reader.EXTENSION].offsetTexture);
-  const sun = { ...light, direction: normalised(light.direction) };
   const through = (i, j) => ray(camera, [(i + 0.5) / size, (j + 0.5) / size]);
   const at = (i, j) => met(plane, camera.eye, through(i, j));
   return Array.from({ length: size * size }, (_, pixel) => {
@@ -66,10 +66,17 @@ export function picture({ material, plane, textures, engine }, { size, camera, l
       const derivatives = [block[1], block[2]].map((end) => sum([end, 1], [block[0], -1]));
       return trilinear(textures[info.index], transformed(info, at(i, j)), derivatives, engine.level);
     };
-    const lit = point(material, surfaceThere, texel, engine.leastRoughness);
+    const lit = point(asset, surfaceThere, texel);
     const eye = through(i, j).map((value) => -value);
-    const side = Math.sign(dot(surfaceThere.n, eye));
-    const seen = { ...lit, normal: lit.normal.map((value) => side * value) };
-    return radiance(seen, material.pbrMetallicRoughness, eye, sun, engine);
+    return { lit: dot(surfaceThere.n, eye) < 0 ? reader.behind(lit) : lit, eye };
   });
+}
+
+/** Draws a plane under one directional light: RGB of each pixel, or null, as `points` has them. */
+export function picture(asset, view) {
+  const light = { ...view.light, direction: normalised(view.light.direction) };
+  const { pbrMetallicRoughness } = asset.material;
+  return points(asset, view).map(
+    (seen) => seen && radiance(seen.lit, pbrMetallicRoughness, seen.eye, light, asset.engine),
+  );
 }

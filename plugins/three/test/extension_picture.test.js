@@ -1,25 +1,15 @@
 // A reader of docs/extension/README.md draws the same picture as the plugin of three.js.
 import assert from 'node:assert/strict';
-import path from 'node:path';
 import test from 'node:test';
-import { missing as browserMissing, launch, open } from '../browser.js';
-import { serve } from '../server.js';
 import { picture } from './extension_picture.js';
 import { EXTENSION } from './extension_reader.js';
 import { exactLevel } from './extension_texture.js';
-import { PLANE, bake, material, write } from './plane_asset.js';
-import { example, missing, temporary } from './roughcast.js';
+import { PLANE, WITHOUT_K, bake, material, withTextures, write } from './plane_asset.js';
+import { VIEW, difference, openPictures, skip } from './plane_page.js';
+import { temporary } from './roughcast.js';
 import { THREE_JS } from './three_engine.js';
 
-/**
- * The corners of the plane are at whole pixels of this view, so that GPUs do not move them. The eye sees the plane at
- * an angle of 37 degrees, from a distance of 2.4.
- */
-const VIEW = {
-  size: 64,
-  camera: { eye: [0, 1.44, 1.92], target: [0, 0, 0], field: (360 / Math.PI) * Math.atan(2 / 3) },
-  light: { direction: [-0.3, 1, -0.9], irradiance: 3 },
-};
+const LIGHT = { direction: [-0.3, 1, -0.9], irradiance: 3 };
 
 /** Largest difference of a channel of a pixel, as a share of the brightest. The measured differences are up to 2e-5. */
 const BOUND = 1e-4;
@@ -79,7 +69,7 @@ const CASES = {
   },
   'an anisotropic base lobe and no K': {
     lobe: { ...ANISOTROPIC, roughnessFactor: 0.5 },
-    members: { roughnessModel: undefined, roughnessTexture: undefined },
+    members: WITHOUT_K,
     wrong: (drawn) => (extension(drawn).baseLobe.anisotropy.anisotropyRotation *= -1),
   },
   'an anisotropic base lobe of the core material': {
@@ -129,41 +119,11 @@ const CASES = {
   },
 };
 
-/** Returns a base lobe with textures of the core material. */
-function withTextures({ gltf }, lobe, names) {
-  const { pbrMetallicRoughness, extensions } = gltf.materials[0];
-  const all = { ...pbrMetallicRoughness, ...extensions.KHR_materials_anisotropy };
-  const { metallicRoughnessTexture, anisotropyTexture } = Object.fromEntries(names.map((name) => [name, all[name]]));
-  const anisotropy = lobe.anisotropy && { ...lobe.anisotropy, anisotropyTexture };
-  return JSON.parse(JSON.stringify({ ...lobe, metallicRoughnessTexture, anisotropy }));
-}
-
-/** Returns the largest difference of a channel between a picture and the pixels of the plugin, of the brightest. */
-function difference(expected, found) {
-  const [differences, values] = [[], []];
-  for (const [i, channels] of expected.entries()) {
-    if (!channels || found[4 * i + 3] === 0) continue;
-    values.push(...channels);
-    differences.push(...channels.map((value, c) => Math.abs(value - found[4 * i + c])));
-  }
-  assert.ok(values.length > 3 * 500, `the plane is seen: ${values.length}`);
-  assert.ok(Math.max(...values) > 0.5, `the light is seen: ${Math.max(...values)}`);
-  return Math.max(...differences) / Math.max(...values);
-}
-
-test('a reader of the page draws the picture of the plugin', { skip: missing || browserMissing }, async (t) => {
+test('a reader of the page draws the picture of the plugin', { skip }, async (t) => {
   const folder = temporary(t);
   const bakes = Object.fromEntries(['anisotropic', 'isotropic'].map((model) => [model, bake(folder, model)]));
-  const served = { engines: 'engines', plugin: 'plugin', three: 'node_modules/three' };
-  const folders = Object.entries(served).map(([name, at]) => [name, path.join(example, at)]);
-  const server = await serve({ ...Object.fromEntries(folders), baked: folder });
-  const browser = await launch();
-  t.after(async () => {
-    await browser.close();
-    await server.close();
-  });
-  const page = await open(browser, `${server.url}/engines/picture.html`);
-  await page.waitForFunction('window.ready');
+  const page = await openPictures(t, folder);
+  const view = { ...VIEW, light: LIGHT };
 
   for (const [name, { model = 'anisotropic', plane, textured, wrong, ...change }] of Object.entries(CASES)) {
     await t.test(name, async () => {
@@ -171,12 +131,12 @@ test('a reader of the page draws the picture of the plugin', { skip: missing || 
       const lobe = textured ? withTextures(baked, change.lobe, textured) : change.lobe;
       const asset = { material: material(baked, { ...change, lobe }), plane: { ...PLANE, ...plane } };
       const url = `/baked/${model}/${write(baked, asset.material, asset.plane)}`;
-      const found = await page.evaluate((options) => window.picture(options), { url, ...VIEW });
+      const found = await page.evaluate((options) => window.picture(options), { url, ...view });
       assert.deepEqual(page.problems, []);
       const off = (edit) => {
         const drawn = { ...structuredClone(asset), textures: baked.textures, engine: { ...THREE_JS } };
         edit(drawn);
-        return difference(picture(drawn, VIEW), found);
+        return difference(picture(drawn, view), found);
       };
       const [right, exact, bad] = [() => {}, ({ engine }) => (engine.level = exactLevel), wrong].map(off);
       assert.ok(right < BOUND, `off by ${right}`);

@@ -83,6 +83,36 @@ export function axes({ e1, e2 }, normal, [along1, along2]) {
   return [tangent, cross(normal, tangent)];
 }
 
+/** Returns what is lit on the back of a double-sided material ("Frames"): n' and the axis t' are negated. */
+export function behind({ normal, axes: [t], ...lit }) {
+  const [n, tangent] = [normal, t].map((vector) => vector.map((value) => -value));
+  return { ...lit, normal: n, axes: [tangent, cross(n, tangent)] };
+}
+
+/**
+ * Returns the look-ups of an environment for a lobe ("Environments"): normals, and the roughness of all of them.
+ * `method` is the number of look-ups, the share of the smaller spread that is left to blur, and a factor on the rest.
+ */
+export function lookUps({ normal, axes: [t, b], alphas, baseRoughness }, method) {
+  const base = baseRoughness ** 4;
+  const spread = alphas.map((alpha) => Math.max(alpha ** 2 - base, 0));
+  const blur = method.blur * spread[1];
+  const [along, across] = spread.map((value) => Math.sqrt(method.spread * (value - blur)));
+  const pairs = method.count / 2;
+  const normals = Array.from({ length: pairs }, (_, i) => {
+    const radius = Math.sqrt(-Math.log(1 - (i + 0.5) / pairs));
+    const [x, y] = [along * radius * Math.cos(1.94161104 * i), across * radius * Math.sin(1.94161104 * i)];
+    return [1, -1].map((sign) => normalised(sum([normal, 1], [t, sign * x], [b, sign * y])));
+  });
+  return { normals: normals.flat(), roughness: (base + blur) ** 0.25 };
+}
+
+/** Returns the one look-up of an environment that a loader may use: n', and the roughness of equal determinant. */
+export const lookUp = ({ normal, alphas: [alphaT, alphaB] }) => ({
+  normals: [normal],
+  roughness: (alphaT * alphaB) ** 0.25,
+});
+
 /**
  * Returns D V, which is the specular lobe without Fresnel's factor ("Lights"), for the directions to the eye and to the
  * light.

@@ -6,10 +6,11 @@ import test from 'node:test';
 import { launch } from '../browser.js';
 import { relativeL1 } from '../looks/errors.js';
 import { readable } from '../page/bytes.js';
-import { readDocument, variantOf } from '../page/variants.js';
+import { MISDRAWN, isMisdrawn, readDocument, variantOf } from '../page/variants.js';
 import { repository, roughcast, temporary } from './roughcast.js';
-import { brightness, control, errors, options, pixels, ready, view } from './viewer.js';
+import { SHOTS, brightness, control, errors, options, pixels, ready, view } from './viewer.js';
 
+const SCREENS = { desktop: { width: 1280, height: 800 }, phone: { width: 390, height: 844 } };
 const FIXTURE = path.join(repository, 'fixtures/brushed');
 
 /** Returns whether a condition holds within some seconds. */
@@ -29,6 +30,10 @@ test('measures errors and bytes', options, async (t) => {
   const found = await errors(page, 256);
   assert.ok(found['Plain mips'] > 1.3 * found['Pyramid bake'], JSON.stringify(found));
   assert.match(await page.locator('#labels').innerText(), new RegExp(`error ${found['Plain mips']}`));
+  const best = page.locator('#figures tr:has(.best)');
+  assert.equal(await best.locator('th').innerText(), 'Pyramid bake');
+  assert.match(await best.locator('.best').evaluate((cell) => getComputedStyle(cell, '::before').content), /✓/);
+  assert.equal(await page.locator('.reason').count(), 0, 'the plugin draws the lobes');
 
   // A bake names only files that are read, except for the PNG fallbacks.
   const { buffers, images } = JSON.parse(readFileSync(baked, 'utf8'));
@@ -146,6 +151,87 @@ test('tells variants by their documents', () => {
   assert.equal(variantOf({ asset: { version: '2.0' } }), 'original');
   assert.equal(variantOf({ extensionsUsed: ['ROUGHCAST_materials_roughness_pyramid'] }), 'pyramid');
   assert.throws(() => readDocument(Buffer.from('no JSON')), SyntaxError);
+});
+
+test('tells bakes that three.js draws wrongly', () => {
+  const bake = (anisotropyTexture, more) => ({
+    asset: { extras: { roughcast: {} } },
+    materials: [{}, { extensions: { KHR_materials_anisotropy: { anisotropyTexture } } }],
+    textures: [{ source: 0 }, { extensions: { KHR_texture_basisu: { source: 1 } } }],
+    ...more,
+  });
+  assert.equal(isMisdrawn(bake({ index: 1 })), true);
+  assert.equal(isMisdrawn(bake({ index: 0 })), false, 'a texture of the source');
+  assert.equal(isMisdrawn(bake(undefined)), false, 'the anisotropy of the source');
+  assert.equal(isMisdrawn(bake({ index: 1 }, { asset: {} })), false, 'an original');
+  const extensionsUsed = ['ROUGHCAST_materials_roughness_pyramid'];
+  assert.equal(isMisdrawn(bake({ index: 1 }, { extensionsUsed })), false, 'the plugin draws it');
+  assert.equal(isMisdrawn({ asset: { extras: { roughcast: {} } } }), false, 'no materials');
+});
+
+test('explains a bake that three.js draws wrongly, and the colours of differences', options, async (t) => {
+  const folder = temporary(t);
+  const baked = path.join(folder, 'brushed.glb');
+  roughcast('bake', path.join(FIXTURE, 'brushed.gltf'), '-o', baked, '--quiet');
+  const { url } = await view(t, baked, '--original', path.join(FIXTURE, 'brushed.gltf'));
+  const browser = await launch();
+  t.after(() => browser.close());
+  for (const [name, viewport] of Object.entries(SCREENS)) {
+    for (const colorScheme of ['light', 'dark']) {
+      const page = await ready(browser, url, { viewport, colorScheme });
+      await errors(page);
+      assert.deepEqual(await page.locator('.reason').allInnerTexts(), [MISDRAWN]);
+      assert.equal(await page.locator('#figures tr').nth(2).innerText(), MISDRAWN, 'below the bake');
+      assert.equal(await control(page, 'subject').inputValue(), 'sphere');
+      assert.match(await page.locator('#footprint').textContent(), /about 6\.0 x 6\.0 texels.*on a sphere/);
+      await page.screenshot({ path: path.join(SHOTS, `reason-${name}-${colorScheme}.png`) });
+
+      const scale = page.locator('#scale');
+      assert.equal(await scale.isVisible(), false);
+      await control(page, 'view').selectOption('difference');
+      await scale.waitFor();
+      assert.deepEqual(await scale.locator('span').allInnerTexts(), ['0', '0.05', '0.25', '0.5', '1']);
+      assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), viewport.width);
+      await page.screenshot({ path: path.join(SHOTS, `scale-${name}-${colorScheme}.png`) });
+      // The asset itself can still be chosen.
+      await control(page, 'subject').selectOption('asset');
+      await page.getByText('Few bumps are lost so near').waitFor();
+      assert.deepEqual(page.problems, []);
+      await page.context().close();
+    }
+  }
+});
+
+test('the scale has the colours of the view', options, async (t) => {
+  const { url } = await view(t);
+  const browser = await launch();
+  t.after(() => browser.close());
+  const page = await ready(browser, url, { viewport: { width: 300, height: 200 } });
+  const drawn = await page.evaluate(async () => {
+    const [THREE, { RAMP, gradient }] = [await import('three'), await import('/page/ramp.js')];
+    const renderer = new THREE.WebGLRenderer({ preserveDrawingBuffer: true });
+    renderer.setSize(256, 1);
+    const material = new THREE.ShaderMaterial({
+      vertexShader: 'void main() { gl_Position = vec4(position.xy, 0.0, 1.0); }',
+      fragmentShader: `${RAMP} void main() { gl_FragColor = vec4(ramp(pow(gl_FragCoord.x / 256.0, 2.0)), 1.0); }`,
+    });
+    const quad = new THREE.Mesh(new THREE.PlaneGeometry(2, 2), material);
+    quad.frustumCulled = false;
+    renderer.render(quad, new THREE.Camera());
+    const context = new OffscreenCanvas(256, 1).getContext('2d');
+    context.drawImage(renderer.domElement, 0, 0);
+    const bar = Object.assign(document.createElement('div'), { id: 'bar' });
+    bar.style = 'position: fixed; z-index: 9; inset: 0 auto auto 0; width: 256px; height: 1px';
+    bar.style.background = gradient();
+    document.body.append(bar);
+    return [...context.getImageData(0, 0, 256, 1).data];
+  });
+  const shown = await pixels(page, { x: 0, y: 0, width: 256, height: 1 });
+  for (const [i, value] of drawn.entries()) {
+    // Browsers place the stops of a gradient within a pixel.
+    assert.ok(Math.abs(value - shown[i]) < 8, `place ${i >> 2}, channel ${i % 4}: ${value} ${shown[i]}`);
+  }
+  assert.deepEqual(page.problems, []);
 });
 
 test('writes bytes for people', () => {

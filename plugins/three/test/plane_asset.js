@@ -17,6 +17,14 @@ export const PLANE = {
   node: [1, 1, 1],
 };
 
+/** Members of an extension object without K. */
+export const WITHOUT_K = {
+  roughnessModel: undefined,
+  roughnessTexture: undefined,
+  roughnessMin: undefined,
+  roughnessMax: undefined,
+};
+
 /** Bakes the plane to half floats. Returns its document, its folder, and its textures as the reader takes them. */
 export function bake(folder, model) {
   const output = path.join(folder, model);
@@ -47,6 +55,15 @@ export function material({ gltf }, { lobe, isCore, metalness = 1, transforms = [
     pbrMetallicRoughness: { ...core, baseColorFactor: [0.9, 0.5, 0.2, 1], metallicFactor: metalness },
     extensions: { [EXTENSION]: pyramid, KHR_materials_anisotropy: anisotropy },
   };
+}
+
+/** Returns a base lobe with textures of the core material. */
+export function withTextures({ gltf }, lobe, names) {
+  const { pbrMetallicRoughness, extensions } = gltf.materials[0];
+  const all = { ...pbrMetallicRoughness, ...extensions.KHR_materials_anisotropy };
+  const { metallicRoughnessTexture, anisotropyTexture } = Object.fromEntries(names.map((name) => [name, all[name]]));
+  const anisotropy = lobe.anisotropy && { ...lobe.anisotropy, anisotropyTexture };
+  return JSON.parse(JSON.stringify({ ...lobe, metallicRoughnessTexture, anisotropy }));
 }
 
 /** Writes a document of a bake with another material and another plane. Returns the name of the file. */

@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 import * as THREE from 'three';
 import { texelsPerUnit } from '../page/density.js';
-import { TEXELS, first, pixelWidth } from '../page/start.js';
+import { TEXELS, first, firstKind, pixelWidth } from '../page/start.js';
 import { subject } from '../page/subject.js';
 
 /** Pixels along the shorter side of the picture. */
@@ -44,6 +44,19 @@ test('an asset with few texels or without a map takes a third of the picture', (
       assert.ok(texels(scene, 'asset') < TEXELS);
     }
   }
+});
+
+test('the sphere is seen first where a pixel covers less than one texel of the asset', () => {
+  const few = asset(new THREE.SphereGeometry(7), 128);
+  few.children[0].material.normalMap.wrapS = THREE.RepeatWrapping;
+  assert.ok(texels(few, 'asset') < 1);
+  assert.equal(firstKind(few, PIXELS), 'sphere');
+  for (const side of [2048, undefined]) {
+    assert.equal(firstKind(asset(new THREE.SphereGeometry(7), side), PIXELS), 'asset');
+  }
+  // Maps that do not repeat have still fewer texels on a large sphere.
+  const once = asset(new THREE.SphereGeometry(7), 16);
+  assert.equal(firstKind(once, PIXELS), 'asset');
 });
 
 test('an asset with many texels is whole in the picture', () => {

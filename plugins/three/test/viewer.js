@@ -40,7 +40,7 @@ export async function errors(page, samples = 16) {
     const [, count] = document.getElementById('note').textContent.match(/of this picture against (\d+) samples/) ?? [];
     return Number(count) >= least;
   }, samples);
-  const rows = await page.locator('#figures tr').allInnerTexts();
+  const rows = await page.locator('#figures tr:not(.reason)').allInnerTexts();
   return Object.fromEntries(rows.map((row) => row.split('\t')).map(([title, error]) => [title, parseFloat(error)]));
 }
 

@@ -8,6 +8,8 @@ const FORMAT_VERSION = 2;
 
 /** Channels of the roughness texture, by model. */
 const CHANNELS = { covarianceFactor: 3, standardDeviation: 1 };
+/** Members that an extension object has together or not at all. */
+const ROUGHNESS = ['roughnessModel', 'roughnessTexture', 'roughnessMin', 'roughnessMax'];
 const FRAMES = ['natural', 'unit', 'mainDirection'];
 
 /**
@@ -24,26 +26,42 @@ export function readExtension(definition) {
     throw wrong('formatVersion', expected, definition.formatVersion);
   }
   const frame = oneOf(definition, 'frame', FRAMES);
-  const correctionFactor = definition.correctionFactor;
-  if (!Number.isFinite(correctionFactor) || correctionFactor < 0) {
-    throw wrong('correctionFactor', 'a number of at least 0', correctionFactor);
-  }
+  const correctionFactor = number(definition, 'correctionFactor');
+  if (correctionFactor < 0) throw wrong('correctionFactor', 'a number of at least 0', correctionFactor);
   return {
     offset: readOffset(definition),
     roughness: readRoughness(definition),
     correctionFactor,
     frame,
-    mainDirection: frame === 'mainDirection' ? numbers(definition, 'mainDirection', 3) : null,
-    baseLobe: readBaseLobe(definition.baseLobe),
+    mainDirection: readMainDirection(definition, frame),
+    baseLobe: readBaseLobe(definition),
   };
 }
 
+/** Returns the main direction, or null in the other frames. Shaders use the direction only, so any length will do. */
+function readMainDirection(definition, frame) {
+  if (frame === 'mainDirection') return numbers(definition, 'mainDirection', 3);
+  if (definition.mainDirection === undefined) return null;
+  throw wrong('mainDirection', `nothing with the frame ${frame}`, definition.mainDirection);
+}
+
 /** Returns the base lobe, or null where the core material itself has it. */
-function readBaseLobe(baseLobe) {
-  if (baseLobe === undefined) return null;
-  if (typeof baseLobe !== 'object' || baseLobe === null || Array.isArray(baseLobe))
-    throw wrong('baseLobe', 'an object', baseLobe);
+function readBaseLobe(definition) {
+  if (definition.baseLobe === undefined) return null;
+  const baseLobe = object(definition, 'baseLobe');
+  optional(number, baseLobe, 'roughnessFactor');
+  optional(textureInfo, baseLobe, 'metallicRoughnessTexture');
+  const anisotropy = optional(object, baseLobe, 'anisotropy') ?? {};
+  optional(number, anisotropy, 'anisotropyStrength');
+  optional(number, anisotropy, 'anisotropyRotation');
+  optional(textureInfo, anisotropy, 'anisotropyTexture');
   return baseLobe;
+}
+
+/** Returns the textures of a base lobe, each as a textureInfo. */
+export function texturesOf(baseLobe) {
+  const { metallicRoughnessTexture, anisotropy } = baseLobe ?? {};
+  return [metallicRoughnessTexture, anisotropy?.anisotropyTexture].filter((info) => info !== undefined);
 }
 
 /** Returns a glTF material with the base lobe in place of the roughened one. */
@@ -71,7 +89,7 @@ function readOffset(definition) {
 }
 
 function readRoughness(definition) {
-  if (definition.roughnessModel === undefined && definition.roughnessTexture === undefined) return null;
+  if (ROUGHNESS.every((name) => definition[name] === undefined)) return null;
   const model = oneOf(definition, 'roughnessModel', Object.keys(CHANNELS));
   return {
     model,
@@ -83,9 +101,12 @@ function readRoughness(definition) {
 
 function textureInfo(definition, name) {
   const texture = definition[name];
-  if (!Number.isInteger(texture?.index) || texture.index < 0) throw wrong(name, 'a textureInfo', texture);
+  if (!isIndex(texture?.index)) throw wrong(name, 'a textureInfo', texture);
+  if (texture.texCoord !== undefined && !isIndex(texture.texCoord)) throw wrong(name, 'a textureInfo', texture);
   return texture;
 }
+
+const isIndex = (value) => Number.isInteger(value) && value >= 0;
 
 function numbers(definition, name, count) {
   const value = definition[name];
@@ -93,6 +114,23 @@ function numbers(definition, name, count) {
     throw wrong(name, `${count} number(s)`, value);
   }
   return [...value];
+}
+
+function number(definition, name) {
+  const value = definition[name];
+  if (!Number.isFinite(value)) throw wrong(name, 'a number', value);
+  return value;
+}
+
+function object(definition, name) {
+  const value = definition[name];
+  if (typeof value !== 'object' || value === null || Array.isArray(value)) throw wrong(name, 'an object', value);
+  return value;
+}
+
+/** Reads a member that may be absent. */
+function optional(read, definition, name) {
+  return definition[name] === undefined ? undefined : read(definition, name);
 }
 
 function oneOf(definition, name, names) {

@@ -1,4 +1,4 @@
-import { EXTENSION, readExtension, withBaseLobe } from './extension.js';
+import { EXTENSION, readExtension, texturesOf, withBaseLobe } from './extension.js';
 import { applyPyramid, applyReflections } from './material.js';
 
 /** Plugin of GLTFLoader. See index.d.ts. */
@@ -27,11 +27,12 @@ export class RoughcastPlugin {
       return this.parser.loadMaterial(index);
     }
     const { roughness, baseLobe, ...rest } = extension;
-    const [offsetMap, roughnessMap] = await Promise.all([
+    const [offsetMap, roughnessMap, hasBaseLobe] = await Promise.all([
       this.#texture(extension.offset.texture),
       roughness && this.#texture(roughness.texture),
+      this.#canLoad(texturesOf(baseLobe)),
     ]);
-    const isComplete = offsetMap && (!roughness || roughnessMap);
+    const isComplete = offsetMap && (!roughness || roughnessMap) && hasBaseLobe;
     // Other plugins of the loader read the material from the same list.
     if (isComplete && baseLobe) materials[index] = withBaseLobe(materials[index], baseLobe);
     const material = await this.parser.loadMaterial(index);
@@ -47,11 +48,25 @@ export class RoughcastPlugin {
     });
   }
 
-  /** Loads the texture of a textureInfo, with its texture coordinates and transform. */
+  /** Loads the texture of a textureInfo, with its texture coordinates and transform, or null if it cannot be loaded. */
   async #texture(info) {
     // assignTexture writes a transform's texCoord into `info`, and clones textures whose mapping is not the default.
-    const params = {};
-    return this.parser.assignTexture(params, 'map', info);
+    return attempt(() => this.parser.assignTexture({}, 'map', info));
+  }
+
+  /** Returns whether all textures can be loaded. The parser keeps them for the material. */
+  async #canLoad(infos) {
+    const textures = infos.map(({ index }) => attempt(() => this.parser.getDependency('texture', index)));
+    return (await Promise.all(textures)).every(Boolean);
+  }
+}
+
+/** Returns what a step loads, or null if it fails. The loader throws, for example, for an index without a texture. */
+async function attempt(step) {
+  try {
+    return await step();
+  } catch {
+    return null;
   }
 }
 

@@ -95,22 +95,29 @@ export const surroundings = /* glsl */ `
   // bright on spheres. Weights by the visible area of real facets (B. Walter et al., 2007, eq. 41) are too bright on
   // planes.
   vec3 roughcastRadiance( vec3 view, vec3 n, vec3 t, vec3 b, float alphaT, float alphaB, float base ) {
-    const int TAPS = 16;
-    const float GOLDEN_ANGLE = 2.39996323;
-    // A' - A = 2 c K is the spread of the facets. An isotropic part of the spread is left to blur, since there are few
-    // taps.
+    const int PAIRS = 8;
+    // Pi over the golden ratio: directions and their opposites cover the circle evenly.
+    const float ANGLE = 1.94161104;
+    // Facets whose slopes have the covariance S / 2 make Beckmann's lobe of the squared alphas S. The GGX lobe of
+    // greatest likelihood for normally distributed slopes has them at 0.82 S. The covariance here is 1.3 / 2 S.
+    const float WIDTH = 1.3;
+    // The spread of the facets is S = A' - alpha_b^2 1, which is 2 c K for an isotropic base lobe. A quarter of the
+    // smaller spread is left to blur, since there are few facets.
     vec2 spread = max( vec2( pow2( alphaT ), pow2( alphaB ) ) - pow4( base ), 0.0 );
     float blur = 0.25 * spread.y;
-    spread = sqrt( spread - blur );
+    spread = sqrt( WIDTH * ( spread - blur ) );
     float roughness = sqrt( sqrt( pow4( base ) + blur ) );
     vec3 sum = vec3( 0.0 );
-    for ( int i = 0; i < TAPS; i ++ ) {
-      // Slopes at quantiles of a normal distribution, on a spiral.
-      float radius = sqrt( - log( 1.0 - ( float( i ) + 0.5 ) / float( TAPS ) ) ), angle = GOLDEN_ANGLE * float( i );
+    for ( int i = 0; i < PAIRS; i ++ ) {
+      // Slopes at quantiles of a normal distribution, on a spiral, and the opposite slopes: their mean is 0, and the
+      // signs of the axes do not matter.
+      float radius = sqrt( - log( 1.0 - ( float( i ) + 0.5 ) / float( PAIRS ) ) ), angle = ANGLE * float( i );
       vec2 slope = radius * spread * vec2( cos( angle ), sin( angle ) );
-      sum += getIBLRadiance( view, normalize( n + slope.x * t + slope.y * b ), roughness );
+      vec3 tilt = slope.x * t + slope.y * b;
+      sum += getIBLRadiance( view, normalize( n + tilt ), roughness );
+      sum += getIBLRadiance( view, normalize( n - tilt ), roughness );
     }
-    return sum / float( TAPS );
+    return sum / float( 2 * PAIRS );
   }
 #endif
 `;

@@ -44,7 +44,7 @@ test('reads the main direction with its frame only', () => {
 test('names each wrong property', () => {
   const wrong = {
     formatVersion: [undefined, 0, 1, 3, '2'],
-    offsetTexture: [undefined, null, 3, {}, { index: -1 }, { index: 0.5 }],
+    offsetTexture: [undefined, null, 3, {}, { index: -1 }, { index: 0.5 }, { index: 0, texCoord: -1 }],
     offsetChannels: [undefined, 1, 4, '3'],
     offsetScale: [undefined, [0], [0, 0, 0], [0, NaN], ['0', 0], [1, Infinity], { length: 2 }],
     roughnessModel: [undefined, 'beckmann', 'toString', 1],
@@ -53,6 +53,7 @@ test('names each wrong property', () => {
     roughnessMax: [[1, 1, null]],
     correctionFactor: [undefined, -1, NaN, '1'],
     frame: [undefined, 'world', null],
+    mainDirection: [[0, 0, 1], null],
     baseLobe: [null, 1, []],
   };
   for (const [name, values] of Object.entries(wrong)) {
@@ -64,8 +65,54 @@ test('names each wrong property', () => {
     }
   }
   assert.throws(() => readExtension({ ...definition(), frame: 'mainDirection' }), /mainDirection: expected 3/);
+  for (const direction of [[0, 1], [0, 0, '1'], null]) {
+    const main = { ...definition(), frame: 'mainDirection', mainDirection: direction };
+    assert.throws(() => readExtension(main), /mainDirection: expected 3/);
+  }
   for (const nothing of [null, undefined, 1, 'x', []])
     assert.throws(() => readExtension(nothing), /expected an object/);
+});
+
+test('uses the direction of a main direction of any length', () => {
+  const main = { ...definition(), frame: 'mainDirection', mainDirection: [0, 0, 2] };
+  assert.deepEqual(readExtension(main).mainDirection, [0, 0, 2]);
+});
+
+test('refuses a part of what belongs to a roughness model', () => {
+  const { roughnessModel, roughnessTexture, roughnessMin, roughnessMax, ...smooth } = definition();
+  for (const [name, value] of Object.entries({ roughnessTexture, roughnessMin, roughnessMax })) {
+    for (const part of [value, null])
+      assert.throws(() => readExtension({ ...smooth, [name]: part }), /roughnessModel: expected .*, found undefined/);
+  }
+});
+
+test('names each wrong property of the base lobe', () => {
+  const wrong = {
+    roughnessFactor: [null, '1', NaN, [1]],
+    metallicRoughnessTexture: [null, 3, {}, { index: -1 }, { index: 0, texCoord: 0.5 }],
+    anisotropy: [null, 1, []],
+  };
+  const wrongAnisotropy = {
+    anisotropyStrength: [null, '1'],
+    anisotropyRotation: [null, Infinity],
+    anisotropyTexture: [null, {}, { index: '0' }],
+  };
+  const assertNamed = (name, value, baseLobe) =>
+    assert.throws(() => readExtension({ ...definition(), baseLobe }), {
+      name: 'TypeError',
+      message: new RegExp(`^${EXTENSION}: ${name}: expected .*, found `),
+    });
+  for (const [name, values] of Object.entries(wrong))
+    for (const value of values) assertNamed(name, value, { [name]: value });
+  for (const [name, values] of Object.entries(wrongAnisotropy))
+    for (const value of values) assertNamed(name, value, { anisotropy: { [name]: value } });
+  const whole = {
+    roughnessFactor: 0.3,
+    metallicRoughnessTexture: { index: 1, texCoord: 1 },
+    anisotropy: { anisotropyStrength: 0.5, anisotropyRotation: -1, anisotropyTexture: { index: 2 } },
+  };
+  for (const baseLobe of [whole, {}, { anisotropy: {} }, { unknown: 1 }])
+    assert.deepEqual(readExtension({ ...definition(), baseLobe }).baseLobe, baseLobe);
 });
 
 test('replaces the whole roughened lobe by the base lobe', () => {

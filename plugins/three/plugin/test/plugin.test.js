@@ -17,6 +17,7 @@ const parser = (extensions, { material = new MeshStandardMaterial(), texture = n
   json: { materials: [{ extensions }] },
   loadMaterial: async () => material,
   assignTexture: async () => texture,
+  getDependency: async () => texture,
 });
 
 const load = async (t, extensions, given, options) => {
@@ -57,6 +58,22 @@ test('adds K to the base lobe, not to the roughened one', async (t) => {
   assert.deepEqual(seen, [0.3, 1], 'without its textures only the roughened lobe is left');
 });
 
+test('ignores the whole extension if a texture of the base lobe cannot be loaded', async (t) => {
+  const warn = t.mock.method(console, 'warn', () => {});
+  const lobes = [{ metallicRoughnessTexture: { index: 7 } }, { anisotropy: { anisotropyTexture: { index: 7 } } }];
+  for (const baseLobe of lobes) {
+    for (const fail of [async () => null, async () => Promise.reject(new Error('none'))]) {
+      const given = parser({ [EXTENSION]: { ...definition, baseLobe } });
+      given.getDependency = (type, index) => (index === 7 ? fail() : new Texture());
+      const [core] = given.json.materials;
+      const material = await new RoughcastPlugin(given).loadMaterial(0);
+      assert.equal(material.normalMap, null);
+      assert.equal(given.json.materials[0], core, 'the core material keeps its lobe');
+      assert.match(warn.mock.calls.at(-1).arguments[0], /a texture cannot be loaded/);
+    }
+  }
+});
+
 test('warns of an extension that cannot be used and shows the material without it', async (t) => {
   const broken = await load(t, { [EXTENSION]: { ...definition, frame: 'world' } });
   assert.equal(broken.material.normalMap, null);
@@ -67,6 +84,8 @@ test('warns of an extension that cannot be used and shows the material without i
   const untextured = await load(t, { [EXTENSION]: definition }, { texture: null });
   assert.equal(untextured.material.normalMap, null);
   assert.match(untextured.warnings[0], /cannot be loaded/);
+  const throwing = { ...parser({ [EXTENSION]: definition }), assignTexture: () => assert.fail('no such texture') };
+  assert.equal((await new RoughcastPlugin(throwing).loadMaterial(0)).normalMap, null);
   const unlit = await load(t, { [EXTENSION]: definition }, { material: new MeshBasicMaterial() });
   assert.match(unlit.warnings[0], /is not lit/);
 });
