@@ -63,6 +63,7 @@ const VIEWER = [
   'density.js',
   'direction.js',
   'measure.js',
+  'ramp.js',
   'start.js',
   'subject.js',
   'supersample.js',
@@ -81,7 +82,13 @@ function copy(from, to) {
 rmSync(out, { recursive: true, force: true });
 cpSync(path.join(npm, 'page'), out, { recursive: true });
 for (const name of THREE) copy(path.join(npm, 'node_modules/three', name), path.join(out, 'three', name));
-for (const name of VIEWER) copy(path.join(repository, 'plugins/three/page', name), path.join(out, 'viewer', name));
+for (const name of VIEWER) {
+  const file = path.join(repository, 'plugins/three/page', name);
+  for (const [, module] of readFileSync(file, 'utf8').matchAll(/ from '\.\/(.*)';/g)) {
+    if (!VIEWER.includes(module)) throw new Error(`${file}: expected imports among VIEWER, found ${module}; add it`);
+  }
+  copy(file, path.join(out, 'viewer', name));
+}
 
 for (const name of MODULES) copy(path.join(npm, 'roughcast', name), path.join(out, 'roughcast', name));
 for (const name of LIBRARY) {

@@ -7,7 +7,6 @@ export function size(bytes) {
 }
 
 const largest = (errors) => Math.max(...errors);
-const percent = (error) => `${(100 * error).toFixed(0)} %`;
 
 /** Returns the sentence on sizes and time. */
 export function headline(before, { bytes, report, seconds }) {
@@ -40,7 +39,7 @@ export function layerRows({ layers }) {
       const name = layer === 'base' ? material : `${material}, ${layer}`;
       const plain = choice?.candidates.find((candidate) => candidate.model === 'none');
       const taken = choice?.candidates[choice.chosen];
-      return [name, model, ...[plain, taken].map((one) => (one ? percent(largest(one.errors)) : '–'))];
+      return [name, model, ...[plain, taken].map((one) => (one ? largest(one.errors).toFixed(2) : '–'))];
     });
 }
 

@@ -54,6 +54,8 @@ export function control(canvas, stage, set) {
   canvas.addEventListener(
     'wheel',
     (event) => {
+      // Otherwise the page scrolls. Browsers give pinches on touchpads as wheels with Ctrl.
+      if (!event.ctrlKey && !event.metaKey && document.activeElement !== canvas) return;
       event.preventDefault();
       zoom(Math.exp(event.deltaY * 0.001));
     },

@@ -3,7 +3,7 @@ import { Baker } from './baker.js';
 import { headline, layerRows, measured, notes, size, textureRows } from './facts.js';
 import { control } from './input.js';
 import { label } from './labels.js';
-import { nameOf, settingsOf } from './settings.js';
+import { commandOf, nameOf, settingsOf } from './settings.js';
 import { Stage } from './stage.js';
 
 const element = (id) => document.getElementById(id);
@@ -18,9 +18,9 @@ const OPTIONS = ['engine', 'textures', 'maxSize', 'quality', 'rdo'];
 
 const view = { azimuth: 20, elevation: 35, split: 0.5 };
 for (const name of VIEW) view[name] = form.elements[name].value;
-const stage = new Stage(element('canvas'), view, ({ places, samples, errors, texels }) => {
-  label(element('labels'), places, errors, element('frame').clientHeight);
-  element('measured').textContent = measured(texels, samples);
+const stage = new Stage(element('canvas'), view, (frame) => {
+  label(element('labels'), frame, document.body.dataset.state === 'busy');
+  element('measured').textContent = measured(frame.texels, frame.samples);
 });
 
 /** The file that is shown: its name without extension, and its bytes. */
@@ -35,10 +35,8 @@ async function bake() {
   const { name, bytes } = file;
   const mine = ++begun;
   const settings = settingsOf(form);
-  document.body.dataset.state = 'busy';
-  element('download').hidden = true;
-  status.textContent = `Baking ${name}.glb …`;
-  element('progress').value = 0;
+  for (const id of ['download', 'same']) element(id).hidden = true;
+  wait(`Baking ${name}.glb …`);
   try {
     const baked = await baker.bake(bytes, name, settings, (share) => (element('progress').value = share));
     const scene = baked && (await stage.load(baked.bytes));
@@ -46,15 +44,22 @@ async function bake() {
     stage.show('baked', scene);
     report(baked);
     offer(baked.bytes, nameOf(name, settings));
-    document.body.dataset.state = 'done';
+    element('command').textContent = commandOf(name, settings);
+    element('same').hidden = false;
+    say('done', headline(bytes.byteLength, baked));
   } catch (error) {
-    if (mine === begun) fail(error);
+    if (mine !== begun) return;
+    // An earlier bake has other settings than the form.
+    stage.dropBake();
+    element('facts').hidden = true;
+    fail(error);
   }
 }
 
 /** Takes a new file, shows it, and bakes it. */
 async function take(name, bytes) {
   const mine = ++begun;
+  wait(`Loading ${name} …`);
   try {
     const scene = await stage.load(bytes);
     if (mine !== begun) return;
@@ -67,9 +72,28 @@ async function take(name, bytes) {
   }
 }
 
+/** Says what is done now. The progress is unknown until the first report of it. */
+function wait(text) {
+  element('progress').removeAttribute('value');
+  say('busy', text);
+}
+
 function fail(error) {
-  document.body.dataset.state = 'failed';
-  status.textContent = error.message;
+  say('failed', error.message);
+}
+
+/** Changes the state of the page and the text on it. The labels of the pictures depend on the state. */
+function say(state, text) {
+  document.body.dataset.state = state;
+  status.replaceChildren(...withCode(text));
+  stage.refresh();
+}
+
+/** Returns the nodes of a text, with code where it has backticks. */
+function withCode(text) {
+  return text
+    .split('`')
+    .map((part, index) => (index % 2 ? Object.assign(document.createElement('code'), { textContent: part }) : part));
 }
 
 /** Returns a row of a table, whose first cell is its header. */
@@ -82,12 +106,15 @@ function row(cells) {
 }
 
 function report(baked) {
-  status.textContent = headline(file.bytes.byteLength, baked);
   const lines = layerRows(baked.report);
   element('rows').replaceChildren(...lines.map(row));
   element('layers').hidden = lines.length === 0;
   element('textures').replaceChildren(...textureRows(baked.report).map(row));
-  const items = notes(baked.report).map((text) => Object.assign(document.createElement('li'), { textContent: text }));
+  const items = notes(baked.report).map((text) => {
+    const item = document.createElement('li');
+    item.append(...withCode(text));
+    return item;
+  });
   element('notes').replaceChildren(...items);
   element('asks').hidden = items.length === 0;
   element('facts').hidden = baked.report.textures.length === 0;
@@ -137,6 +164,9 @@ form.addEventListener('change', ({ target: { name, value } }) => {
   if (name === 'sample' && value) takeSample(value);
 });
 form.addEventListener('submit', (event) => event.preventDefault());
+// Pages without https have no clipboard, except on this machine.
+element('copy').hidden = !navigator.clipboard;
+element('copy').addEventListener('click', () => navigator.clipboard.writeText(element('command').textContent));
 element('file').addEventListener('change', (event) => takeFile(event.target.files[0]));
 addEventListener('dragover', (event) => {
   event.preventDefault();

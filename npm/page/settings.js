@@ -1,4 +1,5 @@
 // The options of the bake that a person can choose.
+import { flags } from './roughcast/lib/settings.js';
 
 /** Returns the settings of the library for the values of the form. Empty values are those that the library chooses. */
 export function settingsOf(form) {
@@ -23,4 +24,20 @@ export function nameOf(name, { engine = 'any', textures, maxSize, quality, rdo }
     rdo && `rdo${rdo}`,
   ];
   return [name, 'baked', ...marks.filter(Boolean)].join('-') + '.glb';
+}
+
+/** Settings of the page that the command line has without a flag, for a .glb. */
+const DEFAULTS = { quality: 'fast', textures: 'bumps', gltf: 'strict' };
+
+/** Returns the command that makes the file which the page offers. */
+export function commandOf(name, settings) {
+  const chosen = Object.entries(settings).filter(([key, value]) => DEFAULTS[key] !== value);
+  const options = flags(Object.fromEntries(chosen)).map((flag) => flag.replace('=', ' '));
+  const [input, output] = [`${name}.glb`, nameOf(name, settings)].map(quoted);
+  return ['npx roughcast bake', input, '-o', output, ...options].join(' ');
+}
+
+/** Returns a file name as a word of a shell. */
+function quoted(text) {
+  return /^[\w.-]+$/.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`;
 }

@@ -49,8 +49,8 @@ export class Stage {
   #measuredAt = 0;
 
   /**
-   * `onFrame` takes the places of the pictures, the number of samples of the truth, the error of each other picture
-   * once it is measured, and how many texels a pixel covers.
+   * `onFrame` takes the places of the pictures, whether there is a bake, the number of samples of the truth, the error
+   * of each other picture once it is measured, and how many texels a pixel covers.
    */
   constructor(canvas, view, onFrame) {
     Object.assign(this, { view, onFrame });
@@ -72,6 +72,17 @@ export class Stage {
     this.#assets.set(name, scene);
     if (name === 'before') this.view.radius = null;
     this.#arrange();
+  }
+
+  /** Drops the bake: the picture `baked` shows the original again. */
+  dropBake() {
+    this.#remove('baked');
+    this.#arrange();
+  }
+
+  /** Calls `onFrame` again, with the same pictures. */
+  refresh() {
+    this.#request();
   }
 
   /** Frees the memory that an asset has on the GPU. */
@@ -162,6 +173,7 @@ export class Stage {
     );
     this.onFrame({
       places: shown,
+      isBaked: this.#assets.has('baked'),
       samples: isNeeded ? truth.count : 0,
       errors: this.#errors,
       texels: this.#density * pixelWidth(this.view.radius, this.#pixels),

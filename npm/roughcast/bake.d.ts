@@ -64,6 +64,22 @@ export interface Settings {
   trim?: boolean;
 }
 
+/** Settings of a standalone map. */
+export type MapSettings = Pick<
+  Settings,
+  | 'profile'
+  | 'model'
+  | 'maxError'
+  | 'quality'
+  | 'rdo'
+  | 'distribution'
+  | 'lobe'
+  | 'target'
+  | 'maxSize'
+  | 'maxTexels'
+  | 'provenance'
+>;
+
 /** Default: $ROUGHCAST_BACKEND, else the native tool where its package is installed, else WebAssembly. */
 export type Backend = 'native' | 'wasm';
 
@@ -148,7 +164,10 @@ export interface BakeOptions {
    * unless the page is cross-origin isolated. The bytes do not depend on it.
    */
   threads?: number;
-  /** Takes the share of the work that is done, in [0, 1]. */
+  /**
+   * Takes the share of the work that is done, in [0, 1]. WebAssembly calls it after each bump map, the native tool once
+   * with 1 when the bake is done. With one bump map, both call it once.
+   */
   onProgress?: (share: number) => void;
   backend?: Backend;
 }
@@ -165,7 +184,8 @@ export interface Baked {
 /**
  * Bakes the materials of a glTF document, given as the bytes of a .gltf or .glb file.
  *
- * @throws Error whose message names the material and the texture, what was expected, and what to do.
+ * @throws Error whose message names the material and the texture, what was expected, and what to do; TypeError if
+ * `document` is no Uint8Array or a setting is unknown.
  */
 export function bake(document: Uint8Array, options?: BakeOptions): Promise<Baked>;
 
@@ -190,7 +210,7 @@ export interface BakeMapOptions {
   roughness?: { image: Uint8Array; name?: string };
   /** The roughness of the base lobe in [0, 1]; multiplies `roughness`. */
   roughnessFactor?: number;
-  settings?: Settings;
+  settings?: MapSettings;
   /** Number of threads, as of `bake`. */
   threads?: number;
   backend?: Backend;
@@ -205,6 +225,7 @@ export interface BakedMap {
 /**
  * Bakes a standalone normal or height map (PNG, JPEG, EXR, TIFF, TGA, HDR, WebP or KTX2) into KTX2 files.
  *
- * @throws Error whose message names the image, what was expected, and what to do.
+ * @throws Error whose message names the image, what was expected, and what to do; TypeError if `image` is no Uint8Array
+ * or a setting is unknown.
  */
 export function bakeMap(image: Uint8Array, options?: BakeMapOptions): Promise<BakedMap>;

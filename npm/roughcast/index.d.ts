@@ -5,10 +5,13 @@ import type { Backend, Report, Settings } from './bake.js';
 export * from './bake.js';
 
 /** Options of the transform. Its textures are KTX2 only, since glTF-Transform knows one image for each texture. */
-export interface TransformOptions extends Omit<Settings, 'gltf' | 'glb'> {
+export interface TransformOptions extends Omit<Settings, 'gltf' | 'glb' | 'engine'> {
+  /** As of `bake`, without bevy and godot: these need a .gltf of `bake` with its textures beside it. */
+  engine?: Exclude<Settings['engine'], 'bevy' | 'godot'>;
   backend?: Backend;
   /** Number of threads, as of `bake`. */
   threads?: number;
+  /** Takes the share of the work that is done, as of `bake`. */
   onProgress?: (share: number) => void;
   /** Takes the report. Notes that ask for action are warnings in the document's log, too. */
   onReport?: (report: Report) => void;
@@ -16,7 +19,10 @@ export interface TransformOptions extends Omit<Settings, 'gltf' | 'glb'> {
 
 /**
  * Returns a transform that bakes the materials of a document and replaces their textures by KTX2:
- * `await document.transform(roughcast({ profile: 'portable' }))`.
+ * `await document.transform(roughcast({ profile: 'portable' }))`. A new texture has the name of the texture that it is
+ * made from, and a URI after this name.
+ *
+ * @throws Error if `engine` is bevy or godot.
  */
 export function roughcast(options?: TransformOptions): Transform;
 

@@ -1,6 +1,6 @@
 // The try-it page of a release as a person would use it, in headless Chromium. Screenshots are left in target/npm.
 import assert from 'node:assert/strict';
-import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import os from 'node:os';
 import path from 'node:path';
 import process from 'node:process';
@@ -9,7 +9,7 @@ import { chromium } from 'playwright-core';
 import { PNG } from 'pngjs';
 import { bake } from 'roughcast';
 import { serve } from '../../plugins/three/server.js';
-import { fixtures, noModule, npm, repository, run } from './common.js';
+import { binary, fixtures, noBinary, noModule, npm, repository, run, temporary } from './common.js';
 
 const executablePath = process.env.CHROMIUM ?? '/usr/bin/chromium';
 const noBrowser = existsSync(executablePath) ? false : `needs Chromium at ${executablePath} (or $CHROMIUM)`;
@@ -83,12 +83,13 @@ async function download(page) {
   return { name: event.suggestedFilename(), bytes: readFileSync(await event.path()) };
 }
 
-/** Returns the labels of the pictures: name, error where it is known, and box. */
+/** Returns the labels of the pictures: name, text, error where it is known, and box. */
 const labels = (page) =>
   // In one call, since each frame makes new labels.
   page.evaluate(() =>
     [...document.querySelectorAll('#labels span')].map((span) => ({
       name: span.dataset.name,
+      text: span.textContent,
       error: Number(/error (\S+)/.exec(span.textContent)?.[1]),
       box: span.getBoundingClientRect().toJSON(),
     })),
@@ -228,6 +229,99 @@ test('takes a file, a dropped file, and says why another is refused', options, a
   await openFile(page, 'broken.glb', Buffer.from('glTF and no more'));
   await page.waitForFunction(() => !document.getElementById('status').textContent.includes('model.gltf'));
   await finished(page, 'failed');
+});
+
+const MODULE = '**/roughcast.wasm';
+
+/** Holds the WebAssembly module back. Returns a function that answers, by `fail` with an error. */
+async function holdBake(context) {
+  let end;
+  const decided = new Promise((resolve) => (end = resolve));
+  await context.route(MODULE, async (route) => {
+    if ((await decided) === 'fail') await route.fulfill({ status: 404 });
+    else await route.continue();
+  });
+  return end;
+}
+
+test('says above the picture what is shown while a bake runs and when it has failed', options, async () => {
+  for (const [width, height, colorScheme] of [
+    [1280, 800, 'light'],
+    [390, 664, 'dark'],
+  ]) {
+    const context = await browser.newContext({ viewport: { width, height }, colorScheme });
+    const page = await context.newPage();
+    page.setDefaultTimeout(120_000);
+    const shot = (state) => page.screenshot({ path: path.join(SHOTS, `${state}-${width}-${colorScheme}.png`) });
+    const isSeen = async (selector) => {
+      const box = await page.locator(selector).boundingBox();
+      return box.y >= 0 && box.y + box.height <= height;
+    };
+    const middleIs = (text) => page.locator('[data-name=baked]', { hasText: text }).waitFor();
+    const end = await holdBake(context);
+    await page.goto(`${server.url}/page/index.html`);
+    await page.getByText('Baking brushed.glb').waitFor();
+    await middleIs(/^Baking …$/);
+    assert.equal(await page.locator('progress').getAttribute('value'), null, 'no share of the work is known');
+    assert.ok((await isSeen('#status')) && (await isSeen('progress')));
+    await shot('busy');
+    end('fail');
+    await finished(page, 'failed');
+    await middleIs(/^Not baked$/);
+    assert.match(await status(page), /expected the WebAssembly module at .*, found 404/);
+    assert.ok(await isSeen('#status'));
+    await shot('failed');
+    await context.unroute(MODULE);
+    await choose(page, 'rdo', '2');
+    await finished(page);
+    await middleIs(/^Baked/);
+    assert.ok((await isSeen('#status')) && /kB before/.test(await status(page)));
+    await shot('done');
+    await context.close();
+  }
+});
+
+test('names the command that makes the file', { skip: options.skip || noBinary }, async (t) => {
+  const page = await open();
+  await finished(page);
+  const command = () => page.locator('#command').textContent();
+  assert.equal(await command(), 'npx roughcast bake brushed.glb -o brushed-baked.glb --engine three');
+  await openFile(page, 'a lake.glb', readFileSync(path.join(fixtures, 'waves/waves.glb')));
+  await choose(page, 'maxSize', '64');
+  await page.locator('#download[download="a lake-baked-64.glb"]').waitFor();
+  assert.equal(
+    await command(),
+    "npx roughcast bake 'a lake.glb' -o 'a lake-baked-64.glb' --engine three --max-size 64",
+  );
+  const cwd = temporary(t);
+  writeFileSync(path.join(cwd, 'a lake.glb'), readFileSync(path.join(fixtures, 'waves/waves.glb')));
+  run('sh', ['-c', (await command()).replace('npx roughcast', binary)], { cwd });
+  const { name, bytes } = await download(page);
+  assert.ok(bytes.equals(readFileSync(path.join(cwd, name))));
+  // The notes name options as code, and errors are numbers as in the notes.
+  assert.equal((await page.locator('#facts').textContent()).includes('`'), false);
+  assert.match(await page.locator('#rows td').nth(2).textContent(), /^0\.\d\d$/);
+});
+
+test('scrolls with the wheel over the picture, which zooms with Ctrl or with the focus', options, async () => {
+  const page = await open();
+  await finished(page);
+  const covers = (texels) => page.getByText(`about ${texels} x ${texels} texels`).waitFor();
+  const { x, y, width, height } = await page.locator('#canvas').boundingBox();
+  await page.mouse.move(x + width / 2, y + height / 2);
+  await covers('6.0');
+  await page.mouse.wheel(0, 100);
+  await page.waitForFunction(() => scrollY > 0);
+  await covers('6.0');
+  await page.keyboard.down('Control');
+  await page.mouse.wheel(0, 100);
+  await page.keyboard.up('Control');
+  await covers('6.6');
+  await page.locator('#canvas').focus();
+  await page.mouse.wheel(0, -100);
+  await covers('6.0');
+  assert.equal(await page.locator('#canvas').evaluate((canvas) => getComputedStyle(canvas).touchAction), 'pan-y');
+  assert.deepEqual(page.problems, []);
 });
 
 test('follows keyboard and pointer', options, async () => {

@@ -4,7 +4,7 @@ import { readFileSync } from 'node:fs';
 import path from 'node:path';
 import test from 'node:test';
 import { Document, Logger, NodeIO, Verbosity } from '@gltf-transform/core';
-import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
+import { ALL_EXTENSIONS, EXTTextureWebP } from '@gltf-transform/extensions';
 import { dedup, prune } from '@gltf-transform/functions';
 import { RoughnessPyramid, bake, roughcast } from 'roughcast';
 import { fixtures, noModule } from './common.js';
@@ -172,7 +172,7 @@ test('the transform reports progress and logs what asks for action', options, as
   const io = newIO();
   const document = await io.read(path.join(fixtures, 'knobs/knobs.gltf'));
   const shares = [];
-  await document.transform(roughcast({ backend, engine: 'godot', onProgress: (share) => shares.push(share) }));
+  await document.transform(roughcast({ backend, engine: 'filament', onProgress: (share) => shares.push(share) }));
   assert.ok(io.warnings.some((text) => text.startsWith('roughcast: Label, base: the roughness texture has other')));
   assert.equal(shares.at(-1), 1);
   assert.deepEqual(
@@ -181,10 +181,67 @@ test('the transform reports progress and logs what asks for action', options, as
   );
 });
 
+test('new textures have names and URIs after their sources', options, async () => {
+  const document = await read('brushed/brushed.gltf');
+  const root = document.getRoot();
+  const [material] = root.listMaterials();
+  // The name is taken, by a texture that stays.
+  root.listTextures()[0].setURI('Brushed_Normal.ktx2');
+  await document.transform(roughcast({ backend }));
+  const namesOf = (texture) => [texture.getName(), texture.getURI()];
+  assert.deepEqual(namesOf(material.getNormalTexture()), ['brushed_normal', 'brushed_normal-2.ktx2']);
+  assert.deepEqual(namesOf(material.getMetallicRoughnessTexture()), ['brushed_surface', 'brushed_surface.ktx2']);
+  const { json, resources } = await newIO().writeJSON(document);
+  for (const { uri } of json.images) assert.ok(resources[uri], uri);
+
+  const glb = await read('waves/waves.glb');
+  await glb.transform(roughcast({ backend }));
+  assert.deepEqual(
+    glb.getRoot().listTextures().map(namesOf),
+    [
+      ['waves_colour', ''],
+      ['waves_normal', 'waves_normal.ktx2'],
+      ['Lake.roughness', 'Lake.roughness.ktx2'],
+    ],
+  );
+});
+
+test('messages name the texture', options, async () => {
+  const document = await read('waves/waves.glb');
+  document.getRoot().listMaterials()[0].getNormalTexture().setImage(new Uint8Array(9)).setMimeType('image/png');
+  await assert.rejects(document.transform(roughcast({ backend })), /material Lake, texture waves_normal\.png: /);
+});
+
+/** A WebP of 4 x 4 texels. */
+const WEBP = new Uint8Array(Buffer.from('UklGRh4AAABXRUJQVlA4TBEAAAAvA8AAAAdQrdIWpf+BiOh/AAA=', 'base64'));
+
+test('the extension of WebP stays as long as a texture needs it', options, async () => {
+  for (const [textures, remains] of [
+    ['bumps', true],
+    ['all', false],
+  ]) {
+    const document = await read('brushed/brushed.gltf');
+    document.createExtension(EXTTextureWebP).setRequired(true);
+    const colour = document.getRoot().listMaterials()[0].getBaseColorTexture();
+    colour.setImage(WEBP).setMimeType('image/webp').setURI('colour.webp');
+    await document.transform(roughcast({ backend, textures }));
+    const { json } = await newIO().writeJSON(document);
+    assert.equal(json.extensionsUsed.includes('EXT_texture_webp'), remains, textures);
+    assert.equal(json.extensionsRequired.includes('EXT_texture_webp'), remains, textures);
+  }
+});
+
+test('engines that cannot show the output are refused', () => {
+  for (const engine of ['bevy', 'godot']) {
+    assert.throws(() => roughcast({ engine }), new RegExp(`found ${engine}: .*; use bake\\(\\)`));
+  }
+});
+
 test('a wrong setting rejects and leaves the document as it was', options, async () => {
   const document = await read('waves/waves.glb');
   const textures = document.getRoot().listTextures();
   await assert.rejects(document.transform(roughcast({ maxError: 7, backend })), /max-error/);
+  await assert.rejects(document.transform(roughcast({ maxEror: 0.1, backend })), /settings: .*maxError.*found maxEror/);
   assert.deepEqual(document.getRoot().listTextures(), textures);
 });
 

@@ -13,6 +13,8 @@ export async function transform(document: Document): Promise<Report> {
   roughcast({ profile: 'all' });
   // @ts-expect-error: glTF-Transform knows one image for each texture
   roughcast({ gltf: 'fallback' });
+  // @ts-expect-error: Bevy needs a .gltf of bake()
+  roughcast({ engine: 'bevy' });
   return report;
 }
 
@@ -34,6 +36,8 @@ export async function bytes(glb: Uint8Array): Promise<Uint8Array> {
 
 export async function map(image: Uint8Array): Promise<string> {
   const { files, report } = await bakeMap(image, { height: true, heightScale: 0.02, wrap: ['repeat', 'clamp'] });
+  // @ts-expect-error: a setting of documents
+  await bakeMap(image, { settings: { engine: 'three' } });
   return files.map((file) => file.path).join() + report.model;
 }
 

@@ -1,7 +1,7 @@
 // Bytes to bytes: documents and standalone maps.
 import { backend, listFiles } from '#backend';
 import { isGlb, stem } from './names.js';
-import { tomlSettings } from './settings.js';
+import { MAP_SETTINGS, tomlSettings } from './settings.js';
 
 /** Bakes the materials of a glTF document; bake.d.ts describes the arguments and the result. */
 export async function bake(document, options) {
@@ -14,17 +14,18 @@ export async function bake(document, options) {
 
 /** Bakes as `bake` does, with all members of the backend's report, and with the report of the run. */
 export async function bakeWithSizes(document, options = {}) {
-  const { name = 'model', files = {}, settings = {}, threads, onProgress, backend: kind } = options;
+  const { name = 'model', files = {}, threads, onProgress, backend: kind } = options;
+  const [bytes, settings] = [asBytes(document, 'document'), tomlSettings(options.settings)];
   const { bakeDocument } = await backend(kind);
-  const { names } = await listFiles(document, threads);
+  const { names } = await listFiles(bytes, threads);
   const beside = [];
   for (const path of names) {
-    const bytes = typeof files === 'function' ? await files(path) : files[path];
+    const file = typeof files === 'function' ? await files(path) : files[path];
     // The bake reports files that are missing, all at once.
-    if (bytes) beside.push({ path, bytes: asBytes(bytes, path) });
+    if (file) beside.push({ path, bytes: asBytes(file, path) });
   }
-  const input = { path: `${name}.${isGlb(document) ? 'glb' : 'gltf'}`, bytes: asBytes(document, name) };
-  const baked = await bakeDocument({ name, input, beside, settings: tomlSettings(settings), threads, onProgress });
+  const input = { path: `${name}.${isGlb(bytes) ? 'glb' : 'gltf'}`, bytes };
+  const baked = await bakeDocument({ name, input, beside, settings, threads, onProgress });
   baked.files.sort((a, b) => (a.path < b.path ? -1 : 1));
   return { ...baked, copies: baked.copies.sort() };
 }
@@ -33,14 +34,16 @@ export async function bakeWithSizes(document, options = {}) {
 export async function bakeMap(image, options = {}) {
   const { name = 'map.png', output = `${stem(name)}.ktx2`, roughness, settings, threads, backend: kind, ...rest } =
     options;
-  const { bakeImage } = await backend(kind);
-  const files = [{ path: name, bytes: asBytes(image, name) }];
+  const files = [{ path: name, bytes: asBytes(image, 'image') }];
   if (roughness) files.push({ path: roughness.name ?? 'roughness.png', bytes: asBytes(roughness.image, 'roughness') });
-  return bakeImage({ output, files, options: rest, settings: tomlSettings(settings), threads });
+  const named = tomlSettings(settings, MAP_SETTINGS);
+  const { bakeImage } = await backend(kind);
+  return bakeImage({ output, files, options: rest, settings: named, threads });
 }
 
-/** Checks that `bytes` is a Uint8Array. */
+/** Returns `bytes`, which must be a Uint8Array. */
 function asBytes(bytes, name) {
   if (bytes instanceof Uint8Array) return bytes;
-  throw new TypeError(`${name}: expected a Uint8Array, found ${bytes?.constructor?.name ?? bytes}`);
+  const remedy = 'read the file first, and wrap an ArrayBuffer by new Uint8Array(buffer)';
+  throw new TypeError(`${name}: expected a Uint8Array, found ${bytes?.constructor?.name ?? bytes}; ${remedy}`);
 }

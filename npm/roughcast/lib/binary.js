@@ -6,7 +6,7 @@ import process from 'node:process';
 const require = createRequire(import.meta.url);
 
 /** The name of the platform's package. */
-export const platformPackage = `@roughcast/${process.platform}-${process.arch}`;
+const platformPackage = `@roughcast/${process.platform}-${process.arch}`;
 
 /**
  * Finds the native tool: $ROUGHCAST_BINARY, else that of the platform's package.
@@ -15,7 +15,8 @@ export const platformPackage = `@roughcast/${process.platform}-${process.arch}`;
  */
 export function findBinary() {
   const named = process.env.ROUGHCAST_BINARY;
-  if (named) return existsSync(named) ? { path: named } : { why: `$ROUGHCAST_BINARY is ${named}, where no file is` };
+  if (named && existsSync(named)) return { path: named };
+  if (named) return { why: `$ROUGHCAST_BINARY is ${named}, where no file is; correct or unset it` };
   const file = process.platform === 'win32' ? 'roughcast.exe' : 'roughcast';
   try {
     return { path: require.resolve(`${platformPackage}/bin/${file}`) };

@@ -4,9 +4,20 @@ import { KHRMaterialsAnisotropy, KHRTextureBasisu } from '@gltf-transform/extens
 import { bake } from './bake.js';
 import { addExtensions, copier } from './copy.js';
 import { RoughnessPyramid } from './roughness-pyramid.js';
+import { nameBaked, nameSources } from './texture-names.js';
+
+/** Engines that cannot show what the transform makes, and why. docs/engines.md describes them. */
+const NEED_BAKE = {
+  bevy: 'Bevy refuses documents that require KHR_texture_basisu',
+  godot: 'Godot drops the mips of images inside a .glb',
+};
+
+/** Extensions that textures of one MIME type need. */
+const IMAGE_TYPES = { EXT_texture_webp: 'image/webp', EXT_texture_avif: 'image/avif' };
 
 /** Returns a transform that bakes the materials of a document; index.d.ts describes its options. */
 export function roughcast({ backend, threads, onProgress, onReport, ...settings } = {}) {
+  refuseEngine(settings.engine);
   // The name is what the log of glTF-Transform shows.
   return Object.defineProperty(transform, 'name', { value: 'roughcast' });
 
@@ -21,14 +32,24 @@ export function roughcast({ backend, threads, onProgress, onReport, ...settings 
       KHRTextureBasisu,
       RoughnessPyramid,
     ]);
-    const source = await io.writeBinary(partToBake(document, needsMeshes(settings)));
+    // A .gltf, since messages name the files of its textures. Images of a .glb have no names there.
+    const { json, resources: files } = await io.writeJSON(partToBake(document, needsMeshes(settings)));
+    const source = new TextEncoder().encode(JSON.stringify(json));
     // glTF-Transform knows one image for each texture, which is the KTX2: a fallback beside it would be lost.
     const strict = { ...settings, gltf: 'strict', glb: true };
-    const result = await bake(source, { settings: strict, backend, threads, onProgress });
+    const result = await bake(source, { files, settings: strict, backend, threads, onProgress });
     replaceMaterials(document, await io.readBinary(result.document.bytes), result.report, settings);
     log(document.getLogger(), result.report);
     onReport?.(result.report);
   }
+}
+
+/** Throws if an engine cannot show what the transform makes. */
+function refuseEngine(engine) {
+  if (!Object.hasOwn(NEED_BAKE, engine ?? '')) return;
+  const found = `engine: expected an engine that shows the output of this transform, found ${engine}`;
+  const remedy = 'use bake() or the command line, which write a .gltf with its textures beside it';
+  throw new Error(`${found}: ${NEED_BAKE[engine]}; ${remedy}`);
 }
 
 /** Returns whether a bake reads meshes, as crates/core/src/bake/geometry.rs decides. */
@@ -44,8 +65,9 @@ function partToBake(document, withMeshes) {
   const counterpart = copier(part, [[root, part.getRoot()]]);
   if (withMeshes) part.getRoot().copy(root, counterpart);
   else root.listMaterials().forEach(counterpart);
-  // Images of a .glb are in a buffer, and glTF-Transform cannot write an empty one.
-  if (part.getRoot().listTextures().length > 0 && part.getRoot().listBuffers().length === 0) part.createBuffer();
+  nameSources(part);
+  // glTF-Transform chooses other URIs, which are distinct and name files beside the document.
+  for (const buffer of part.getRoot().listBuffers()) buffer.setURI('');
   for (const material of part.getRoot().listMaterials()) leaveOutHeightTexture(material, document.getLogger());
   return part;
 }
@@ -76,6 +98,18 @@ function replaceMaterials(document, baked, report, { textures }) {
     extensions.filter(isUnused).forEach((extension) => extension.dispose());
   }
   [...before].filter(isUnused).forEach((texture) => texture.dispose());
+  nameBaked(document, before);
+  disposeImageTypes(document);
+}
+
+/** Disposes extensions for images of a type of which no texture is left. */
+function disposeImageTypes(document) {
+  const root = document.getRoot();
+  const types = new Set(root.listTextures().map((texture) => texture.getMimeType()));
+  for (const extension of root.listExtensionsUsed()) {
+    const type = IMAGE_TYPES[extension.extensionName];
+    if (type && !types.has(type)) extension.dispose();
+  }
 }
 
 /** Returns whether nothing but the list of all properties refers to a property. */

@@ -1,5 +1,6 @@
 // Options of the command line.
 import { parseArgs } from 'node:util';
+import { DOCUMENT_SETTINGS, MAP_SETTINGS, kebab } from '../settings.js';
 
 /** Arguments that cannot be used. */
 export class UsageError extends Error {}
@@ -8,39 +9,10 @@ const text = { type: 'string' };
 const flag = { type: 'boolean' };
 
 /** Settings that `bake` and `map` share. */
-const TEXTURE = {
-  profile: text,
-  model: text,
-  'max-error': text,
-  quality: text,
-  rdo: text,
-  distribution: text,
-  lobe: text,
-  target: text,
-  'max-size': text,
-  'max-texels': text,
-  'no-provenance': flag,
-};
+const TEXTURE = { ...optionsOf(MAP_SETTINGS.filter((name) => name !== 'provenance')), 'no-provenance': flag };
 
 /** Settings of `bake` only. */
-export const DOCUMENT = {
-  engine: text,
-  'max-model': text,
-  'own-anisotropy': text,
-  textures: text,
-  'diffuse-light': text,
-  gltf: text,
-  glb: text,
-  'scale-normals': text,
-  frame: text,
-  'main-direction': text,
-  'height-scale': text,
-  nearest: text,
-  'screen-height': text,
-  fov: text,
-  aspect: text,
-  trim: text,
-};
+export const DOCUMENT = optionsOf(DOCUMENT_SETTINGS);
 
 /** Where outputs go, with how many threads, and what is printed. */
 export const OUTPUT = {
@@ -106,6 +78,11 @@ export function number(name, value) {
 function truth(name, value) {
   if (value === 'true' || value === 'false') return value === 'true';
   throw new UsageError(`--${name}: expected true or false, found ${value}`);
+}
+
+/** Returns an option with a value for each setting. */
+function optionsOf(settings) {
+  return Object.fromEntries(settings.map((name) => [kebab(name), text]));
 }
 
 function pick(values, names) {

@@ -1,6 +1,6 @@
 // The command line without the native tool: `bake` and `map` on WebAssembly, and the viewer.
 import { createRequire } from 'node:module';
-import { platformPackage } from '../binary.js';
+import { findBinary } from '../binary.js';
 import { bakeCommand } from './bake.js';
 import { mapCommand } from './map.js';
 import { UsageError } from './options.js';
@@ -8,7 +8,8 @@ import { viewCommand } from './view.js';
 
 const { version } = createRequire(import.meta.url)('../../package.json');
 
-const HELP = `Bake lost bump roughness into KTX2 textures and glTF materials.
+/** Returns the help. */
+const help = () => `Bake lost bump roughness into KTX2 textures and glTF materials.
 
 Usage:
   roughcast bake <INPUT>... -o <DIR|FILE.glb|FILE.gltf>   .gltf, .glb, or folders of them
@@ -19,9 +20,16 @@ Settings: --profile portable|pyramid|both, --model auto|none|isotropic|anisotrop
 --max-error E, --rdo DB, --target basis|float, --gltf fallback|strict|dual, --glb, --textures bumps|all, --max-size N,
 --frame, --height-scale, ...
 --threads N (default: one for each processor, at most 16)
-They are those of the native tool, which has more commands and is faster. It is in the package
-${platformPackage}, which is not installed: WebAssembly runs in its place.
+They are those of the native tool, which has more commands and is faster.
+
+WebAssembly runs in its place: ${whyWebAssembly()}.
 `;
+
+/** Returns why the native tool does not run, and what to do about it. */
+function whyWebAssembly() {
+  const { path, why } = findBinary();
+  return path ? `ROUGHCAST_BACKEND is wasm; unset it to run ${path}` : why;
+}
 
 /** Commands that only the native tool has. */
 const NATIVE = ['watch', 'check', 'inspect', 'compare', 'render', 'plan', 'init', 'completions', 'man'];
@@ -50,14 +58,14 @@ export async function run([command, ...args], { stdin, stdout, stderr }) {
       case '--help':
       case '-h':
       case 'help':
-        stdout.write(HELP);
+        stdout.write(help());
         return 0;
       case undefined:
-        stderr.write(HELP);
+        stderr.write(help());
         return 2;
       default: {
         const why = NATIVE.includes(command)
-          ? `${command} needs the native tool; install the package ${platformPackage}, or build the tool with cargo`
+          ? `${command}: expected the native tool, found WebAssembly: ${whyWebAssembly()}`
           : `expected bake, map or view, found ${command}; see roughcast --help`;
         stderr.write(`error: ${why}\n`);
         return 2;
