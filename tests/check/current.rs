@@ -4,8 +4,9 @@ use std::fs;
 
 use roughcast::cli::Outcome;
 use serde_json::Value;
+use tempfile::tempdir;
 
-use crate::fixture::{Bake, bake, findings, roughcast};
+use crate::fixture::{Bake, bake, findings, roughcast, write_asset};
 
 /// Returns file and message of each finding about settings.
 fn settings_findings(report: &Value) -> Vec<(String, String)> {
@@ -84,6 +85,28 @@ fn standalone_maps_are_not_compared_with_roughcast_toml() {
     let words = ["map", source.to_str().unwrap(), "-o", output.to_str().unwrap(), "-q", "--quality", "best"];
     assert_eq!(roughcast(&words).0, Outcome::Done);
     assert_eq!(check_with_config(&bake, "").0, Outcome::Done);
+}
+
+/// pre-commit names single files of the output folder. Their sources lie below the source folder.
+#[test]
+fn a_single_file_has_its_source_in_the_folder_of_the_same_name() {
+    let folder = tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    write_asset(&folder.path().join("assets/rock/wet"));
+    let (outcome, _, err) = roughcast(&["bake", &path("assets"), "-o", &path("baked"), "-q"]);
+    assert_eq!(outcome, Outcome::Done, "{err}");
+    let files = ["ridges.gltf", "ridges.roughcast/bumps.normal.ktx2", "ridges.roughcast/surface.roughness.ktx2"];
+    let files = files.map(|file| path(&format!("baked/rock/wet/{file}")));
+    let check = |file: &str| roughcast(&["check", file, "--source", &path("assets")]);
+    for file in &files {
+        let (outcome, out, err) = check(file);
+        assert_eq!(outcome, Outcome::Done, "{file}: {out}{err}");
+    }
+    fs::rename(path("assets/rock/wet"), path("assets/rock/dry")).unwrap();
+    for file in &files {
+        let (outcome, out, _) = check(file);
+        assert!(outcome == Outcome::Findings && out.contains("RC1504"), "{file}: {out}");
+    }
 }
 
 #[test]

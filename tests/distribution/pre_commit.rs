@@ -17,11 +17,17 @@ fn repository(folder: &Path) {
     }
 }
 
-/// Runs the hook that uses the tool on the PATH on all files of a repository.
-fn try_hook(pre_commit: &PathBuf, hooks: &Path, files: &Path) -> (i32, String) {
+/// Runs the hook of docs/install.md, with the tool on the PATH, on all files of a repository.
+fn run_hook(pre_commit: &PathBuf, hooks: &Path, files: &Path) -> (i32, String) {
+    let page = fs::read_to_string(in_repository("docs/install.md")).expect("a page");
+    let (_, config) = page.split_once("```yaml\nrepos:\n").expect("a configuration");
+    let (config, _) = config.split_once("```").expect("the end of the configuration");
+    let (_, commit) = run(Command::new("git").args(["rev-parse", "HEAD"]).current_dir(hooks));
+    let config = config.replace("https://github.com/OWNER/REPOSITORY", hooks.to_str().expect("a path in UTF-8"));
+    let config = config.replace("v0.1.0", commit.trim()).replace("id: roughcast-check", "id: roughcast-check-system");
+    fs::write(files.join(".pre-commit-config.yaml"), format!("repos:\n{config}")).expect("a file");
     let mut command = Command::new(pre_commit);
-    command.arg("try-repo").arg(hooks).args(["roughcast-check-system", "--all-files", "--verbose"]);
-    command.current_dir(files).env("PATH", path_with(&[&tool_folder()]));
+    command.args(["run", "--all-files", "--verbose"]).current_dir(files).env("PATH", path_with(&[&tool_folder()]));
     run(command.env("PRE_COMMIT_HOME", files.with_file_name("home")))
 }
 
@@ -38,17 +44,22 @@ fn the_hook_finds_what_check_finds() {
     fs::copy(in_repository(".pre-commit-hooks.yaml"), hooks.join(".pre-commit-hooks.yaml")).expect("a file");
     repository(&hooks);
 
-    let asset = in_repository("fixtures/tiny");
+    let asset = files.join("assets/cloth");
+    fs::create_dir_all(&asset).expect("a folder");
+    for entry in fs::read_dir(in_repository("fixtures/tiny")).expect("a folder") {
+        let path = entry.expect("a file").path();
+        fs::copy(&path, asset.join(path.file_name().expect("a name"))).expect("a file");
+    }
     let tool = env!("CARGO_BIN_EXE_roughcast");
-    let (code, text) = run(Command::new(tool).arg("bake").arg(asset).arg("-o").arg(&files));
+    let (code, text) = run(Command::new(tool).args(["bake", "assets", "-o", "baked"]).current_dir(&files));
     assert_eq!(code, 0, "{text}");
     repository(&files);
-    let (code, text) = try_hook(&pre_commit, &hooks, &files);
+    let (code, text) = run_hook(&pre_commit, &hooks, &files);
     assert!(code == 0 && text.contains("check baked glTF assets") && text.contains("0 errors"), "{text}");
 
-    let texture = files.join("tiny.roughcast/cloth_normal.normal.ktx2");
+    let texture = files.join("baked/cloth/tiny.roughcast/cloth_normal.normal.ktx2");
     let bytes = fs::read(&texture).expect("a texture");
     fs::write(&texture, &bytes[..bytes.len() / 2]).expect("a file");
-    let (code, text) = try_hook(&pre_commit, &hooks, &files);
+    let (code, text) = run_hook(&pre_commit, &hooks, &files);
     assert!(code == 1 && text.contains("exit code: 3") && text.contains("cloth_normal.normal.ktx2"), "{text}");
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use walkdir::WalkDir;
 
@@ -26,6 +26,12 @@ impl CheckedFile {
     /// Returns whether the file lies in a folder `<stem>.roughcast`, where `bake` puts the textures of a document.
     pub fn is_of_document(&self) -> bool {
         self.below.parent().is_some_and(|folder| has_extension(folder, "roughcast"))
+    }
+
+    /// Returns the document of a texture that is checked without it: the one that has the name of the texture's folder.
+    pub fn unchecked_document(&self) -> Option<PathBuf> {
+        let folder = self.path.parent().filter(|folder| has_extension(folder, "roughcast"))?;
+        ["gltf", "glb"].map(|extension| folder.with_extension(extension)).into_iter().find(|path| path.is_file())
     }
 
     /// Returns whether the file is a texture.
@@ -152,18 +158,32 @@ pub fn source_document(path: &Path) -> Result<Document, String> {
 }
 
 /// Returns the file of `source`, a folder or one document, that `baked` was baked from: by what it records, else by its
-/// name. No file is its own source.
+/// name. The folders that lead to `baked` may stand in the source folder, too: the more of them, the better. No file is
+/// its own source.
 fn source_file_of(baked: &Path, source: &Path) -> Option<PathBuf> {
     if source.is_file() {
         return Some(source.to_owned());
     }
-    let recorded = recorded_source(baked).and_then(|name| source_file(&source.join(name)));
-    let named = || source_file(&source.join(baked.file_name()?));
-    recorded.or_else(named).filter(|file| !is_same_file(file, baked))
+    let names: Vec<PathBuf> = recorded_source(baked).into_iter().chain(baked.file_name().map(PathBuf::from)).collect();
+    folders_of(baked).into_iter().find_map(|folder| {
+        let file = names.iter().find_map(|name| source_file(&source.join(&folder).join(name)));
+        file.filter(|file| !is_same_file(file, baked))
+    })
+}
+
+/// Returns the folders that lead to `path`, then without the first one, and so on; last an empty path.
+fn folders_of(path: &Path) -> Vec<PathBuf> {
+    let names = folder_of(path).components().rev().take_while(|name| matches!(name, Component::Normal(_)));
+    let mut names: Vec<_> = names.collect();
+    names.reverse();
+    (0..=names.len()).map(|first| names[first..].iter().collect()).collect()
 }
 
 /// Returns where the source of `target` should be in `folder`, which has no asset for it.
 pub fn expected_source(target: &CheckedFile, folder: &Path) -> PathBuf {
+    if let Some(source) = target.unchecked_document().and_then(|document| source_file_of(&document, folder)) {
+        return source;
+    }
     let named = folder.join(&target.below);
     let recorded = recorded_source(&target.path).filter(|_| is_same_file(&named, &target.path));
     match recorded {

@@ -176,15 +176,7 @@ impl Checker {
             .map(|folder| known.map_or_else(|| expected_source(target, folder), |asset| asset.input.path.clone()));
         let source_folder = source_path.as_deref().and_then(Path::parent).unwrap_or(Path::new("")).to_owned();
         let read_source = |path: &Path| read_file(&source_folder.join(path));
-        let origin = source_path.and_then(|path| match source_document(&path) {
-            Ok(document) => Some(SourceDigests::new(Some(document), &read_source)),
-            Err(reason) => {
-                let message =
-                    format!("expected the document that this was baked from at {}, found: {reason}", path.display());
-                findings.add(Code::MissingSource, "", message);
-                None
-            }
-        });
+        let origin = source_path.and_then(|path| document_digests(&path, &read_source, &mut findings));
         // Without explicit settings, any settings are accepted.
         let asset = known.filter(|_| sources.is_configured || self.expects_defaults);
         let scope = Scope { settings: asset.map(|asset| &asset.resolved.settings), ..self.scope(origin.as_ref()) };
@@ -204,10 +196,13 @@ impl Checker {
             let message = "expected a document that names it, found none: an earlier bake left it behind; delete it";
             findings.add(Code::LeftOver, "", message);
         } else {
-            let below = target.below.parent().unwrap_or(Path::new(""));
-            let folder = sources.folder.as_ref().map(|folder| folder.join(below));
-            let read_source = |path: &Path| read_file(&folder.as_deref().unwrap_or(Path::new("")).join(path));
-            let origin = folder.as_ref().map(|_| SourceDigests::new(None, &read_source));
+            let source = sources.folder.as_ref().map(|folder| expected_source(target, folder));
+            let folder = source.as_deref().and_then(Path::parent).unwrap_or(Path::new("")).to_owned();
+            let read_source = |path: &Path| read_file(&folder.join(path));
+            let origin = source.and_then(|source| match target.unchecked_document() {
+                Some(_) => document_digests(&source, &read_source, &mut findings),
+                None => Some(SourceDigests::new(None, &read_source)),
+            });
             check_texture(held.as_ktx2(), Usage::default(), &self.scope(origin.as_ref()), &mut findings);
         }
         Ok(findings.into_list())
@@ -215,5 +210,22 @@ impl Checker {
 
     fn scope<'a>(&'a self, origin: Option<&'a SourceDigests<'a>>) -> Scope<'a> {
         Scope { is_deep: self.is_deep, origin, settings: None, min_version: self.min_version.as_ref() }
+    }
+}
+
+/// Reads the source document at `path`, whose files `read` reads. Adds a finding if there is none.
+fn document_digests<'a>(
+    path: &Path,
+    read: &'a (dyn Fn(&Path) -> io::Result<Vec<u8>> + Sync),
+    findings: &mut Findings,
+) -> Option<SourceDigests<'a>> {
+    match source_document(path) {
+        Ok(document) => Some(SourceDigests::new(Some(document), read)),
+        Err(reason) => {
+            let message =
+                format!("expected the document that this was baked from at {}, found: {reason}", path.display());
+            findings.add(Code::MissingSource, "", message);
+            None
+        }
     }
 }
