@@ -5,7 +5,7 @@ import { cpSync, readFileSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import process from 'node:process';
 import test from 'node:test';
-import { fixed, printable, summary, total } from '../roughcast/lib/cli/summary.js';
+import { fixed, notesToActOn, printable, summary, total } from '../roughcast/lib/cli/summary.js';
 import { binary, fixtures, noBinary, noModule, npm, temporary } from './common.js';
 
 /** Returns the outcome of a bake to `a.glb`, whose first material has the note `use another`. */
@@ -19,10 +19,24 @@ function outcome(sizes, inputBytes) {
 
 test('an asset is one line with its sizes, and notes are told once', () => {
   const sizes = { ktx2: 1_900_000, fallback: 0, images: 3_000_000, geometry: 4_100_000, json: 20_000 };
+  const asset = outcome(sizes, 7_200_000);
   assert.equal(
-    summary(outcome(sizes, 7_200_000)),
-    'baked a.glb: 2 materials, 2 textures, 7.2 -> 9.0 MB (KTX2 1.9, images 3.0, geometry 4.1), 0.50 s\n' +
-      '  note: M0; M1: use another\n',
+    summary(asset),
+    'baked a.glb: 2 materials, 2 textures, 7.2 -> 9.0 MB (KTX2 1.9, images 3.0, geometry 4.1), 0.50 s\n',
+  );
+  assert.equal(notesToActOn([asset]), '  note: M0; M1: use another\n');
+  const other = { ...asset, input: 'b.glb', layers: asset.layers.slice(0, 1) };
+  const failed = { input: 'c.glb', status: 'failed', error: 'broken' };
+  assert.equal(notesToActOn([asset, failed, other]), '  note: a.glb (M0); a.glb (M1); b.glb (M0): use another\n');
+});
+
+test('an asset without bumps has its sizes too', () => {
+  const sizes = { ktx2: 0, fallback: 0, images: 3_000_000, geometry: 0, json: 0 };
+  const asset = { ...outcome(sizes, 3_100_000), layers: [] };
+  assert.equal(summary(asset), 'baked a.glb: 2 textures, 3.1 -> 3.0 MB (images 3.0), 0.50 s\n');
+  assert.equal(
+    summary({ ...asset, status: 'copied', textures: [] }),
+    'copied a.glb: no normal or height maps, 3.1 -> 3.0 MB (images 3.0), 0.50 s\n',
   );
 });
 

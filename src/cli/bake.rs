@@ -11,7 +11,7 @@ use super::options::job_choice::{JobOptions, JobsError};
 use super::options::remote::{RemoteOptionError, RemoteOptions};
 use super::options::selection::{SelectionOptions, print_problems};
 use super::terminal::outcome::Outcome;
-use super::terminal::summary::{summary, total};
+use super::terminal::summary::{notes_to_act_on, summary, total};
 use super::work::{Work, Worked};
 use crate::cache::CacheError;
 use crate::note::{Note, unnamed_engine};
@@ -155,6 +155,9 @@ impl Args {
         }
         if !self.quiet && !self.json {
             out.write_all(total(&worked.assets, start.elapsed()).as_bytes())?;
+            if !self.verbose {
+                out.write_all(notes_to_act_on(&worked.assets).as_bytes())?;
+            }
             order.notes.iter().try_for_each(|note| writeln!(out, "note: {note}"))?;
         }
         let mut outcome = order.outcome;

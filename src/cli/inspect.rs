@@ -7,7 +7,7 @@ use super::terminal::outcome::Outcome;
 use crate::inspect::{Facts, document_text, inspect_file, texture_text};
 use crate::text::printable;
 
-/// Print the content of a KTX2 or glTF file: levels, formats, ranges, provenance.
+/// Print the content of a KTX2 file (levels, format, provenance) or of a glTF document (materials and their textures).
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example:\n  roughcast inspect baked/helmet.gltf --extract levels")]
 pub struct Args {

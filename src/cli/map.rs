@@ -18,7 +18,8 @@ use crate::text::printable;
 /// Bake one standalone normal or height map into KTX2 files.
 ///
 /// OUT is the bump map: normals, or offsets with --profile pyramid. Its other textures are written beside OUT, as
-/// OUT.roughness.ktx2 and so on.
+/// OUT.roughness.ktx2 and so on. The roughness of lost bumps is added to the roughness of the surface, which
+/// --roughness-factor or --roughness gives.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  roughcast map wool_normal.png -o wool.ktx2 --roughness wool_rough.png\n  \
     roughcast map wool_depth.png -o wool.ktx2 --height --height-scale 0.02 --profile pyramid")]
@@ -46,10 +47,11 @@ pub struct Args {
     /// EXR: the layer, or the channel as layer.channel.
     #[arg(long, value_name = "NAME")]
     layer: Option<String>,
-    /// The roughness map of the base lobe (green channel, or grey), which is roughened by the lost bumps.
-    #[arg(long, value_name = "IMAGE")]
+    /// The roughness map of the base lobe (green channel, or grey), which is roughened by the lost bumps. Without this
+    /// option and --roughness-factor, the profile portable has normals only.
+    #[arg(long, value_parser = roughness_map, value_name = "IMAGE")]
     roughness: Option<PathBuf>,
-    /// The roughness of the base lobe, 0 to 1; multiplies --roughness.
+    /// The roughness of the base lobe, 0 to 1, as a number; multiplies --roughness.
     #[arg(long, value_parser = unit_interval, allow_negative_numbers = true, value_name = "R")]
     roughness_factor: Option<f32>,
     /// Print what was written as JSON.
@@ -134,6 +136,17 @@ fn summary(report: &MapReport, is_verbose: bool) -> String {
         text += &format!("note: {}\n", printable(&note.text));
     }
     text
+}
+
+/// Takes the path of an image. `compare` and `render` have an option of the same name for a number.
+fn roughness_map(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    match text.parse::<f32>() {
+        Ok(_) if !path.exists() => {
+            Err(format!("expected an image, found a number; for one roughness, use --roughness-factor {text}"))
+        }
+        _ => Ok(path),
+    }
 }
 
 fn wrap_modes(text: &str) -> Result<[Wrap; 2], String> {

@@ -7,7 +7,7 @@ use super::options::selection::{SelectionOptions, print_problems};
 use super::plan_merge;
 use super::terminal::outcome::Outcome;
 use crate::run::{Job, Plan, PlannedAsset, plan_assets};
-use crate::text::printable;
+use crate::text::{counted, printable};
 
 /// Print the jobs that a bake would run, and run none.
 ///
@@ -105,6 +105,6 @@ fn checked(job: Job) -> Result<Job, Unplanned> {
 fn print_job(job: &Job, out: &mut dyn Write) -> io::Result<()> {
     let (from, to) = (job.source.display().to_string(), job.output.display().to_string());
     let (from, to) = (printable(&from), printable(&to));
-    let (inputs, megabytes) = (job.inputs.len(), job.cost as f64 / 1e6);
-    writeln!(out, "{:.12}  {from} -> {to}, {inputs} inputs, {megabytes:.1} MB", job.id)
+    let (inputs, megabytes) = (counted(job.inputs.len(), "input"), job.cost as f64 / 1e6);
+    writeln!(out, "{:.12}  {from} -> {to}, {inputs}, {megabytes:.1} MB", job.id)
 }

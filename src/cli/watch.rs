@@ -3,12 +3,13 @@
 use std::fmt::Display;
 use std::io::{self, Write};
 use std::path::PathBuf;
+use std::slice;
 use std::time::Duration;
 
 use super::options::cache::CacheOptions;
 use super::options::selection::SelectionOptions;
 use super::terminal::outcome::Outcome;
-use super::terminal::summary::summary;
+use super::terminal::summary::{notes_to_act_on, summary};
 use crate::cache::CacheError;
 use crate::project::{Selection, SelectionError, named_container};
 use crate::text::printable;
@@ -144,7 +145,9 @@ impl EventPrinter<'_> {
                 format!("watching {folder}, baking to {output}; Ctrl-C ends\n")
             }
             Event::Baked { input, seconds, done, .. } => {
-                summary(&done.outcome((*input).to_owned(), None, *seconds), self.is_verbose)
+                let asset = done.outcome((*input).to_owned(), None, *seconds);
+                let notes = if self.is_verbose { String::new() } else { notes_to_act_on(slice::from_ref(&asset)) };
+                summary(&asset, self.is_verbose) + &notes
             }
             Event::Removed { input, files } => {
                 let input = input.0.display().to_string();

@@ -5,7 +5,7 @@ use std::fs;
 use roughcast::cli::Outcome;
 use serde_json::{Value, json};
 
-use crate::fixture::{bake, roughcast};
+use crate::fixture::{bake, roughcast, write_asset};
 
 fn inspect(path: &std::path::Path, options: &[&str]) -> String {
     let (outcome, out, err) = roughcast(&[&["inspect", path.to_str().unwrap()], options].concat());
@@ -49,6 +49,24 @@ fn shows_materials_and_ranges_of_a_document() {
     assert_eq!((&images[0]["picture"]["format"], &images[1]["ktx2"]["width"]), (&json!("PNG"), &json!(16)));
     let text = inspect(&bake.document(), &[]);
     assert!(text.contains("offsetScale: [") && text.contains("KHR_texture_basisu: ridges.roughcast/"), "{text}");
+}
+
+#[test]
+fn shows_colours_of_a_document() {
+    let folder = tempfile::tempdir().unwrap();
+    let asset = folder.path().join("ridges.gltf");
+    write_asset(folder.path());
+    let mut document: Value = serde_json::from_slice(&fs::read(&asset).unwrap()).unwrap();
+    document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = json!({ "index": 2 });
+    document["textures"].as_array_mut().unwrap().push(json!({ "source": 2 }));
+    document["images"].as_array_mut().unwrap().push(json!({ "uri": "colours.png" }));
+    fs::copy(folder.path().join("surface.png"), folder.path().join("colours.png")).unwrap();
+    fs::write(&asset, document.to_string()).unwrap();
+    let baked = folder.path().join("baked.glb");
+    let words = ["bake", asset.to_str().unwrap(), "-o", baked.to_str().unwrap(), "-q", "--textures", "all"];
+    assert_eq!(roughcast(&words).0, Outcome::Done);
+    let text = inspect(&baked, &[]);
+    assert!(text.contains("baseColorTexture: textures[") && text.contains("colour, 16 x 16, UASTC sRGB"), "{text}");
 }
 
 #[test]

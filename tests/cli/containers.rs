@@ -200,7 +200,7 @@ fn an_asset_without_bumps_changes_its_container_only_if_that_is_asked_for() {
     assert_eq!(images(&root, &bin).0, 0);
     // And back again, into files of their own.
     let out = done(folder, "bake out/plain.glb -o back/plain.gltf");
-    assert_eq!(out, "copied out/plain.glb: no normal or height maps\n");
+    assert!(out.starts_with("copied out/plain.glb: no normal or height maps, "), "{out}");
     assert_eq!(names(&folder.join("back")), ["plain.gltf", "plain.roughcast/plain.bin"]);
     assert_eq!(fs::read(folder.join("back/plain.roughcast/plain.bin")).expect("a buffer"), bin[..bin_length(&root)]);
 }

@@ -1,6 +1,7 @@
 //! The notes on sources for which the method cannot be exact (docs/stability.md). Notes on faults of kernels
 //! are tested where the notes are made.
 
+use std::ffi::OsStr;
 use std::fs;
 use std::path::Path;
 
@@ -38,6 +39,20 @@ fn jpeg_sources_are_reported() {
     let map = |image: &Path| roughcast(["map".as_ref(), image.as_os_str(), "-o".as_ref(), output.as_os_str()]).out;
     assert!(map(&jpeg).contains(NOTE));
     assert!(!map(&png).contains(NOTE));
+}
+
+#[test]
+fn a_map_without_roughness_is_reported() {
+    let baked = tempdir().expect("a folder");
+    let (map, output) = (fixtures().join("brushed/brushed_normal.png"), baked.path().join("map.ktx2"));
+    let bake = |options: &[&str]| {
+        let words = ["map".as_ref(), map.as_os_str(), "-o".as_ref(), output.as_os_str()];
+        roughcast(words.into_iter().chain(options.iter().map(OsStr::new))).out
+    };
+    let note = "the roughness of the surface is not known";
+    assert!(bake(&[]).contains(note));
+    assert!(!bake(&["--roughness-factor", "0.3"]).contains(note));
+    assert!(!bake(&["--profile", "pyramid"]).contains(note));
 }
 
 #[test]

@@ -80,24 +80,28 @@ pub enum NoteKind {
     UnnamedEngine,
     /// The base colour was not darkened for suns.
     BaseColourUnchanged,
+    /// The roughness of a standalone map is not known.
+    NoBaseRoughness,
 }
 
 impl NoteKind {
-    /// Returns whether notes of this kind ask the user for something. [`missed_bound`] and [`base_colour_unchanged`]
-    /// decide for each of their notes.
+    /// Returns whether notes of this kind ask the user for something. [`missed_bound`], [`normals_below_surface`],
+    /// [`anisotropy_dropped`] and [`base_colour_unchanged`] decide for each of their notes.
     fn asks_for_action(self) -> bool {
         match self {
             // Another source file is better.
-            Self::LossySource | Self::SmallDepth | Self::NormalsBelowSurface | Self::UnknownReflectance => true,
+            Self::LossySource | Self::SmallDepth | Self::UnknownReflectance => true,
             // The document or the command line does not fit the purpose.
             Self::SamplerWithoutMips
             | Self::UnknownTexelSize
             | Self::OtherTextureCoordinates
-            | Self::CompressedMesh => true,
+            | Self::CompressedMesh
+            | Self::NoBaseRoughness => true,
             // A setting of the engine or the bake is better.
             Self::EngineLimiter | Self::MipsDropped | Self::UnnamedEngine => true,
             Self::NoBumpMap
             | Self::MissedBound
+            | Self::NormalsBelowSurface
             | Self::SteepSlopes
             | Self::Resampled
             | Self::AlphaAboveOne
@@ -139,10 +143,8 @@ pub fn missed_bound(text: String, is_avoidable: bool) -> Note {
 
 /// Returns the note on a bump map that is `format`, such as "a JPEG".
 pub fn lossy_source(format: &str) -> Note {
-    let text = format!(
-        "the bump map is {format}: its compression changes the bumps, and the bake cannot tell these changes from the \
-         surface; use a lossless source"
-    );
+    let text =
+        format!("the bump map is {format}, and errors of its compression become roughness; use a lossless source");
     note(NoteKind::LossySource, text)
 }
 
@@ -156,13 +158,14 @@ pub fn small_depth(error: f32) -> Note {
     note(NoteKind::SmallDepth, text)
 }
 
-/// Returns the note on a normal map of `texels` texels, `count` of which have no slope.
+/// Returns the note on a normal map of `texels` texels, `count` of which have no slope. The note asks for action from
+/// one texel in a thousand on: fewer are hardly seen.
 pub fn normals_below_surface(count: u64, texels: u64) -> Note {
     let text = format!(
         "{count} of {texels} normals point along the surface or below it: they are baked with a slope of {MAX_SLOPE} \
          and roughen what is around them; remove them from the source"
     );
-    note(NoteKind::NormalsBelowSurface, text)
+    Note { asks_for_action: count.saturating_mul(1000) >= texels, ..note(NoteKind::NormalsBelowSurface, text) }
 }
 
 /// Returns the note on a bump map of `texels` texels, `count` of which have slopes beyond the clamp.
@@ -403,6 +406,13 @@ pub fn base_colour_unchanged(reason: KeptColour) -> Note {
     Note { kind: NoteKind::BaseColourUnchanged, asks_for_action, text }
 }
 
+/// Returns the note on a standalone map whose surface has no known roughness.
+pub fn no_base_roughness() -> Note {
+    let text = "the roughness of the surface is not known, so that no texture holds the roughness of lost bumps; give \
+                --roughness-factor R, or --roughness IMAGE";
+    note(NoteKind::NoBaseRoughness, text)
+}
+
 #[cfg(test)]
 mod tests {
     use serde_json::json;
@@ -414,7 +424,8 @@ mod tests {
         let asking = [
             lossy_source("a JPEG"),
             small_depth(0.1),
-            normals_below_surface(1, 4),
+            normals_below_surface(1, 1000),
+            no_base_roughness(),
             sampler_without_mips(),
             unknown_texel_size(&"the material is in no scene"),
             other_texture_coordinates("roughness"),
@@ -435,6 +446,7 @@ mod tests {
     fn notes_that_only_explain_ask_for_nothing() {
         let explaining = [
             no_bump_map(),
+            normals_below_surface(1, 1001),
             steep_slopes(1, 4),
             resampled((61, 47), (64, 48)),
             alpha_above_one(3),

@@ -150,6 +150,9 @@ pub struct Candidate {
     pub base_levels: Vec<usize>,
 }
 
+/// A setting is worth a note if it may lower the largest lobe error by this much.
+const NOTICED: f32 = 0.02;
+
 /// A level at which the chosen candidate exceeds the error bound.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]
@@ -185,44 +188,39 @@ impl Choice {
         format!("{size} (error {:.2}{others})", worst(taken))
     }
 
-    /// Returns the note on the levels that exceed the error bound of `settings`; `None` if no level does.
+    /// Returns the note on the levels that exceed the error bound of `settings`; `None` if no level does. The note asks
+    /// for action if a setting can lower the largest error.
     pub fn note(&self, settings: &Settings) -> Option<Note> {
         let worst = self.misses.iter().max_by(|a, b| a.error.total_cmp(&b.error))?;
+        let levels = |of: &dyn Fn(&Miss) -> bool| ranges(self.misses.iter().filter(|m| of(m)).map(|m| m.level));
+        let (noun, verb) = if self.misses.len() == 1 { ("level", "misses") } else { ("levels", "miss") };
+        let missed = format!(
+            "{noun} {} {verb} --max-error {} (worst {:.3}, at level {}; the best lobe has {:.3} there)",
+            levels(&|_| true),
+            settings.max_error,
+            worst.error,
+            worst.level,
+            worst.oracle
+        );
+        if let Some(remedy) = self.remedy(worst, settings) {
+            return Some(note::missed_bound(format!("{missed}; to come closer, use {remedy}"), true));
+        }
         let mut reasons: Vec<Reason> = self.misses.iter().map(|m| m.reason).collect();
         reasons.sort();
         reasons.dedup();
-        let levels = |of: &dyn Fn(&Miss) -> bool| ranges(self.misses.iter().filter(|m| of(m)).map(|m| m.level));
-        let all = levels(&|_| true);
         let why = |reason: &Reason| match reasons.len() {
             1 => reason.text().to_owned(),
             _ => format!("{} ({})", reason.text(), levels(&|m| m.reason == *reason)),
         };
         let why: Vec<String> = reasons.iter().map(why).collect();
-        let (levels, verb) = if self.misses.len() == 1 { ("level", "misses") } else { ("levels", "miss") };
-        let remedies = self.remedies(&reasons, settings, worst.level);
-        let end = match &remedies[..] {
-            [] if reasons.iter().any(|reason| reason.is_avoidable()) => {
-                "; a larger --max-error accepts them".to_owned()
-            }
-            [] => String::new(),
-            remedies => format!("; to come closer, use {}", remedies.join(", and ")),
-        };
-        let text = format!(
-            "{levels} {all} {verb} --max-error {} (worst {:.2}, at level {}; the best lobe has {:.2} there): {}{}",
-            settings.max_error,
-            worst.error,
-            worst.level,
-            worst.oracle,
-            why.join("; "),
-            end
-        );
-        Some(note::missed_bound(text, !remedies.is_empty()))
+        Some(note::missed_bound(format!("{missed}: {}", why.join("; ")), false))
     }
 
-    /// Returns what the user can do about `reasons`, as objects of "use". `level` has the largest error.
-    fn remedies(&self, reasons: &[Reason], settings: &Settings, level: usize) -> Vec<String> {
-        let closer = if settings.model == Model::Auto { None } else { self.closer_model(level) };
-        reasons.iter().filter_map(|reason| reason.remedy(settings, closer)).collect()
+    /// Returns what the user can do about the `worst` level, as the object of "use".
+    fn remedy(&self, worst: &Miss, settings: &Settings) -> Option<String> {
+        let closer = if settings.model == Model::Auto { None } else { self.closer_model(worst.level) };
+        let is_noticed = worst.error - worst.oracle >= NOTICED;
+        worst.reason.remedy(settings, closer).filter(|_| is_noticed)
     }
 
     /// Returns the model with the smallest error at `level`, if that is another model than the chosen one.
@@ -332,46 +330,59 @@ mod tests {
     use super::*;
     use crate::codec::uastc::Effort;
 
+    fn choice(misses: Vec<Miss>) -> Choice {
+        let candidate =
+            |model, error| Candidate { model, first: 0, bytes: 0, errors: vec![error; 3], base_levels: Vec::new() };
+        let candidates = vec![candidate(Model::Isotropic, 0.2), candidate(Model::Anisotropic, 0.15)];
+        Choice { finest: 0, candidates, chosen: 0, misses }
+    }
+
     #[test]
-    fn missed_bounds_ask_for_action_where_a_setting_comes_closer() {
-        let choice = |reason| Choice {
-            finest: 0,
-            candidates: Vec::new(),
-            chosen: 0,
-            misses: vec![Miss { level: 2, error: 0.2, oracle: 0.1, reason }],
+    fn missed_bounds_ask_for_action_where_a_setting_lowers_the_largest_error() {
+        let note = |level, error, reason| {
+            let other = Miss { level: 1, error: 0.15, oracle: 0.05, reason: Reason::Fit };
+            let choice = choice(vec![other, Miss { level, error, oracle: 0.1, reason }]);
+            choice.note(&Settings::default()).expect("a note")
         };
-        let asks = |reason| choice(reason).note(&Settings::default()).expect("a note").asks_for_action;
         for reason in [Reason::Isotropic, Reason::Fit] {
-            assert!(asks(reason), "{reason:?}");
+            assert!(note(2, 0.2, reason).asks_for_action, "{reason:?}");
         }
         let best = [Reason::Encoding, Reason::AlphaAboveOne, Reason::TwoPeaked, Reason::Steep, Reason::NoSingleLobe];
         for reason in best {
-            assert!(!asks(reason), "{reason:?}");
+            let note = note(2, 0.2, reason);
+            assert!(!note.asks_for_action, "{note}");
+            assert!(note.text.ends_with("; the fit does not reach the best lobe (1)"), "{note}");
         }
     }
 
     #[test]
-    fn missed_bounds_name_each_remedy_once() {
-        let candidate =
-            |model, error| Candidate { model, first: 0, bytes: 0, errors: vec![error; 3], base_levels: Vec::new() };
-        let miss = |level, reason| Miss { level, error: 0.2, oracle: 0.1, reason };
-        let choice = Choice {
-            finest: 0,
-            candidates: vec![candidate(Model::Isotropic, 0.2), candidate(Model::Anisotropic, 0.15)],
-            chosen: 0,
-            misses: vec![miss(0, Reason::Encoding), miss(1, Reason::Encoding), miss(2, Reason::Fit)],
-        };
+    fn missed_bounds_ask_for_nothing_where_little_can_be_gained() {
+        for (error, asks) in [(0.111, false), (0.13, true)] {
+            let miss = Miss { level: 2, error, oracle: 0.1, reason: Reason::Fit };
+            let note = choice(vec![miss]).note(&Settings::default()).expect("a note");
+            assert_eq!(note.asks_for_action, asks, "{note}");
+        }
+    }
+
+    #[test]
+    fn missed_bounds_name_the_remedy() {
+        let misses = vec![
+            Miss { level: 0, error: 0.12, oracle: 0.1, reason: Reason::Encoding },
+            Miss { level: 2, error: 0.2, oracle: 0.1, reason: Reason::Fit },
+        ];
+        let choice = choice(misses);
         let settings = Settings::default();
+        let missed = "levels 0, 2 miss --max-error 0.1 (worst 0.200, at level 2; the best lobe has 0.100 there)";
         for (settings, end) in [
             (settings, "; to come closer, use --quality best"),
             (
                 settings.with_model(Model::Isotropic),
                 "; to come closer, use --model anisotropic if the engine shows it correctly",
             ),
-            (settings.with_quality(Effort::Best), "(2); a larger --max-error accepts them"),
+            (settings.with_quality(Effort::Best), ": lost in encoding (0); the fit does not reach the best lobe (2)"),
         ] {
             let note = choice.note(&settings).expect("a note");
-            assert!(note.text.ends_with(end), "{note}");
+            assert_eq!(note.text, format!("{missed}{end}"));
             assert_eq!(note.asks_for_action, end.contains("use"), "{note}");
         }
     }

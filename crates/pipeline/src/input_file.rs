@@ -1,6 +1,7 @@
 //! Opening and reading of input files. Every file that is named from outside is opened here. A pipe, a socket or a
 //! device is refused, since reading it could wait forever. A file that is too large for memory is refused, too.
 
+use std::fmt::{self, Display};
 use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{self, Read};
 use std::path::Path;
@@ -10,6 +11,19 @@ use crate::memory;
 
 /// Largest input file. No image within the limits on texels is as large.
 const MAX_FILE_BYTES: u64 = 8 << 30;
+
+/// Why a file that the user names cannot be read, and what to do.
+pub struct Unreadable<'a>(pub &'a io::Error);
+
+impl Display for Unreadable<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0.kind() {
+            io::ErrorKind::NotFound => f.write_str("no such file; check the path"),
+            io::ErrorKind::IsADirectory => f.write_str("a folder; name a file in it"),
+            _ => write!(f, "{}; check the path", self.0),
+        }
+    }
+}
 
 /// Opens an ordinary file, or a link to one. Returns the file and its length.
 ///
@@ -74,7 +88,7 @@ pub fn check_file(path: &Path) -> io::Result<u64> {
 
 fn length_of(metadata: &Metadata) -> io::Result<u64> {
     if metadata.is_dir() {
-        return Err(io::Error::new(io::ErrorKind::InvalidInput, "a folder"));
+        return Err(io::Error::new(io::ErrorKind::IsADirectory, "a folder"));
     }
     if !metadata.is_file() {
         return Err(io::Error::new(io::ErrorKind::InvalidInput, "not an ordinary file"));

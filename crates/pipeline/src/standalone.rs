@@ -7,7 +7,7 @@ use crate::api::{self, BumpTexels, MapProvenance, encode_map, read_base_roughnes
 use crate::bake::{BaseRoughness, output_stem_of};
 use crate::digest::digest;
 use crate::image::DecodeOptions;
-use crate::input_file::read_file;
+use crate::input_file::{Unreadable, read_file};
 use crate::ktx2::SourceDigest;
 use crate::material::notes;
 use crate::output::{Guard, PublishError};
@@ -46,7 +46,7 @@ pub struct WrittenMap {
 #[derive(Debug, thiserror::Error)]
 pub enum MapFileError {
     /// An image cannot be read.
-    #[error("{}: expected a readable file, found: {error}; check the path", path.display())]
+    #[error("{}: expected a readable file, found: {}", path.display(), Unreadable(error))]
     Read {
         /// The file.
         path: PathBuf,

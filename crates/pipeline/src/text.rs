@@ -34,6 +34,11 @@ pub fn xml_escaped(text: &str) -> String {
     quick_xml::escape::escape(xml_text(text)).into_owned()
 }
 
+/// Returns a number of things in words, such as `1 input` or `2 inputs`.
+pub fn counted(count: usize, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+}
+
 /// Returns the name of a variant, or `unspecified` if there is none.
 pub fn name_of<T: Debug>(variant: Option<&T>) -> String {
     variant.map_or_else(|| "unspecified".to_owned(), |variant| format!("{variant:?}"))

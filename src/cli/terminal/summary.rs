@@ -5,13 +5,12 @@ use std::time::Duration;
 
 use crate::gltf::material::LayerKind;
 use crate::report::{AssetOutcome, Choice, LayerReport, OutputSizes, Status};
-use crate::text::printable;
+use crate::text::{counted, printable};
 
 /// Materials that a note names. Further materials are counted.
 const MAX_NAMED: usize = 3;
 
-/// Returns one line for the asset, and one line for each note that asks for something. If `is_verbose`, returns one
-/// line for each layer instead, with all of its notes.
+/// Returns one line for the asset. If `is_verbose`, one line for each layer follows, with all of its notes.
 pub fn summary(asset: &AssetOutcome, is_verbose: bool) -> String {
     let verb = match asset.status {
         Status::Failed => return String::new(),
@@ -20,16 +19,34 @@ pub fn summary(asset: &AssetOutcome, is_verbose: bool) -> String {
         Status::Baked => "baked",
     };
     let mut text = format!("{verb} {}: ", printable(&asset.input));
-    if asset.report.textures.is_empty() {
-        return text + "no normal or height maps\n";
-    }
     text += &Totals::of(asset).text(asset.seconds);
     if is_verbose {
         asset.report.layers.iter().for_each(|layer| text += &layer_lines(layer));
-    } else {
-        text += &notes_to_act_on(&asset.report.layers);
     }
     text
+}
+
+/// Returns one line for each different note on `assets` that asks for something, with the materials that have the note.
+pub fn notes_to_act_on(assets: &[AssetOutcome]) -> String {
+    let mut notes: Vec<(&str, Vec<String>)> = Vec::new();
+    for asset in assets {
+        for layer in &asset.report.layers {
+            let name = if assets.len() == 1 { name(layer) } else { format!("{} ({})", asset.input, name(layer)) };
+            for note in layer.notes.iter().filter(|note| note.asks_for_action) {
+                match notes.iter_mut().find(|(text, _)| *text == note.text) {
+                    Some((_, names)) => names.push(name.clone()),
+                    None => notes.push((&note.text, vec![name.clone()])),
+                }
+            }
+        }
+    }
+    let line = |(text, names): (&str, Vec<String>)| {
+        let more = names.len().saturating_sub(MAX_NAMED);
+        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+        let names = names.into_iter().take(MAX_NAMED).collect::<Vec<_>>().join("; ");
+        format!("  note: {}{more}: {}\n", printable(&names), printable(text))
+    };
+    notes.into_iter().map(line).collect()
 }
 
 /// Returns a line on all `assets` together, whose run took `elapsed`; nothing if there are fewer than two.
@@ -78,7 +95,8 @@ impl Totals {
         }
     }
 
-    /// Returns for example `5 materials, 8 textures, 7.2 -> 9.1 MB (KTX2 1.9, geometry 7.2), 0.81 s`.
+    /// Returns for example `5 materials, 8 textures, 7.2 -> 9.1 MB (KTX2 1.9, geometry 7.2), 0.81 s`. The materials are
+    /// those with baked bumps.
     fn text(&self, seconds: f64) -> String {
         let (divisor, unit) = if self.before.max(self.after) < 1_000_000 { (1e3, "kB") } else { (1e6, "MB") };
         let number = |bytes: u64| format!("{:.1}", bytes as f64 / divisor);
@@ -91,39 +109,19 @@ impl Totals {
             .filter(|(_, bytes)| bytes != "0.0")
             .map(|(name, bytes)| format!("{name} {bytes}"))
             .collect();
+        let textures = counted(self.textures, "texture");
+        let baked = match (self.materials, self.textures) {
+            (0, 0) => "no normal or height maps".to_owned(),
+            (0, _) => textures,
+            (materials, _) => format!("{}, {textures}", counted(materials, "material")),
+        };
         format!(
-            "{}, {}, {} -> {} {unit} ({}), {seconds:.2} s\n",
-            counted(self.materials, "material"),
-            counted(self.textures, "texture"),
+            "{baked}, {} -> {} {unit} ({}), {seconds:.2} s\n",
             number(self.before),
             number(self.after),
             parts.join(", ")
         )
     }
-}
-
-fn counted(count: usize, noun: &str) -> String {
-    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
-}
-
-/// Returns a line for each different note that asks for something, with the materials that have the note.
-fn notes_to_act_on(layers: &[LayerReport]) -> String {
-    let mut notes: Vec<(&str, Vec<String>)> = Vec::new();
-    for layer in layers {
-        for note in layer.notes.iter().filter(|note| note.asks_for_action) {
-            match notes.iter_mut().find(|(text, _)| *text == note.text) {
-                Some((_, names)) => names.push(name(layer)),
-                None => notes.push((&note.text, vec![name(layer)])),
-            }
-        }
-    }
-    let line = |(text, names): (&str, Vec<String>)| {
-        let more = names.len().saturating_sub(MAX_NAMED);
-        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-        let names = names.into_iter().take(MAX_NAMED).collect::<Vec<_>>().join("; ");
-        format!("  note: {}{more}: {}\n", printable(&names), printable(text))
-    };
-    notes.into_iter().map(line).collect()
 }
 
 fn layer_lines(layer: &LayerReport) -> String {
@@ -180,18 +178,38 @@ mod tests {
     fn an_asset_is_one_line_with_its_sizes_and_notes_are_told_once() {
         let layers = vec![layer(0, &["use another"]), layer(1, &[]), layer(2, &["use another"])];
         let asset = asset(layers, [1_900_000, 0, 3_000_000, 4_100_000, 20_000], 7_200_000);
-        let expected = "baked a.glb: 3 materials, 2 textures, 7.2 -> 9.0 MB (KTX2 1.9, images 3.0, geometry 4.1), 0.50 s\n  \
-                        note: M0; M2: use another\n";
+        let expected =
+            "baked a.glb: 3 materials, 2 textures, 7.2 -> 9.0 MB (KTX2 1.9, images 3.0, geometry 4.1), 0.50 s\n";
         assert_eq!(summary(&asset, false), expected);
+        assert_eq!(notes_to_act_on(&[asset]), "  note: M0; M2: use another\n");
+    }
+
+    #[test]
+    fn notes_on_several_assets_are_told_once() {
+        let rock = asset(vec![layer(0, &["use another", "act"])], [0; 5], 0);
+        let chair = AssetOutcome { input: "b.glb".to_owned(), ..asset(vec![layer(1, &["use another"])], [0; 5], 0) };
+        let expected = "  note: a.glb (M0); b.glb (M1): use another\n  note: a.glb (M0): act\n";
+        assert_eq!(notes_to_act_on(&[rock, chair]), expected);
+    }
+
+    #[test]
+    fn an_asset_without_bumps_has_its_sizes_too() {
+        let mut asset = asset(Vec::new(), [0, 0, 3_000_000, 0, 0], 3_100_000);
+        let (textures, sizes) = ("2 textures", "3.1 -> 3.0 MB (images 3.0), 0.50 s\n");
+        assert_eq!(summary(&asset, false), format!("baked a.glb: {textures}, {sizes}"));
+        asset.report.textures.clear();
+        asset.status = Status::Copied;
+        assert_eq!(summary(&asset, false), format!("copied a.glb: no normal or height maps, {sizes}"));
     }
 
     #[test]
     fn small_assets_are_told_in_kilobytes_and_many_materials_are_counted() {
         let layers = (0..5).map(|index| layer(index, &["act"])).collect();
         let asset = asset(layers, [2_000, 1_000, 0, 0, 900], 500);
-        let expected = "baked a.glb: 5 materials, 2 textures, 0.5 -> 3.9 kB (KTX2 2.0, PNG copies 1.0, JSON 0.9), 0.50 s\n  \
-                        note: M0; M1; M2 and 2 more: act\n";
+        let expected =
+            "baked a.glb: 5 materials, 2 textures, 0.5 -> 3.9 kB (KTX2 2.0, PNG copies 1.0, JSON 0.9), 0.50 s\n";
         assert_eq!(summary(&asset, false), expected);
+        assert_eq!(notes_to_act_on(&[asset]), "  note: M0; M1; M2 and 2 more: act\n");
     }
 
     #[test]

@@ -13,7 +13,7 @@ use crate::bump::Frame;
 use crate::image::Image;
 use crate::material::{BumpMap, FrameTransforms, first_within, notes};
 use crate::mip::{Magnification, Sampler};
-use crate::note::Note;
+use crate::note::{self, Note};
 use crate::report::Choice;
 use crate::settings::{Form, Model, Settings};
 
@@ -51,6 +51,9 @@ pub fn bake_map(
     let sampler = Sampler { wrap: bump_map.wrap(), magnification: Magnification::Linear };
     let map = MapOffsets::new(bump_map, settings, sampler)?;
     let mut notes = notes::of_bump_map(bump_map, map.bumps.size());
+    if base_roughness.is_none() && settings.profile.is_portable() {
+        notes.push(note::no_base_roughness());
+    }
     let layer = std::iter::once_with(|| layer_input(&map, base_roughness));
     let first = first_within(settings, map.bumps.size());
     let BumpMapProducts { normals, layers, pyramid } = bake_bump_map(&map, first, layer, || vec![tangent_frame()])?;

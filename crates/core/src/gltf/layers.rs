@@ -145,15 +145,6 @@ const CLEARCOAT: LayerRow = LayerRow {
     is_in_pyramid: false,
 };
 
-impl LayerRow {
-    /// Returns the textures of bumps, roughness and anisotropy. A height texture is not among them, since glTF does not
-    /// know it.
-    pub fn textures(&self) -> impl Iterator<Item = Pointer> {
-        let anisotropy = self.anisotropy.as_ref().map(|row| row.texture);
-        [self.normal_texture, self.roughness_texture].into_iter().chain(anisotropy)
-    }
-}
-
 /// Splits a pointer into the pointer of the object and the name of the member.
 pub(super) fn split(pointer: Pointer) -> (Pointer, &'static str) {
     pointer.rsplit_once('/').unwrap_or(("", pointer))

@@ -17,7 +17,7 @@ pub const EXTENSION: &str = "ROUGHCAST_materials_roughness_pyramid";
 pub const FORMAT_VERSION: u32 = 2;
 
 /// The members that refer to textures: offsets, and D or lambda_1.
-pub const TEXTURES: [&str; 2] = ["offsetTexture", "roughnessTexture"];
+const TEXTURES: [&str; 2] = ["offsetTexture", "roughnessTexture"];
 
 /// The extension object of a material. Numbers are written as `f32`, as short as they can be, and read as `f64`.
 #[derive(Clone, Debug, Serialize, Deserialize)]

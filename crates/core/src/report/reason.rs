@@ -68,18 +68,10 @@ impl Evidence {
 }
 
 impl Reason {
-    /// Returns whether another setting or another layer may come closer to the bound. For the other reasons the best
-    /// lobe exceeds the bound, too, or no engine can show that lobe, or glTF has no finer encoding: `--target float` is
-    /// for other programs.
-    pub fn is_avoidable(self) -> bool {
-        match self {
-            Self::Isotropic | Self::Fit => true,
-            Self::Encoding | Self::AlphaAboveOne | Self::TwoPeaked | Self::Steep | Self::NoSingleLobe => false,
-        }
-    }
-
     /// Returns what comes closer to the bound, as the object of "use"; `None` if nothing is left to try. `closer` is a
-    /// model that the layer can have and that is closer than the requested model.
+    /// model that the layer can have and that is closer than the requested model. For the other reasons the best lobe
+    /// exceeds the bound, too, or no engine can show that lobe, or glTF has no finer encoding: `--target float` is for
+    /// other programs.
     pub(super) fn remedy(self, settings: &Settings, closer: Option<Model>) -> Option<String> {
         match self {
             Self::Isotropic => (settings.model_limit() == Model::Anisotropic)

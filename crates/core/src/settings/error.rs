@@ -43,7 +43,7 @@ pub enum SettingsError {
     /// A .glb has no external texture that both references could name.
     #[error(
         "expected a .gltf for --gltf dual, which --engine bevy sets too, since both references name an external .ktx2; \
-         found that a .glb is asked for: write a .gltf, or choose another form"
+         found that a .glb is asked for: write a .gltf (`-o NAME.gltf`), or choose another form"
     )]
     DualInGlb,
 }

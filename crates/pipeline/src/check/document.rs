@@ -38,12 +38,8 @@ pub fn check_document(name: &str, bytes: &[u8], files: &dyn Files, scope: &Scope
     let mut findings = Findings::new(name);
     let (document, value, root) = match parse(bytes) {
         Ok(parsed) => parsed,
-        Err(reason) => {
-            findings.add(
-                Code::UnreadableDocument,
-                "",
-                format!("expected a glTF 2.0 document, found: {reason}; bake again"),
-            );
+        Err(message) => {
+            findings.add(Code::UnreadableDocument, "", message);
             return CheckedDocument { findings: findings.into_list(), files: Vec::new() };
         }
     };
@@ -87,13 +83,19 @@ fn expected_settings(settings: &Settings, container: Container) -> Settings {
 
 /// Parses the document with our reader, and with the typed reader of crate `gltf`: engines refuse what that reader
 /// refuses.
+/// Reads a document. The error is the message of a finding.
 fn parse(bytes: &[u8]) -> Result<(Document, Value, Root), String> {
     let parsed = Document::parse(bytes).and_then(|document| {
         let value = document.json().value("")?.unwrap_or_default();
         Ok((document, value))
     });
-    let (document, value) = parsed.map_err(|e: DocumentError| e.to_string())?;
-    let root = ::gltf::json::deserialize::from_value(value.clone()).map_err(|e| e.to_string())?;
+    let unreadable = |reason: String| format!("expected a glTF 2.0 document, found: {reason}; bake again");
+    let (document, value) = parsed.map_err(|error| match error {
+        DocumentError::Json(error) => unreadable(error.to_string()),
+        // The message says what was expected, and what to do.
+        other => other.to_string(),
+    })?;
+    let root = ::gltf::json::deserialize::from_value(value.clone()).map_err(|error| unreadable(error.to_string()))?;
     Ok((document, value, root))
 }
 

@@ -125,7 +125,7 @@ fn check_bound(found: &Provenance, place: &str, findings: &mut Findings) {
         let worst = found.lobe_errors.iter().copied().fold(0.0, f32::max);
         let message = format!(
             "expected a lobe error of at most {bound} at every level, found more at {above} of {} levels (worst \
-             {worst:.3}): no model does better, or --model chose another one; see the report of the bake",
+             {worst:.3}); bake with --verbose to see why",
             found.lobe_errors.len()
         );
         findings.add(Code::LobeError, place, message);

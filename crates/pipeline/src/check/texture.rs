@@ -7,7 +7,7 @@ use super::descriptor::{Values, check_descriptor};
 use super::findings::{Code, Findings};
 use super::provenance::check_provenance;
 use super::scope::Scope;
-use crate::ktx2::{Ktx2, PROVENANCE_KEY, provenance};
+use crate::ktx2::{Ktx2, PROVENANCE_KEY, ReadError, provenance};
 use crate::report::Content;
 
 /// How a document uses a texture.
@@ -27,7 +27,11 @@ pub fn check_texture(bytes: &[u8], usage: Usage, scope: &Scope<'_>, findings: &m
     let file = match Ktx2::parse(bytes) {
         Ok(file) => file,
         Err(error) => {
-            findings.add(Code::UnreadableTexture, "", format!("expected a KTX2 file, found: {error}"));
+            let message = match error {
+                ReadError::Foreign { .. } => error.to_string(),
+                error => format!("expected a KTX2 file, found: {error}"),
+            };
+            findings.add(Code::UnreadableTexture, "", message);
             return None;
         }
     };

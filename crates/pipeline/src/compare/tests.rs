@@ -103,6 +103,10 @@ fn the_page_begins_with_the_verdict() {
     let miss = json!([{ "level": 3, "error": 0.3, "oracle": 0.2, "reason": "twoPeaked" }]);
     let missed = verdict(&comparison.entries, &layer(miss), 0.1).unwrap();
     assert!(missed.starts_with("No choice is within 0.1 at every level; isotropic lobes at half size are"), "{missed}");
+    let peer = comparison.entries.iter_mut().find(|entry| entry.kind == Kind::Peer).unwrap();
+    (peer.name, peer.error) = ("LEAN".to_owned(), 0.03);
+    let beside = verdict(&comparison.entries, &layer(json!([])), 0.1).unwrap();
+    assert!(beside.contains("on the GPU. LEAN: 0.03. "), "{beside}");
     comparison.verdict = Some(within);
     let page = page(&[comparison], "0");
     let place = |text: &str| page.find(text).unwrap();

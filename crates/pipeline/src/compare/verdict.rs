@@ -17,7 +17,10 @@ pub fn verdict(entries: &[Entry], layer: &LayerReport, max_error: f32) -> Option
         Some(made) if made.misses.is_empty() => {
             format!("{} are the cheapest choice within {max_error} at every level", capitalised(&choice))
         }
-        Some(_) => format!("No choice is within {max_error} at every level; {choice} are the most accurate"),
+        Some(_) => format!(
+            "No choice is within {max_error} at every level; {choice} are the cheapest among the most accurate of \
+             `--model auto`"
+        ),
         None => format!("{} were chosen", capitalised(&choice)),
     };
     let cost = [Axis::GpuBytes, Axis::FileBytes]
@@ -27,8 +30,15 @@ pub fn verdict(entries: &[Entry], layer: &LayerReport, max_error: f32) -> Option
     let error = |wanted: &dyn Fn(&Entry) -> bool| entries.iter().find(|e| wanted(e)).map(|e| e.error);
     let plain = error(&|e| e.kind == Kind::Peer && e.name == "plain mips");
     let oracle = error(&|e| e.kind == Kind::Oracle);
-    let others = [("Plain mips", plain), ("Best possible lobe", oracle)];
-    let others = others.iter().filter_map(|(name, e)| Some(format!(" {name}: {:.2}.", (*e)?))).collect::<String>();
+    let peers = entries.iter().filter(|e| e.kind == Kind::Peer && e.error < chosen.error);
+    let closer = peers.min_by(|a, b| a.error.total_cmp(&b.error));
+    let others = [
+        (closer.map_or("", |peer| &peer.name), closer.map(|peer| peer.error)),
+        ("Plain mips", plain),
+        ("Best possible lobe", oracle),
+    ];
+    let others = others.iter().filter_map(|(name, e)| Some(format!(" {}: {:.2}.", capitalised(name), (*e)?)));
+    let others: String = others.collect();
     let plain_pictures = entries.iter().find(|e| e.name == "plain mips").and_then(|e| e.picture_error);
     let pictures = chosen.picture_error.zip(plain_pictures);
     let pictures = pictures

@@ -13,7 +13,7 @@ fn ordinary_files_are_read_and_hashed() {
 #[test]
 fn folders_and_missing_files_are_errors() {
     let folder = tempfile::tempdir().unwrap();
-    assert_eq!(read_file(folder.path()).unwrap_err().kind(), io::ErrorKind::InvalidInput);
+    assert_eq!(read_file(folder.path()).unwrap_err().kind(), io::ErrorKind::IsADirectory);
     assert_eq!(read_file(&folder.path().join("a")).unwrap_err().kind(), io::ErrorKind::NotFound);
 }
 

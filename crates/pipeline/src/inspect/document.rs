@@ -1,4 +1,4 @@
-//! The facts of a glTF document that concern bumps and roughness.
+//! The facts of a glTF document: its materials and their textures.
 
 use std::collections::BTreeMap;
 
@@ -9,9 +9,8 @@ use super::texture::{TextureFacts, inspect_texture};
 use crate::check::ReferencedFiles;
 use crate::decode::decode;
 use crate::gltf::document::{DocumentError, check_version};
-use crate::gltf::layers::{LAYERS, LayerRow, member};
 use crate::gltf::rewrite::references;
-use crate::gltf::roughness_pyramid::{self, EXTENSION, RoughnessPyramid};
+use crate::gltf::roughness_pyramid::{EXTENSION, RoughnessPyramid};
 use crate::gltf::texture::ImageLocation;
 use crate::image::{DecodeOptions, FileFormat};
 
@@ -37,7 +36,7 @@ pub struct MaterialFacts {
     pub name: String,
     /// `roughnessFactor`.
     pub roughness_factor: f64,
-    /// References to textures of bumps, roughness and anisotropy.
+    /// References to textures.
     pub slots: Vec<SlotFacts>,
     /// `ROUGHCAST_materials_roughness_pyramid`, unchanged.
     pub pyramid: Option<Value>,
@@ -93,12 +92,6 @@ pub struct PictureFacts {
     pub bits: u32,
 }
 
-/// Returns whether a reference of this name concerns bumps or roughness.
-fn is_slot(name: &str) -> bool {
-    let layers = LAYERS.iter().flat_map(LayerRow::textures).map(member);
-    layers.chain(roughness_pyramid::TEXTURES).any(|known| known == name)
-}
-
 /// Reads the facts of the document whose JSON is `root`. Errors inside the document are among the facts.
 ///
 /// # Errors
@@ -125,7 +118,7 @@ pub fn inspect_document(root: &Value, referenced: &ReferencedFiles<'_>) -> Resul
 /// A reference of a material: its JSON pointer inside the material, and the texture.
 type Slot = (String, usize);
 
-/// Returns the references that concern bumps and roughness, by material.
+/// Returns the references to textures, by material.
 fn slots(root: &Value) -> BTreeMap<usize, Vec<Slot>> {
     let mut slots: BTreeMap<usize, Vec<Slot>> = BTreeMap::new();
     for (pointer, texture) in references(root) {
@@ -133,9 +126,7 @@ fn slots(root: &Value) -> BTreeMap<usize, Vec<Slot>> {
             continue;
         };
         let Ok(material) = material.parse() else { continue };
-        if slot.rsplit('/').next().is_some_and(is_slot) {
-            slots.entry(material).or_default().push((slot.to_owned(), texture));
-        }
+        slots.entry(material).or_default().push((slot.to_owned(), texture));
     }
     slots
 }

@@ -12,7 +12,7 @@ use crate::bake::{SourceError, output_stem_of};
 use crate::check::{Folder, ReferencedFiles};
 use crate::gltf::document::{Document, DocumentError};
 use crate::gltf::texture::ImageLocation;
-use crate::input_file::read_file;
+use crate::input_file::{Unreadable, read_file};
 use crate::ktx2::ReadError;
 use crate::output::{Guard, PublishError};
 use crate::project::protect;
@@ -21,7 +21,7 @@ use crate::project::protect;
 #[derive(Debug, thiserror::Error)]
 pub enum InspectError {
     /// The file cannot be read.
-    #[error("expected a readable file, found: {0}; check the path")]
+    #[error("expected a readable file, found: {}", Unreadable(.0))]
     Read(#[from] io::Error),
     /// The texture is damaged.
     #[error(transparent)]

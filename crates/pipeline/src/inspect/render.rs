@@ -4,7 +4,7 @@ use serde_json::Value;
 
 use super::document::{DocumentFacts, ImageFacts, MaterialFacts};
 use super::texture::TextureFacts;
-use crate::text::printable;
+use crate::text::{counted, printable};
 
 /// Lines of a text. Content comes from files, so each line is made printable and cannot add lines.
 struct Lines(String);
@@ -54,11 +54,11 @@ pub fn texture_text(name: &str, facts: &TextureFacts) -> String {
     lines.0
 }
 
-/// Formats the facts of a glTF document: the bumps and the roughness of its materials.
+/// Formats the facts of a glTF document: its materials and their textures.
 pub fn document_text(name: &str, facts: &DocumentFacts) -> String {
     let list = |names: &[String]| if names.is_empty() { "none".to_owned() } else { names.join(", ") };
     let mut lines = Lines(String::new());
-    lines.push(&format!("{name}: {} material(s)", facts.materials.len()));
+    lines.push(&format!("{name}: {}", counted(facts.materials.len(), "material")));
     lines.push(&format!("  extensions used: {}", list(&facts.extensions_used)));
     lines.push(&format!("  extensions required: {}", list(&facts.extensions_required)));
     for material in &facts.materials {
@@ -70,7 +70,7 @@ pub fn document_text(name: &str, facts: &DocumentFacts) -> String {
 fn add_material(material: &MaterialFacts, lines: &mut Lines) {
     lines.push(&format!("  {} (roughness factor {})", material.name, material.roughness_factor));
     if material.slots.is_empty() {
-        lines.push("    no textures of bumps or roughness");
+        lines.push("    no textures");
     }
     for slot in &material.slots {
         lines.push(&format!("    {}: textures[{}]", slot.slot, slot.texture));
@@ -95,7 +95,8 @@ fn image_text(image: &ImageFacts) -> String {
             format!("{content}{}", summary(ktx2))
         }
         (None, Some(p), _) => {
-            format!("{} x {}, {}, {} channel(s) of {} bits", p.width, p.height, p.format, p.channels, p.bits)
+            let channels = counted(p.channels as usize, "channel");
+            format!("{} x {}, {}, {channels} of {} bits", p.width, p.height, p.format, p.bits)
         }
         (None, None, error) => format!("error: {}", error.as_deref().unwrap_or_default()),
     };
@@ -106,6 +107,7 @@ fn image_text(image: &ImageFacts) -> String {
 fn summary(facts: &TextureFacts) -> String {
     let model = facts.descriptor.as_ref().map_or("no descriptor", |d| d.model.as_str());
     let format = if facts.format == "UNDEFINED" { model } else { &facts.format };
+    let transfer = facts.descriptor.as_ref().filter(|d| d.transfer == "SRGB").map_or("", |_| " sRGB");
     let stored: u64 = facts.levels.iter().map(|l| l.stored_bytes).sum();
     let mut text = format!("{} x {}", facts.width, facts.height);
     for (count, what) in [(facts.depth, "slices"), (facts.layers, "layers")] {
@@ -116,8 +118,8 @@ fn summary(facts: &TextureFacts) -> String {
     if facts.faces > 1 {
         text += &format!(", {} faces", facts.faces);
     }
-    let levels = facts.levels.len();
-    text + &format!(", {format}, supercompression {}, {levels} level(s), {stored} bytes", facts.supercompression)
+    let levels = counted(facts.levels.len(), "level");
+    text + &format!(", {format}{transfer}, supercompression {}, {levels}, {stored} bytes", facts.supercompression)
 }
 
 /// Formats a JSON value; strings have no quotes.

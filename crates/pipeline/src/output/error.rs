@@ -1,13 +1,32 @@
 //! Why a file cannot be written.
 
+use std::fmt::{self, Display};
 use std::io;
 use std::path::PathBuf;
+
+/// Why the system refuses to write, and what to do.
+struct Unwritable<'a>(&'a io::Error);
+
+impl Display for Unwritable<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        use io::ErrorKind as Kind;
+        match self.0.kind() {
+            Kind::PermissionDenied => f.write_str("no permission to write there; choose another output folder"),
+            Kind::AlreadyExists | Kind::NotADirectory => {
+                f.write_str("a file in place of its folder; choose another output folder")
+            }
+            Kind::IsADirectory => f.write_str("a folder of that name; choose another name"),
+            Kind::StorageFull | Kind::QuotaExceeded | Kind::FileTooLarge => write!(f, "{}; free space", self.0),
+            _ => write!(f, "{}; choose another output folder", self.0),
+        }
+    }
+}
 
 /// Why a file cannot be written.
 #[derive(Debug, thiserror::Error)]
 pub enum PublishError {
     /// The file system refuses to write.
-    #[error("expected to write {}, found: {error}; free space or choose another output folder", path.display())]
+    #[error("expected to write {}, found: {}", path.display(), Unwritable(error))]
     Write {
         /// The file.
         path: PathBuf,

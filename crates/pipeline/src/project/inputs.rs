@@ -36,10 +36,19 @@ pub enum InputError {
         found: String,
     },
     /// A folder without assets.
-    #[error("{}: expected .gltf or .glb files in the folder, found none; check the path", path.display())]
+    #[error(
+        "{}: expected .gltf or .glb files in the folder, found {}",
+        path.display(),
+        scene.as_ref().map_or_else(
+            || "none; check the path".to_owned(),
+            |scene| format!("others such as {}; export the scenes as glTF 2.0", scene.display())
+        )
+    )]
     EmptyFolder {
         /// The folder.
         path: PathBuf,
+        /// A scene in it in another format.
+        scene: Option<PathBuf>,
     },
     /// A folder whose assets are all outputs of earlier bakes.
     #[error(
@@ -110,7 +119,7 @@ impl InputError {
     pub fn path(&self) -> &Path {
         match self {
             Self::NotAnAsset { path, .. }
-            | Self::EmptyFolder { path }
+            | Self::EmptyFolder { path, .. }
             | Self::OnlyBaked { path, .. }
             | Self::Walk { path, .. }
             | Self::NotUtf8 { path }
@@ -189,14 +198,12 @@ fn find_one(
             let found = argument.extension().map_or_else(
                 || "a file without extension".to_owned(),
                 |e| {
-                    let extension = e.to_string_lossy();
-                    let is_scene = SCENES.iter().any(|scene| extension.eq_ignore_ascii_case(scene));
-                    let remedy = if is_scene {
+                    let remedy = if is_other_scene(argument) {
                         "export the scene as glTF 2.0"
                     } else {
                         "standalone maps are for `roughcast map`"
                     };
-                    format!("a .{extension} file ({remedy})")
+                    format!("a .{} file ({remedy})", e.to_string_lossy())
                 },
             );
             return Err(InputError::NotAnAsset { path, found });
@@ -207,6 +214,7 @@ fn find_one(
         return Ok(Found { inputs: vec![found], ..Found::default() });
     }
     let Found { mut inputs, mut errors, mut baked } = Found::default();
+    let mut scene = None;
     let walk = WalkDir::new(argument).follow_links(true).sort_by_file_name().into_iter();
     let is_output = |folder: &Path| real_output.is_some() && real(folder) == real_output;
     for entry in walk.filter_entry(|e| !(e.file_type().is_dir() && is_output(e.path()))) {
@@ -215,7 +223,10 @@ fn find_one(
                 let path = error.path().unwrap_or(argument).to_owned();
                 errors.push(InputError::Walk { path, reason: error.to_string() });
             }
-            Ok(entry) if !(entry.file_type().is_file() && is_asset(entry.path())) => {}
+            Ok(entry) if !entry.file_type().is_file() => {}
+            Ok(entry) if !is_asset(entry.path()) => {
+                scene = scene.or_else(|| is_other_scene(entry.path()).then(|| entry.into_path()));
+            }
             Ok(entry) if is_baked(entry.path()) => baked.push(entry.into_path()),
             Ok(entry) => {
                 let below = entry.path().strip_prefix(argument).unwrap_or(entry.path());
@@ -229,7 +240,7 @@ fn find_one(
     match baked.first() {
         _ if !(inputs.is_empty() && errors.is_empty()) => Ok(Found { inputs, errors, baked }),
         Some(example) => Err(InputError::OnlyBaked { path, count: baked.len(), example: example.clone() }),
-        None => Err(InputError::EmptyFolder { path }),
+        None => Err(InputError::EmptyFolder { path, scene }),
     }
 }
 
@@ -237,6 +248,10 @@ fn input(path: &Path, folder: PathBuf) -> Result<Input, InputError> {
     let stem = path.file_stem().and_then(|s| s.to_str());
     let stem = stem.ok_or_else(|| InputError::NotUtf8 { path: path.to_owned() })?;
     Ok(Input { path: path.to_owned(), folder, stem: output_stem(stem) })
+}
+
+fn is_other_scene(path: &Path) -> bool {
+    path.extension().is_some_and(|e| SCENES.iter().any(|scene| e.eq_ignore_ascii_case(scene)))
 }
 
 fn is_asset(path: &Path) -> bool {

@@ -8,13 +8,14 @@ use crate::gltf::document::DocumentError;
 use crate::gltf::json::JsonError;
 use crate::gltf::material::MaterialError;
 use crate::gltf::texture::TextureError;
+use crate::input_file::Unreadable;
 use crate::ktx2::ReadError;
 
 /// Why an input, or a material of its bake, cannot be read.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadBackError {
     /// The input cannot be read.
-    #[error("expected a readable file, found: {0}; check the path")]
+    #[error("expected a readable file, found: {}", Unreadable(.0))]
     Read(io::Error),
     /// The waves cannot be encoded.
     #[error("expected to encode the waves as OpenEXR, found: {0}; free memory and try again")]

@@ -8,6 +8,7 @@ use crate::cache::NotRelative;
 use crate::codec::EncodeError;
 use crate::digest::Digest;
 use crate::gltf::document::DocumentError;
+use crate::input_file::Unreadable;
 use crate::material::GridError;
 use crate::memory::OutOfMemory;
 use crate::output::PublishError;
@@ -18,7 +19,7 @@ use crate::settings::SettingsError;
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
     /// The document cannot be read.
-    #[error("expected a readable file, found: {0}; check the path")]
+    #[error("expected a readable file, found: {}", Unreadable(.0))]
     Read(io::Error),
     /// The file is no glTF document.
     #[error(transparent)]

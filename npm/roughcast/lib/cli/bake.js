@@ -7,7 +7,7 @@ import { bakeWithSizes } from '../bake.js';
 import { stem } from '../names.js';
 import { bufferPaths, findAssets, readIfThere, writeOutput } from './files.js';
 import { DOCUMENT, UsageError, parse } from './options.js';
-import { printable, sum, summary, total } from './summary.js';
+import { notesToActOn, printable, sum, summary, total } from './summary.js';
 
 const OWN = { ...DOCUMENT, report: { type: 'string' }, 'no-config': { type: 'boolean' } };
 
@@ -35,6 +35,7 @@ export async function bakeCommand(args, stdout, stderr) {
   if (onAnisotropy && outcomes.some(hasAnisotropicLobes)) notes.push(onAnisotropy);
   if (!values.quiet && !values.json) {
     stdout.write(total(outcomes, secondsSince(started)));
+    if (!values.verbose) stdout.write(notesToActOn(outcomes));
     for (const note of notes) stdout.write(`note: ${printable(note.text)}\n`);
   }
   const report = `${JSON.stringify({ ...run, assets: outcomes, ...(notes.length > 0 && { notes }) }, null, 2)}\n`;

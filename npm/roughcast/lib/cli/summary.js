@@ -14,14 +14,12 @@ const FRACTIONS = ['', ', half size', ', quarter size'];
 const ACTIVE = /[\p{Cc}\u2028\u2029\u202a-\u202e\u2066-\u2069]/gu;
 
 /**
- * Returns a line about an asset that did not fail, and a line for each note that asks for something. With `verbose`,
- * returns a line for each layer instead, with all of its notes.
+ * Returns a line about an asset that did not fail. With `verbose`, a line for each layer follows, with all of its
+ * notes.
  */
 export function summary(asset, verbose) {
-  const start = `${asset.status} ${printable(asset.input)}: `;
-  if (asset.textures.length === 0) return `${start}no normal or height maps\n`;
-  const lines = verbose ? asset.layers.flatMap(layerLines) : notesToActOn(asset.layers);
-  return [start + text(totalsOf(asset), asset.seconds), ...lines, ''].join('\n');
+  const line = `${asset.status} ${printable(asset.input)}: ${text(totalsOf(asset), asset.seconds)}`;
+  return [line, ...(verbose ? asset.layers.flatMap(layerLines) : []), ''].join('\n');
 }
 
 /** Returns a line about all assets together, whose run took `seconds`; nothing if there are fewer than two. */
@@ -54,9 +52,16 @@ function text(totals, seconds) {
     .filter(([, bytes]) => bytes !== '0.0')
     .map(([name, bytes]) => `${name} ${bytes}`);
   return (
-    `${count(materials, 'material')}, ${count(textures, 'texture')}, ${number(before)} -> ${number(after)} ${unit} ` +
+    `${bakedText(materials, textures)}, ${number(before)} -> ${number(after)} ${unit} ` +
     `(${parts.join(', ')}), ${fixed(seconds, 2)} s`
   );
+}
+
+/** Returns what was baked. The materials are those with baked bumps. */
+function bakedText(materials, textures) {
+  if (textures === 0) return 'no normal or height maps';
+  const baked = count(textures, 'texture');
+  return materials === 0 ? baked : `${count(materials, 'material')}, ${baked}`;
 }
 
 /**
@@ -71,18 +76,22 @@ export function fixed(value, digits) {
   return ((2 * Math.round((value * scale) / 2)) / scale).toFixed(digits);
 }
 
-/** Returns a line for each different note that asks for something, with the materials that have the note. */
-function notesToActOn(layers) {
+/** Returns a line for each different note on assets that asks for something, with the materials that have the note. */
+export function notesToActOn(assets) {
   const names = new Map();
-  for (const layer of layers) {
-    for (const note of layer.notes.filter((note) => note.asksForAction)) {
-      names.set(note.text, [...(names.get(note.text) ?? []), nameOf(layer)]);
+  for (const { input, layers = [] } of assets) {
+    for (const layer of layers) {
+      const name = assets.length === 1 ? nameOf(layer) : `${input} (${nameOf(layer)})`;
+      for (const note of layer.notes.filter((note) => note.asksForAction)) {
+        names.set(note.text, [...(names.get(note.text) ?? []), name]);
+      }
     }
   }
-  return [...names].map(([note, of]) => {
+  const line = ([note, of]) => {
     const more = of.length > MAX_NAMED ? ` and ${of.length - MAX_NAMED} more` : '';
-    return `  note: ${printable(of.slice(0, MAX_NAMED).join('; '))}${more}: ${printable(note)}`;
-  });
+    return `  note: ${printable(of.slice(0, MAX_NAMED).join('; '))}${more}: ${printable(note)}\n`;
+  };
+  return [...names].map(line).join('');
 }
 
 function layerLines(layer) {

@@ -9,7 +9,7 @@ pub use sarif::sarif;
 use serde::Serialize;
 
 use super::findings::{Finding, Severity};
-use crate::text::printable;
+use crate::text::{counted, printable};
 
 /// The format version of reports of `check`.
 pub const CHECK_FORMAT: u32 = 1;
@@ -62,13 +62,12 @@ pub fn text(report: &Report) -> String {
         }
     }
     let counts = [Severity::Error, Severity::Warning, Severity::Note].map(|s| report.count(s));
-    let plural = |n: usize, word: &str| format!("{n} {word}{}", if n == 1 { "" } else { "s" });
     text += &format!(
         "{} checked: {}, {}, {}\n",
-        plural(report.files.len(), "file"),
-        plural(counts[0], "error"),
-        plural(counts[1], "warning"),
-        plural(counts[2], "note")
+        counted(report.files.len(), "file"),
+        counted(counts[0], "error"),
+        counted(counts[1], "warning"),
+        counted(counts[2], "note")
     );
     text
 }
