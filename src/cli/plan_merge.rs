@@ -4,7 +4,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use super::terminal::outcome::Outcome;
-use crate::input_file::read_file;
+use crate::input_file::{Unreadable, read_file};
 use crate::output::{Guard, OutputPath, PublishError};
 use crate::report::{PartReport, ReportError};
 use crate::run::{Merged, Plan, PlanError};
@@ -40,7 +40,7 @@ pub struct Args {
 enum MergeError {
     #[error(transparent)]
     Plan(#[from] PlanError),
-    #[error("{}: expected a readable file, found: {error}; check the path", path.display())]
+    #[error("{}: expected a readable file, found: {}", path.display(), Unreadable(error))]
     Read { path: PathBuf, error: io::Error },
     #[error("{}: {error}", path.display())]
     Report { path: PathBuf, error: ReportError },

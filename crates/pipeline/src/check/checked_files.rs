@@ -179,11 +179,14 @@ fn folders_of(path: &Path) -> Vec<PathBuf> {
     (0..=names.len()).map(|first| names[first..].iter().collect()).collect()
 }
 
+/// Returns where the source of `document` is in `folder`, or should be. The document itself is not checked.
+pub fn source_of_unchecked(document: &Path, folder: &Path) -> PathBuf {
+    let expected = || folder.join(document.file_name().unwrap_or_default());
+    source_file_of(document, folder).unwrap_or_else(expected)
+}
+
 /// Returns where the source of `target` should be in `folder`, which has no asset for it.
 pub fn expected_source(target: &CheckedFile, folder: &Path) -> PathBuf {
-    if let Some(source) = target.unchecked_document().and_then(|document| source_file_of(&document, folder)) {
-        return source;
-    }
     let named = folder.join(&target.below);
     let recorded = recorded_source(&target.path).filter(|_| is_same_file(&named, &target.path));
     match recorded {

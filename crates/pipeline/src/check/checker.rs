@@ -8,7 +8,9 @@ use std::path::{Path, PathBuf};
 use rayon::prelude::*;
 use semver::Version;
 
-use super::checked_files::{CheckedFile, Sources, expected_source, find_checked_files, source_document};
+use super::checked_files::{
+    CheckedFile, Sources, expected_source, find_checked_files, source_document, source_of_unchecked,
+};
 use super::document::check_document;
 use super::files::Files;
 use super::findings::{Code, Finding, Findings, Severity};
@@ -19,6 +21,7 @@ use super::scope::Scope;
 use super::source_digests::SourceDigests;
 use super::texture::{Usage, check_texture};
 use crate::input_file::read_file;
+use crate::output::folder_of;
 
 /// How files are checked.
 pub struct Checker {
@@ -196,11 +199,15 @@ impl Checker {
             let message = "expected a document that names it, found none: an earlier bake left it behind; delete it";
             findings.add(Code::LeftOver, "", message);
         } else {
-            let source = sources.folder.as_ref().map(|folder| expected_source(target, folder));
-            let folder = source.as_deref().and_then(Path::parent).unwrap_or(Path::new("")).to_owned();
+            let document = target.unchecked_document();
+            let source = sources.folder.as_ref().map(|folder| match &document {
+                Some(document) => source_of_unchecked(document, folder),
+                None => folder.join(&target.below),
+            });
+            let folder = source.as_deref().map(folder_of).unwrap_or(Path::new(""));
             let read_source = |path: &Path| read_file(&folder.join(path));
-            let origin = source.and_then(|source| match target.unchecked_document() {
-                Some(_) => document_digests(&source, &read_source, &mut findings),
+            let origin = source.as_deref().and_then(|source| match document {
+                Some(_) => document_digests(source, &read_source, &mut findings),
                 None => Some(SourceDigests::new(None, &read_source)),
             });
             check_texture(held.as_ktx2(), Usage::default(), &self.scope(origin.as_ref()), &mut findings);

@@ -82,8 +82,7 @@ fn expected_settings(settings: &Settings, container: Container) -> Settings {
 }
 
 /// Parses the document with our reader, and with the typed reader of crate `gltf`: engines refuse what that reader
-/// refuses.
-/// Reads a document. The error is the message of a finding.
+/// refuses. The error is the message of a finding.
 fn parse(bytes: &[u8]) -> Result<(Document, Value, Root), String> {
     let parsed = Document::parse(bytes).and_then(|document| {
         let value = document.json().value("")?.unwrap_or_default();

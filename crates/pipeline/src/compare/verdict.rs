@@ -1,5 +1,6 @@
 //! The verdict on a material in a few sentences.
 
+use super::entry::BEST_LOBE;
 use super::units::amount;
 use super::{Axis, Entry, Kind};
 use crate::report::LayerReport;
@@ -18,8 +19,7 @@ pub fn verdict(entries: &[Entry], layer: &LayerReport, max_error: f32) -> Option
             format!("{} are the cheapest choice within {max_error} at every level", capitalised(&choice))
         }
         Some(_) => format!(
-            "No choice is within {max_error} at every level; {choice} are the cheapest among the most accurate of \
-             `--model auto`"
+            "No choice is within {max_error} at every level; {choice} are the cheapest of those that come closest"
         ),
         None => format!("{} were chosen", capitalised(&choice)),
     };
@@ -31,14 +31,9 @@ pub fn verdict(entries: &[Entry], layer: &LayerReport, max_error: f32) -> Option
     let plain = error(&|e| e.kind == Kind::Peer && e.name == "plain mips");
     let oracle = error(&|e| e.kind == Kind::Oracle);
     let peers = entries.iter().filter(|e| e.kind == Kind::Peer && e.error < chosen.error);
-    let closer = peers.min_by(|a, b| a.error.total_cmp(&b.error));
-    let others = [
-        (closer.map_or("", |peer| &peer.name), closer.map(|peer| peer.error)),
-        ("Plain mips", plain),
-        ("Best possible lobe", oracle),
-    ];
-    let others = others.iter().filter_map(|(name, e)| Some(format!(" {}: {:.2}.", capitalised(name), (*e)?)));
-    let others: String = others.collect();
+    let closer = peers.min_by(|a, b| a.error.total_cmp(&b.error)).map(|peer| (&*peer.name, peer.error));
+    let others = [closer, plain.map(|e| ("plain mips", e)), oracle.map(|e| (BEST_LOBE, e))].into_iter().flatten();
+    let others: String = others.map(|(name, e)| format!(" {}: {e:.2}.", capitalised(name))).collect();
     let plain_pictures = entries.iter().find(|e| e.name == "plain mips").and_then(|e| e.picture_error);
     let pictures = chosen.picture_error.zip(plain_pictures);
     let pictures = pictures

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::input_file::read_file;
+use crate::input_file::{Unreadable, read_file};
 use crate::report::{FormatError, check_format};
 use crate::run::job::Job;
 
@@ -34,7 +34,7 @@ struct Head {
 #[derive(Debug, thiserror::Error)]
 pub enum PlanError {
     /// The file cannot be read.
-    #[error("{}: expected a readable file, found: {error}; check the path", path.display())]
+    #[error("{}: expected a readable file, found: {}", path.display(), Unreadable(error))]
     Read {
         /// The file.
         path: PathBuf,

@@ -95,11 +95,11 @@ export const surroundings = /* glsl */ `
   // bright on spheres. Weights by the visible area of real facets (B. Walter et al., 2007, eq. 41) are too bright on
   // planes.
   vec3 roughcastRadiance( vec3 view, vec3 n, vec3 t, vec3 b, float alphaT, float alphaB, float base ) {
-    const int TAPS = 16;
+    const int PAIRS = 8;
     // Pi over the golden ratio: directions and their opposites cover the circle evenly.
     const float ANGLE = 1.94161104;
-    // Facets whose slopes have the covariance S / 2 make Beckmann's lobe of the squared alphas S. The GGX lobe of
-    // greatest likelihood for normally distributed slopes has them at 0.82 S. The covariance here is 1.3 / 2 S.
+    // Slopes with the covariance S / 2 make Beckmann's lobe with the squared alphas S, and slopes with 0.82 S make that
+    // of GGX, by likelihood. Facets here have 0.65 S, which lies between them: WIDTH / 2.
     const float WIDTH = 1.3;
     // The spread of the facets is S = A' - alpha_b^2 1, which is 2 c K for an isotropic base lobe. A quarter of the
     // smaller spread is left to blur, since there are few facets.
@@ -108,15 +108,16 @@ export const surroundings = /* glsl */ `
     spread = sqrt( WIDTH * ( spread - blur ) );
     float roughness = sqrt( sqrt( pow4( base ) + blur ) );
     vec3 sum = vec3( 0.0 );
-    for ( int i = 0; i < TAPS; i ++ ) {
+    for ( int i = 0; i < PAIRS; i ++ ) {
       // Slopes at quantiles of a normal distribution, on a spiral, each with the opposite slope: their mean is 0, and
       // the signs of the axes do not matter.
-      float pair = float( i / 2 ), side = i % 2 == 0 ? 1.0 : -1.0;
-      float radius = sqrt( - log( 1.0 - ( pair + 0.5 ) / float( TAPS / 2 ) ) ), angle = ANGLE * pair;
-      vec2 slope = side * radius * spread * vec2( cos( angle ), sin( angle ) );
-      sum += getIBLRadiance( view, normalize( n + slope.x * t + slope.y * b ), roughness );
+      float radius = sqrt( - log( 1.0 - ( float( i ) + 0.5 ) / float( PAIRS ) ) ), angle = ANGLE * float( i );
+      vec2 slope = radius * spread * vec2( cos( angle ), sin( angle ) );
+      vec3 tilt = slope.x * t + slope.y * b;
+      sum += getIBLRadiance( view, normalize( n + tilt ), roughness );
+      sum += getIBLRadiance( view, normalize( n - tilt ), roughness );
     }
-    return sum / float( TAPS );
+    return sum / float( 2 * PAIRS );
   }
 #endif
 `;

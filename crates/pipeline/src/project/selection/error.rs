@@ -4,6 +4,7 @@ use std::io;
 use std::path::PathBuf;
 
 use crate::codec::EncodeError;
+use crate::input_file::Unreadable;
 use crate::project::destination::DestinationError;
 use crate::project::file::{ConfigError, FILE_NAME};
 use crate::settings::SettingsError;
@@ -12,7 +13,7 @@ use crate::settings::SettingsError;
 #[derive(Debug, thiserror::Error)]
 pub enum SelectionError {
     /// A configuration that cannot be read.
-    #[error("{}: expected a readable file, found: {error}; check the path", path.display())]
+    #[error("{}: expected a readable file, found: {}", path.display(), Unreadable(error))]
     Read {
         /// The file.
         path: PathBuf,
