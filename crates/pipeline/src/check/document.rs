@@ -57,6 +57,11 @@ pub fn check_document(name: &str, bytes: &[u8], files: &dyn Files, scope: &Scope
         images.check(image, &textures, &uses, &mut findings);
     }
     images.check_pyramids(&uses.pyramids, &textures, &mut findings);
+    if images.contents.is_empty() && !uses.normals.is_empty() {
+        let message = "expected KTX2 textures of a bake, found none beside the normal textures; if this is a source, \
+                       bake it and check its output";
+        findings.add(Code::NothingBaked, "", message);
+    }
     let is_baked = images.contents.values().any(Option::is_some);
     if let Some(origin) = scope.origin {
         check_document_provenance(&document, bytes, !images.contents.is_empty(), origin, &mut findings);

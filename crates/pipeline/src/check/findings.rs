@@ -115,6 +115,7 @@ codes! {
     NewerVersion 1509 Warning "the texture was baked by a newer version";
     LobeError 1510 Note "the lobe error is above --max-error";
     NoOutput 1511 Warning "a source has no output";
+    NothingBaked 1512 Note "nothing of the document is baked";
 }
 
 impl Code {
