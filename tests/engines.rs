@@ -19,8 +19,8 @@ fn engines_load_and_shade_what_is_baked() {
         return missing_tool(REMEDY);
     }
     let mut node = Command::new("node");
-    // What `npm test` runs there, two files at a time. Without npm in between, this process waits for Node itself.
-    node.current_dir(&plugin).args(["--test", "--test-concurrency=2", "plugin/test/", "test/"]);
+    // What `npm test` runs there. Without npm in between, this process waits for Node itself.
+    node.current_dir(&plugin).args(["--test", "plugin/test/", "test/"]);
     let Ok(output) = node.env("ROUGHCAST", env!("CARGO_BIN_EXE_roughcast")).output() else {
         return missing_tool(REMEDY);
     };
