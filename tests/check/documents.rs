@@ -234,6 +234,40 @@ fn compares_documents_without_bumps_byte_for_byte() {
     assert_eq!(findings(&bake.check_source(&[]).1), [stale]);
 }
 
+/// Gives the source another material.
+fn set_material(bake: &Bake, material: Value) {
+    edit_source(bake, |text| {
+        let mut document: Value = serde_json::from_str(text).unwrap();
+        document["extensionsUsed"] = json!(["KHR_materials_clearcoat"]);
+        document["materials"][0] = material.clone();
+        document.to_string()
+    });
+}
+
+/// The pyramid profile does not describe clearcoats, so that such an asset is copied.
+#[test]
+fn notes_a_clearcoat_that_is_not_baked() {
+    let bake = bake(&[]);
+    let coat = json!({ "clearcoatFactor": 1, "clearcoatNormalTexture": { "index": 0 } });
+    set_material(&bake, json!({ "extensions": { "KHR_materials_clearcoat": coat } }));
+    let paths = [bake.source.to_str().unwrap(), bake.baked.to_str().unwrap()];
+    let (outcome, _, err) = roughcast(&["bake", paths[0], "-o", paths[1], "-q", "--profile", "pyramid"]);
+    assert_eq!(outcome, Outcome::Done, "{err}");
+    assert_eq!(fs::read(bake.document()).unwrap(), fs::read(bake.source.join("ridges.gltf")).unwrap());
+    let nothing_baked = ("RC1512".to_owned(), "ridges.gltf".to_owned(), String::new());
+    assert_eq!(findings(&bake.check_source(&[]).1), [nothing_baked]);
+}
+
+#[test]
+fn notes_heights_that_are_not_baked() {
+    let bake = bake(&[]);
+    set_material(&bake, json!({ "extras": { "roughcast": { "heightTexture": { "index": 0 } } } }));
+    let (outcome, out, err) = roughcast(&["check", bake.source.to_str().unwrap(), "--format", "json"]);
+    assert_eq!(outcome, Outcome::Done, "{err}");
+    let codes: Vec<String> = findings(&serde_json::from_str(&out).unwrap()).into_iter().map(|f| f.0).collect();
+    assert_eq!(codes, ["RC1512"]);
+}
+
 /// Members of `extras` from other tools stay. If `extras` is no object, no provenance of the document is recorded.
 #[test]
 fn keeps_extras_of_other_tools() {

@@ -17,6 +17,7 @@ use super::texture::{Usage, check_texture};
 use super::texture_references::{TextureReferences, Textures};
 use crate::bake::SourceError;
 use crate::gltf::document::{Container, Document, DocumentError};
+use crate::gltf::material::materials;
 use crate::gltf::roughness_pyramid::RoughnessPyramid;
 use crate::gltf::texture::ImageLocation;
 use crate::gltf::uri::{Uri, relative_path};
@@ -57,14 +58,15 @@ pub fn check_document(name: &str, bytes: &[u8], files: &dyn Files, scope: &Scope
         images.check(image, &textures, &uses, &mut findings);
     }
     images.check_pyramids(&uses.pyramids, &textures, &mut findings);
-    if images.contents.is_empty() && !uses.normals.is_empty() {
-        let message = "expected KTX2 textures of a bake, found none beside the normal textures; if this is a source, \
-                       bake it and check its output";
+    let has_textures = !images.contents.is_empty();
+    if !has_textures && materials(&value).iter().flatten().any(|material| !material.layers.is_empty()) {
+        let message = "expected KTX2 textures of a bake, found bumps and no KTX2; if this is a source, bake it and \
+                       check its output";
         findings.add(Code::NothingBaked, "", message);
     }
     let is_baked = images.contents.values().any(Option::is_some);
     if let Some(origin) = scope.origin {
-        check_document_provenance(&document, bytes, !images.contents.is_empty(), origin, &mut findings);
+        check_document_provenance(&document, bytes, has_textures, origin, &mut findings);
     }
     if let Some(settings) = scope.settings.filter(|_| is_baked) {
         let is_glb = document.container() == Container::Glb;

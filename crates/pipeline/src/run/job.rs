@@ -119,7 +119,8 @@ impl Job {
             identity["name"] = json!(name);
         }
         let container = settings.settings()?.container(facts.container);
-        let writes_textures = facts.may_write_textures(settings.textures.unwrap_or_default());
+        let writes_textures =
+            facts.may_write_textures(settings.profile.unwrap_or_default(), settings.textures.unwrap_or_default());
         let stem = name.unwrap_or(&stem);
         Ok(Self {
             id: digest(identity.to_string().as_bytes()),
