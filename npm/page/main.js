@@ -27,11 +27,13 @@ const stage = new Stage(element('canvas'), view, (frame) => {
 let file = null;
 /** Counts what has begun, so that what ends after a newer beginning is left out. */
 let begun = 0;
+/** Whether a file is on its way, which is baked with the options that the form has when it is there. */
+let isLoading = false;
 let link = '';
 
 /** Bakes the file that is shown. */
 async function bake() {
-  if (!file) return;
+  if (isLoading || !file) return;
   const { name, bytes } = file;
   const mine = ++begun;
   const settings = settingsOf(form);
@@ -56,20 +58,25 @@ async function bake() {
   }
 }
 
-/** Takes a new file, shows it, and bakes it. */
-async function take(name, bytes) {
+/** Takes the bytes of a new file, or a promise of them, shows it, and bakes it. */
+async function take(name, content) {
   const mine = ++begun;
+  isLoading = true;
   wait(`Loading ${name} …`);
   try {
+    const bytes = await content;
     const scene = await stage.load(bytes);
     if (mine !== begun) return;
     file = { name: name.replace(/\.glb$/i, ''), bytes };
     element('facts').hidden = true;
     stage.show('before', scene);
-    await bake();
   } catch (error) {
-    if (mine === begun) fail(error);
+    if (mine !== begun) return;
+    isLoading = false;
+    return fail(error);
   }
+  isLoading = false;
+  await bake();
 }
 
 /** Says what is done now. The progress is unknown until the first report of it. */
@@ -127,10 +134,13 @@ function offer(bytes, name) {
   Object.assign(element('download'), { href: link, download: name, textContent, hidden: false });
 }
 
-async function takeSample(name) {
+const takeSample = (name) => take(`${name}.glb`, sample(name));
+
+/** Returns the bytes of a sample. */
+async function sample(name) {
   const response = await fetch(`samples/${name}.glb`);
-  if (!response.ok) return fail(new Error(`expected the sample ${name}, found ${response.status}`));
-  return take(`${name}.glb`, new Uint8Array(await response.arrayBuffer()));
+  if (!response.ok) throw new Error(`expected the sample ${name}, found ${response.status}`);
+  return new Uint8Array(await response.arrayBuffer());
 }
 
 async function takeFile(chosen) {

@@ -281,6 +281,48 @@ test('says above the picture what is shown while a bake runs and when it has fai
   }
 });
 
+test('bakes a file with the options that are chosen while it loads', options, async () => {
+  const page = await open();
+  await finished(page);
+  // Holds the images of the file back.
+  await page.evaluate(() => {
+    const decode = globalThis.createImageBitmap;
+    const isReleased = new Promise((resolve) => (globalThis.release = resolve));
+    globalThis.createImageBitmap = async (...values) => isReleased.then(() => decode(...values));
+  });
+  await openFile(page, 'lake.glb', readFileSync(path.join(fixtures, 'waves/waves.glb')));
+  await page.getByText('Loading lake.glb').waitFor();
+  await choose(page, 'maxSize', '64');
+  assert.match(await status(page), /^Loading lake\.glb/);
+  await page.evaluate(() => globalThis.release());
+  await page.locator('#download[download="lake-baked-64.glb"]').waitFor();
+  assert.deepEqual(page.problems, []);
+});
+
+test('keeps a file that is opened while a sample is fetched', options, async () => {
+  const context = await browser.newContext();
+  let release;
+  const isReleased = new Promise((resolve) => (release = resolve));
+  await context.route('**/brushed.glb', async (route) => {
+    await isReleased;
+    await route.continue();
+  });
+  const page = await context.newPage();
+  page.setDefaultTimeout(120_000);
+  await page.goto(`${server.url}/page/index.html`);
+  await page.getByText('Loading brushed.glb').waitFor();
+  await openFile(page, 'lake.glb', readFileSync(path.join(fixtures, 'waves/waves.glb')));
+  await finished(page);
+  const arrives = page.waitForResponse('**/brushed.glb').then((response) => response.finished());
+  release();
+  await arrives;
+  // One frame later, what the page made of the sample would show.
+  await page.evaluate(() => new Promise(requestAnimationFrame));
+  assert.equal(await page.evaluate(() => document.body.dataset.state), 'done');
+  assert.equal(await page.locator('#download').getAttribute('download'), 'lake-baked.glb');
+  await context.close();
+});
+
 test('names the command that makes the file', { skip: options.skip || noBinary }, async (t) => {
   const page = await open();
   await finished(page);
