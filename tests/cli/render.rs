@@ -94,6 +94,42 @@ fn every_material_scene_and_distance_is_written() {
     assert_eq!((decoded.width, decoded.height, decoded.channels), (40, 40, 3));
 }
 
+/// Materials that look alike are drawn once.
+#[test]
+fn alike_materials_have_the_same_pictures_on_sheets_of_their_own() {
+    let folder = tempdir().expect("a folder");
+    let (source, output) = (folder.path().join("source"), folder.path().join("output"));
+    copy(&fixtures().join("knobs"), &source);
+    let path = source.join("knobs.gltf");
+    let mut document: Value = serde_json::from_slice(&fs::read(&path).expect("a file")).expect("JSON");
+    let mut spare = document["materials"][0].clone();
+    spare["name"] = "Spare".into();
+    spare["pbrMetallicRoughness"]["baseColorFactor"] = serde_json::json!([0.2, 0.3, 0.4, 1]);
+    document["materials"].as_array_mut().expect("materials").push(spare);
+    fs::write(&path, document.to_string()).expect("a file can be written");
+    let input = path.to_str().expect("a path in UTF-8");
+    let run = render(&[&[input, "--scene", "sphere", "--json"], QUICK.as_slice()].concat(), &output);
+    let report: Value = serde_json::from_str(&run.out).expect("JSON");
+    let sheets = report["sheets"].as_array().expect("sheets");
+    let names: Vec<&str> = sheets.iter().map(|sheet| sheet["material"].as_str().expect("a name")).collect();
+    assert_eq!(names, ["knobs.Brass", "knobs.Rubber", "knobs.Label", "knobs.Spare"]);
+    let picture = |name: &str, picture: &str| {
+        fs::read(output.join(format!("{name}.sphere.d1.{picture}.png"))).expect("a picture")
+    };
+    for column in ["plain", "portable", "pyramid", "supersampled"] {
+        assert_eq!(picture("knobs.Brass", column), picture("knobs.Spare", column));
+        assert_ne!(picture("knobs.Brass", column), picture("knobs.Rubber", column));
+    }
+    let errors = |sheet: usize, row: usize| {
+        let columns = sheets[sheet]["rows"][row]["columns"].as_array().expect("columns");
+        columns.iter().map(|column| column["relativeL1"].as_f64().expect("L1")).collect::<Vec<_>>()
+    };
+    assert_eq!(errors(0, 0), errors(3, 0));
+    assert_ne!(errors(0, 0), errors(0, 1));
+    let sheet = |name: &str| fs::read(output.join(format!("{name}.sphere.png"))).expect("a sheet");
+    assert_ne!(sheet("knobs.Brass"), sheet("knobs.Spare"), "titles differ");
+}
+
 #[test]
 fn the_gallery_shows_every_picture_with_its_error() {
     let folder = tempdir().expect("a folder");

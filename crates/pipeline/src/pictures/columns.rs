@@ -38,6 +38,11 @@ impl Columns {
         let baked = baked.into_iter().filter_map(|(name, material)| Some((name, material.as_ref()?)));
         [("plain", &self.plain)].into_iter().chain(baked).map(|(name, material)| Column { name, material })
     }
+
+    /// Returns whether the pictures of both are the same: materials of an asset may differ in what no picture shows.
+    pub fn look_like(&self, other: &Self) -> bool {
+        (&self.plain, &self.portable, &self.pyramid) == (&other.plain, &other.portable, &other.pyramid)
+    }
 }
 
 /// Returns the name of a column as people read it.

@@ -11,11 +11,11 @@ use crate::output::Guard;
 use crate::render::{Crop, Panel, Picture, Sheet, Tone};
 
 /// A picture and its presentation.
-pub struct Shown {
+pub struct Shown<'a> {
     /// The line above the picture.
     pub heading: String,
     /// The picture.
-    pub picture: Picture,
+    pub picture: &'a Picture,
     /// The region that is shown enlarged.
     pub crop: Option<Crop>,
     /// The lines below the picture.
@@ -24,10 +24,10 @@ pub struct Shown {
     pub tone: Tone,
 }
 
-impl Shown {
+impl Shown<'_> {
     fn panel(&self) -> Panel<'_> {
         Panel {
-            picture: &self.picture,
+            picture: self.picture,
             tone: self.tone,
             heading: self.heading.clone(),
             crop: self.crop,
@@ -67,7 +67,7 @@ impl<'a> Folder<'a> {
         stem: &str,
         title: &str,
         subtitle: &str,
-        rows: &[Vec<Shown>],
+        rows: &[Vec<Shown<'_>>],
     ) -> Result<String, PictureError> {
         let rows: Vec<Vec<Panel<'_>>> = rows.iter().map(|row| row.iter().map(Shown::panel).collect()).collect();
         self.write_png(stem, Sheet::from_rows(title, subtitle, &rows))

@@ -6,8 +6,11 @@ mod draw;
 mod error;
 mod folder;
 mod gallery;
+mod options;
 mod report;
+mod row;
 
-pub use draw::{PictureOptions, draw_pictures};
+pub use draw::draw_pictures;
 pub use error::PictureError;
+pub use options::PictureOptions;
 pub use report::{ColumnReport, PicturesReport, RENDER_FORMAT, RowReport, SheetReport};

@@ -43,9 +43,13 @@ impl Surroundings {
                 let lamp = smooth_step((d[2] - 0.94) / 0.03);
                 let wall = 0.10 + 0.08 * smooth_step(0.5 + 4.0 * d[2]);
                 let room = |light: f64| [wall + light, wall + 0.97 * light, 1.1 * wall + 0.92 * light];
-                // Most directions are below or above the windows, whose angles of elevation are 0.08 to 0.82. Such
-                // directions need no angles.
-                if !(0.0799..=0.7312).contains(&d[2]) {
+                // Most directions need no angles: they are below or above the windows, whose angles of elevation are
+                // 0.08 to 0.82, or beside them. The large window ends 0.47 beside its middle, and the small one 0.32:
+                // the cosines are 0.8916 and 0.9492, and have a margin here.
+                let length = (d[0] * d[0] + d[1] * d[1]).sqrt();
+                let is_toward = |x: f64, y: f64, cosine: f64| d[0] * x + d[1] * y >= cosine * length;
+                let is_beside = !is_toward(0.92106, -0.38942, 0.88699) && !is_toward(-0.73739, 0.67546, 0.94604);
+                if is_beside || !(0.0799..=0.7312).contains(&d[2]) {
                     return room(2.5 * lamp);
                 }
                 let (east, up) = (libm::atan2(d[1], d[0]), libm::asin(d[2]));
@@ -97,7 +101,7 @@ impl Environment {
         while let Some(finer) = levels.last().filter(|l| l.height > 4) {
             // The finer level already has a variance of 1/4 of a squared texel.
             let coarser = Panorama::new(finer.width / 2, |d, texel| {
-                blurred(d, (5.0f64 / 6.0 - 0.25).sqrt() * texel, |d| finer.bilinear(d))
+                blurred(d, (5.0f64 / 6.0 - 0.25).sqrt() * texel, |d| finer.bilinear(angles(d)))
             });
             levels.push(coarser);
         }
@@ -114,19 +118,25 @@ impl Environment {
     pub fn filtered(&self, d: Vector, deviation: f64) -> Radiance {
         let texel = TAU / WIDTH as f64;
         let level = libm::log2((deviation / texel).max(1e-9));
+        let angles = angles(d);
         if level <= 0.0 {
             // Interpolates between the exact radiance and the finest level.
             let (exact, share) = (self.radiance(d), deviation / texel);
-            return mix(exact, self.levels[0].bilinear(d), share.clamp(0.0, 1.0));
+            return mix(exact, self.levels[0].bilinear(angles), share.clamp(0.0, 1.0));
         }
         let level = level.min((self.levels.len() - 1) as f64);
         let (fine, share) = (level as usize, level - level.floor());
-        let value = self.levels[fine].bilinear(d);
+        let value = self.levels[fine].bilinear(angles);
         match self.levels.get(fine + 1) {
-            Some(coarse) if share > 0.0 => mix(value, coarse.bilinear(d), share),
+            Some(coarse) if share > 0.0 => mix(value, coarse.bilinear(angles), share),
             _ => value,
         }
     }
+}
+
+/// Returns the angles of the unit vector `d` east of -pi, and down from the zenith.
+fn angles(d: Vector) -> [f64; 2] {
+    [libm::atan2(d[1], d[0]) + PI, libm::acos(d[2].clamp(-1.0, 1.0))]
 }
 
 fn mix(a: Radiance, b: Radiance, share: f64) -> Radiance {
@@ -162,10 +172,10 @@ impl Panorama {
         Self { width, height, texels }
     }
 
-    fn bilinear(&self, d: Vector) -> Radiance {
+    /// Returns the radiance at the [`angles`] of a direction.
+    fn bilinear(&self, angles: [f64; 2]) -> Radiance {
         let texel = TAU / self.width as f64;
-        let x = (libm::atan2(d[1], d[0]) + PI) / texel - 0.5;
-        let y = libm::acos(d[2].clamp(-1.0, 1.0)) / texel - 0.5;
+        let [x, y] = angles.map(|angle| angle / texel - 0.5);
         let (left, top) = (x.floor(), y.floor());
         let at = |dx: f64, dy: f64| {
             let column = (left + dx).rem_euclid(self.width as f64) as usize % self.width;

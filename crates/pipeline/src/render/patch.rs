@@ -73,20 +73,22 @@ impl Patch {
 
     /// Finds the points at `places` in the pixel, from (0, 0) to (1, 1), and stores them in `out`, which is as long.
     pub fn trace(&self, places: &[[f32; 2]], out: &mut [PatchPoint]) {
-        map_row(
-            places.iter().copied(),
-            out,
-            #[inline(always)]
-            |place| if self.is_plane { self.on_plane(place) } else { self.on_sphere(place) },
-            |out, [x, y, z, u, v, meeting]| {
-                let meeting = match meeting {
-                    HIT => Meeting::Hit,
-                    FAR => Meeting::Far,
-                    _ => Meeting::Miss,
-                };
-                *out = PatchPoint { position: [x, y, z], uv: [u, v], meeting };
-            },
-        );
+        // Compilers do not vectorise a loop that chooses between the shapes.
+        if self.is_plane {
+            trace_with(
+                places,
+                out,
+                #[inline(always)]
+                |place| self.on_plane(place),
+            );
+        } else {
+            trace_with(
+                places,
+                out,
+                #[inline(always)]
+                |place| self.on_sphere(place),
+            );
+        }
     }
 
     /// Returns the vector from the middle of the pixel to a place in it, at the distance of the surface.
@@ -139,6 +141,18 @@ impl Patch {
         let meeting = if inside.min(toward) < 0.0 { MISS } else { met };
         [to[0], to[1], to[2], u, v, meeting]
     }
+}
+
+/// Stores in `out` the points that `meet` finds: position, texture coordinates, and the meeting as a number.
+fn trace_with(places: &[[f32; 2]], out: &mut [PatchPoint], meet: impl Fn([f32; 2]) -> [f32; 6]) {
+    map_row(places.iter().copied(), out, meet, |out, [x, y, z, u, v, meeting]| {
+        let meeting = match meeting {
+            HIT => Meeting::Hit,
+            FAR => Meeting::Far,
+            _ => Meeting::Miss,
+        };
+        *out = PatchPoint { position: [x, y, z], uv: [u, v], meeting };
+    });
 }
 
 /// [`Meeting`] as a number in a vector of numbers.

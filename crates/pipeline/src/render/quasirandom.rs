@@ -25,8 +25,12 @@ impl Quasirandom {
     }
 
     /// Returns point `i`.
+    #[inline]
     pub fn point(&self, i: u32) -> [f64; 4] {
-        let at = |axis: usize| self.start[axis].wrapping_add(Self::STEPS[axis].wrapping_mul(u64::from(i) + 1));
-        [0, 1, 2, 3].map(|axis| (at(axis) >> 11) as f64 / (1u64 << 53) as f64)
+        let at = |axis: usize| {
+            let bits = self.start[axis].wrapping_add(Self::STEPS[axis].wrapping_mul(u64::from(i) + 1));
+            (bits >> 11) as f64 / (1u64 << 53) as f64
+        };
+        [at(0), at(1), at(2), at(3)]
     }
 }

@@ -34,3 +34,25 @@ fn levels_have_the_blur_of_a_normal_distribution() {
         }
     }
 }
+
+/// The radiance of most directions is found without angles. If such a direction showed a window, light would end
+/// suddenly there.
+#[test]
+fn windows_of_the_studio_end_smoothly() {
+    let radiance = |east: f64, up: f64| {
+        let [(sin_east, cos_east), (sin_up, cos_up)] = [libm::sincos(east), libm::sincos(up)];
+        Surroundings::Studio.radiance([cos_up * cos_east, cos_up * sin_east, sin_up])[0]
+    };
+    const STEP: f64 = 1e-3;
+    for up in 0..900 {
+        for east in -3142..3142 {
+            let [east, up] = [east, up].map(|steps| f64::from(steps) * STEP);
+            let here = radiance(east, up);
+            for beside in [radiance(east + STEP, up), radiance(east, up + STEP)] {
+                // Windows have the radiance 3, their edges are 0.04 wide, and a smooth step has slopes up to 1.5.
+                let most = 1.05 * 3.0 * 1.5 * STEP / 0.04;
+                assert!((beside - here).abs() < most, "{east} {up}: {here} {beside}");
+            }
+        }
+    }
+}
