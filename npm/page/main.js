@@ -27,20 +27,27 @@ const stage = new Stage(element('canvas'), view, (frame) => {
 let file = null;
 /** Counts what has begun, so that what ends after a newer beginning is left out. */
 let begun = 0;
-/** Whether a file is on its way, which is baked with the options that the form has when it is there. */
+/** Whether a file is being loaded. Once it is there, it is baked with the options that the form then has. */
 let isLoading = false;
+/** Whether the page shows what became of the file and the options of the form. */
+let isCurrent = true;
 let link = '';
 
-/** Bakes the file that is shown. */
-async function bake() {
-  if (isLoading || !file) return;
+/** Bakes the file that is shown. A `problem` of another file stays on the page. */
+async function bake(problem = '') {
+  if (!file) return;
+  isCurrent = false;
+  if (isLoading) return;
   const { name, bytes } = file;
   const mine = ++begun;
   const settings = settingsOf(form);
   for (const id of ['download', 'same']) element(id).hidden = true;
-  wait(`Baking ${name}.glb …`);
+  wait([problem, `Baking ${name}.glb …`].filter(Boolean).join('. '));
+  const advance = (share) => {
+    if (mine === begun) element('progress').value = share;
+  };
   try {
-    const baked = await baker.bake(bytes, name, settings, (share) => (element('progress').value = share));
+    const baked = await baker.bake(bytes, name, settings, advance);
     const scene = baked && (await stage.load(baked.bytes));
     if (mine !== begun) return;
     stage.show('baked', scene);
@@ -48,9 +55,12 @@ async function bake() {
     offer(baked.bytes, nameOf(name, settings));
     element('command').textContent = commandOf(name, settings);
     element('same').hidden = false;
-    say('done', headline(bytes.byteLength, baked));
+    isCurrent = true;
+    if (problem) say('failed', problem);
+    else say('done', headline(bytes.byteLength, baked));
   } catch (error) {
     if (mine !== begun) return;
+    isCurrent = true;
     // An earlier bake has other settings than the form.
     stage.dropBake();
     element('facts').hidden = true;
@@ -58,22 +68,33 @@ async function bake() {
   }
 }
 
-/** Takes the bytes of a new file, or a promise of them, shows it, and bakes it. */
-async function take(name, content) {
+/**
+ * Takes a promise of the bytes of a new file, shows it, and bakes it. If the file cannot be shown, the page keeps the
+ * earlier one, and bakes that again if the options have changed or its bake was ended.
+ */
+async function take(name, content, { isOwn }) {
   const mine = ++begun;
   isLoading = true;
   wait(`Loading ${name} …`);
   try {
     const bytes = await content;
+    if (mine !== begun) return;
     const scene = await stage.load(bytes);
     if (mine !== begun) return;
     file = { name: name.replace(/\.glb$/i, ''), bytes };
     element('facts').hidden = true;
+    if (isOwn) {
+      form.elements.sample.value = '';
+      // A person wants to see the own model first, where a bake shows.
+      change({ kind: 'asset', distance: 'middle' });
+    }
     stage.show('before', scene);
   } catch (error) {
     if (mine !== begun) return;
     isLoading = false;
-    return fail(error);
+    if (isCurrent) fail(error);
+    else await bake(error.message);
+    return;
   }
   isLoading = false;
   await bake();
@@ -134,7 +155,7 @@ function offer(bytes, name) {
   Object.assign(element('download'), { href: link, download: name, textContent, hidden: false });
 }
 
-const takeSample = (name) => take(`${name}.glb`, sample(name));
+const takeSample = (name) => take(`${name}.glb`, sample(name), { isOwn: false });
 
 /** Returns the bytes of a sample. */
 async function sample(name) {
@@ -143,17 +164,18 @@ async function sample(name) {
   return new Uint8Array(await response.arrayBuffer());
 }
 
-async function takeFile(chosen) {
-  if (!chosen) return;
+function takeFile(chosen) {
+  if (chosen) take(chosen.name, contentOf(chosen), { isOwn: true });
+}
+
+/** Returns the bytes of a file that a person has chosen. */
+async function contentOf(chosen) {
   const bytes = new Uint8Array(await chosen.arrayBuffer());
   if (String.fromCharCode(...bytes.subarray(0, 4)) !== 'glTF') {
     const remedy = 'pack a .gltf with its files into a .glb first';
-    return fail(new Error(`${chosen.name}: expected a .glb, found something else; ${remedy}`));
+    throw new Error(`${chosen.name}: expected a .glb, found something else; ${remedy}`);
   }
-  form.elements.sample.value = '';
-  // A person wants to see the own model first, where a bake shows.
-  change({ kind: 'asset', distance: 'middle' });
-  return take(chosen.name, bytes);
+  return bytes;
 }
 
 /** Changes members of the view, and the fields of the form with them. */

@@ -316,10 +316,33 @@ test('keeps a file that is opened while a sample is fetched', options, async () 
   const arrives = page.waitForResponse('**/brushed.glb').then((response) => response.finished());
   release();
   await arrives;
-  // One frame later, what the page made of the sample would show.
-  await page.evaluate(() => new Promise(requestAnimationFrame));
+  // By then the page would show that it bakes the sample.
+  await page.waitForTimeout(1000);
   assert.equal(await page.evaluate(() => document.body.dataset.state), 'done');
   assert.equal(await page.locator('#download').getAttribute('download'), 'lake-baked.glb');
+  await context.close();
+});
+
+test('bakes again if another file cannot be loaded and an option has changed', options, async () => {
+  const context = await browser.newContext();
+  let release;
+  const isReleased = new Promise((resolve) => (release = resolve));
+  await context.route('**/waves.glb', async (route) => {
+    await isReleased;
+    await route.fulfill({ status: 404 });
+  });
+  const page = await context.newPage();
+  page.setDefaultTimeout(120_000);
+  await page.goto(`${server.url}/page/index.html`);
+  await finished(page);
+  await choose(page, 'sample', 'waves');
+  await page.getByText('Loading waves.glb').waitFor();
+  await choose(page, 'maxSize', '64');
+  release();
+  await page.getByText('expected the sample waves, found 404. Baking brushed.glb').waitFor();
+  await page.locator('#download[download="brushed-baked-64.glb"]').waitFor();
+  await finished(page, 'failed');
+  assert.equal(await status(page), 'expected the sample waves, found 404');
   await context.close();
 });
 
