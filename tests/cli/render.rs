@@ -94,7 +94,6 @@ fn every_material_scene_and_distance_is_written() {
     assert_eq!((decoded.width, decoded.height, decoded.channels), (40, 40, 3));
 }
 
-/// Materials that look alike are drawn once.
 #[test]
 fn alike_materials_have_the_same_pictures_on_sheets_of_their_own() {
     let folder = tempdir().expect("a folder");

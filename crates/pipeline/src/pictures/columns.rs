@@ -39,7 +39,8 @@ impl Columns {
         [("plain", &self.plain)].into_iter().chain(baked).map(|(name, material)| Column { name, material })
     }
 
-    /// Returns whether the pictures of both are the same: materials of an asset may differ in what no picture shows.
+    /// Returns whether the pictures of both are the same: materials of an asset may differ in what no picture
+    /// shows, such as colours.
     pub fn look_like(&self, other: &Self) -> bool {
         (&self.plain, &self.portable, &self.pyramid) == (&other.plain, &other.portable, &other.pyramid)
     }

@@ -86,29 +86,39 @@ fn draw_scene(
     progress: &(dyn Fn(f32, &str) + Sync),
 ) -> Result<Vec<SheetReport>, PictureError> {
     let distances = if options.distances.is_empty() { scene.distances() } else { options.distances.as_slice() };
-    let mut sheets: Vec<Option<SheetReport>> = materials.iter().map(|_| None).collect();
-    for (first, drawn) in materials.iter().enumerate() {
-        if sheets[first].is_some() {
-            continue;
-        }
+    let groups = alike(materials);
+    let mut sheets = Vec::new();
+    for (done, group) in groups.iter().enumerate() {
+        let drawn = &materials[group[0]];
         let rows: Vec<DrawnRow> = distances
             .iter()
             .enumerate()
-            .filter_map(|(done, &distance)| {
+            .filter_map(|(row, &distance)| {
                 let advance = |share: f32| {
-                    let of_material = (done as f32 + share) / distances.len() as f32;
-                    progress((first as f32 + of_material) / materials.len() as f32, &drawn.name);
+                    let of_group = (row as f32 + share) / distances.len() as f32;
+                    progress((done as f32 + of_group) / groups.len() as f32, &drawn.name);
                 };
                 DrawnRow::new(options, scene, distance, drawn, &advance)
             })
             .collect();
-        for (sheet, columns) in sheets.iter_mut().zip(materials).skip(first) {
-            if columns.look_like(drawn) {
-                *sheet = Some(write_material(scene, columns, &rows, folder)?);
-            }
+        for &index in group {
+            sheets.push((index, write_material(scene, &materials[index], &rows, folder)?));
         }
     }
-    Ok(sheets.into_iter().flatten().collect())
+    sheets.sort_by_key(|(index, _)| *index);
+    Ok(sheets.into_iter().map(|(_, sheet)| sheet).collect())
+}
+
+/// Returns the indices of `materials` in groups that look alike.
+fn alike(materials: &[Columns]) -> Vec<Vec<usize>> {
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    for (index, columns) in materials.iter().enumerate() {
+        match groups.iter_mut().find(|group| columns.look_like(&materials[group[0]])) {
+            Some(group) => group.push(index),
+            None => groups.push(vec![index]),
+        }
+    }
+    groups
 }
 
 /// Writes the pictures and the sheet of a material.
@@ -138,4 +148,36 @@ fn write_row(row: &DrawnRow, stem: &str, folder: &mut Folder<'_>) -> Result<RowR
     let supersampled = folder.write_picture(&format!("{stem}.supersampled"), &row.truth, &row.tone)?;
     let DrawnRow { distance, noise, crop, .. } = *row;
     Ok(RowReport { distance, columns, supersampled, noise, size: row.truth.size, crop })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mip::Level;
+    use crate::render::{Bumps, LostBumps, Material, Texture};
+
+    fn columns(scale: f64, portable_scale: f64) -> Columns {
+        let texture = || Texture::with_mips(Level { width: 1, height: 1, texels: vec![[0.1, 0.2, 0.9, 1.0]] });
+        let material = |scale| Material {
+            bumps: Bumps::Normals { texture: texture(), scale, has_z: true },
+            roughness: None,
+            roughness_factor: 1.0,
+            anisotropy: None,
+            lost: LostBumps::RoughenedTextures,
+        };
+        Columns {
+            name: String::new(),
+            title: String::new(),
+            plain: material(scale),
+            portable: Some(material(portable_scale)),
+            pyramid: None,
+        }
+    }
+
+    #[test]
+    fn materials_are_drawn_together_if_all_their_columns_are_equal() {
+        let materials = [columns(1.0, 1.0), columns(2.0, 1.0), columns(1.0, 1.0), columns(1.0, 2.0), columns(2.0, 1.0)];
+        assert_eq!(alike(&materials), [vec![0, 2], vec![1, 4], vec![3]]);
+        assert!(alike(&[]).is_empty());
+    }
 }

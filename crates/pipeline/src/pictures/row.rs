@@ -1,4 +1,4 @@
-//! A row of a sheet: a material at one distance, with every kind of mips and supersampled.
+//! A row of a sheet: pictures of a material at one distance, one for each kind of mips, and one supersampled.
 
 use super::columns::{Column, Columns, title_of};
 use super::folder::Shown;
@@ -42,7 +42,7 @@ impl DrawnRow {
     ) -> Option<Self> {
         let scene = scene.scene(options.width, distance)?;
         let shader = options.shader(scene.f0);
-        // The supersampled column takes most of the time.
+        // Only the supersampled column reports progress, since it takes most of the time.
         let truth = supersampled(&scene, &columns.plain, &shader, options.samples, advance);
         let tone = Tone::expose_for(&truth.picture, scene.key);
         // The halves of the samples differ by twice the expected error of their mean.

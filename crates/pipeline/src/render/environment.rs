@@ -44,8 +44,8 @@ impl Surroundings {
                 let wall = 0.10 + 0.08 * smooth_step(0.5 + 4.0 * d[2]);
                 let room = |light: f64| [wall + light, wall + 0.97 * light, 1.1 * wall + 0.92 * light];
                 // Most directions need no angles: they are below or above the windows, whose angles of elevation are
-                // 0.08 to 0.82, or beside them. The large window ends 0.47 beside its middle, and the small one 0.32:
-                // the cosines are 0.8916 and 0.9492, and have a margin here.
+                // 0.08 to 0.82, or beside them. The windows end 0.47 and 0.32 beside their middles, which are at -0.4
+                // and 2.4. The cosines of 0.47 and 0.32 are 0.8916 and 0.9492. The ones here leave a margin of 0.01.
                 let length = (d[0] * d[0] + d[1] * d[1]).sqrt();
                 let is_toward = |x: f64, y: f64, cosine: f64| d[0] * x + d[1] * y >= cosine * length;
                 let is_beside = !is_toward(0.92106, -0.38942, 0.88699) && !is_toward(-0.73739, 0.67546, 0.94604);
