@@ -1,14 +1,16 @@
 //! Draws an input in scenes, and writes the pictures.
 
+use rayon::prelude::*;
+
 use super::columns::{Columns, columns};
 use super::error::PictureError;
-use super::folder::{Folder, Shown};
+use super::folder::{Folder, PictureFiles, Shown};
 use super::gallery::page;
 use super::options::PictureOptions;
 use super::report::{ColumnReport, PicturesReport, RENDER_FORMAT, RowReport, SheetReport};
 use super::row::{DrawnColumn, DrawnRow};
 use crate::readback::{Input, MapKind};
-use crate::render::{SceneName, Tone, highlight};
+use crate::render::{Displayed, Scene, SceneName, Tone, highlight};
 
 /// The share of the work that is bakes, as the bar of progress shows it.
 const BAKES: f32 = 0.25;
@@ -64,45 +66,49 @@ fn are_baked_alike(input: &Input, roughness: Option<f32>, a: SceneName, b: Scene
 /// Draws the paper's figure 14, which shows no material.
 fn draw_highlight(width: u32, folder: &mut Folder<'_>) -> Result<SheetReport, PictureError> {
     const TITLE: &str = "Highlights of Phong and Blinn-Phong";
-    let tone = Tone { exposure: 1.0 };
-    let [phong, blinn_phong] = highlight(width);
+    let [phong, blinn_phong] = highlight(width).map(|picture| Displayed::new(picture, &Tone { exposure: 1.0 }));
     let mut panels = Vec::new();
     for (name, picture, heading) in
         [("phong", &phong, "Phong, outline of Blinn-Phong"), ("blinn-phong", &blinn_phong, "Blinn-Phong")]
     {
-        folder.write_picture(&format!("{}.{name}", SceneName::Highlight.name()), picture, &tone)?;
-        panels.push(Shown { heading: heading.to_owned(), picture, crop: None, labels: Vec::new(), tone });
+        let files = folder.encode_picture(&format!("{}.{name}", SceneName::Highlight.name()), picture);
+        folder.write_picture(files)?;
+        panels.push(Shown { heading: heading.to_owned(), picture, crop: None, labels: Vec::new() });
     }
-    let path = folder.write_sheet(SceneName::Highlight.name(), TITLE, "", &[panels])?;
+    let sheet = folder.encode_sheet(SceneName::Highlight.name(), TITLE, "", &[panels]);
+    let path = folder.write(sheet)?;
     Ok(SheetReport { path, title: TITLE.to_owned(), material: None, scene: SceneName::Highlight, rows: Vec::new() })
 }
 
 /// Draws `materials` in a scene and writes a sheet for each. Materials that look alike are drawn once.
 fn draw_scene(
     options: &PictureOptions,
-    scene: SceneName,
+    name: SceneName,
     materials: &[Columns],
     folder: &mut Folder<'_>,
     progress: &(dyn Fn(f32, &str) + Sync),
 ) -> Result<Vec<SheetReport>, PictureError> {
-    let distances = if options.distances.is_empty() { scene.distances() } else { options.distances.as_slice() };
+    let distances = if options.distances.is_empty() { name.distances() } else { options.distances.as_slice() };
+    // Materials share the scenes, whose surroundings take long to blur.
+    let scenes: Vec<(f64, Scene)> =
+        distances.iter().filter_map(|&distance| Some((distance, name.scene(options.width, distance)?))).collect();
     let groups = alike(materials);
     let mut sheets = Vec::new();
     for (done, group) in groups.iter().enumerate() {
         let drawn = &materials[group[0]];
-        let rows: Vec<DrawnRow> = distances
+        let rows: Vec<DrawnRow> = scenes
             .iter()
             .enumerate()
-            .filter_map(|(row, &distance)| {
+            .map(|(row, (distance, scene))| {
                 let advance = |share: f32| {
-                    let of_group = (row as f32 + share) / distances.len() as f32;
+                    let of_group = (row as f32 + share) / scenes.len() as f32;
                     progress((done as f32 + of_group) / groups.len() as f32, &drawn.name);
                 };
-                DrawnRow::new(options, scene, distance, drawn, &advance)
+                DrawnRow::new(options, scene, *distance, drawn, &advance)
             })
             .collect();
         for &index in group {
-            sheets.push((index, write_material(scene, &materials[index], &rows, folder)?));
+            sheets.push((index, write_material(name, &materials[index], &rows, folder)?));
         }
     }
     sheets.sort_by_key(|(index, _)| *index);
@@ -129,25 +135,43 @@ fn write_material(
     folder: &mut Folder<'_>,
 ) -> Result<SheetReport, PictureError> {
     let stem = format!("{}.{}", columns.name, scene.name());
-    let reports = rows.iter().map(|row| write_row(row, &stem, folder)).collect::<Result<_, _>>()?;
     let title = format!("{}, {}", columns.title, scene.name());
     let subtitle = "Below each picture its framed region, enlarged 4 times. Error: relative L1 of radiance.";
     let panels: Vec<Vec<Shown<'_>>> = rows.iter().map(DrawnRow::panels).collect();
-    let path = folder.write_sheet(&stem, &title, subtitle, &panels)?;
+    let encoder = &*folder;
+    let (encoded_rows, sheet) = rayon::join(
+        || rows.par_iter().map(|row| encode_row(row, &stem, encoder)).collect::<Vec<_>>(),
+        || encoder.encode_sheet(&stem, &title, subtitle, &panels),
+    );
+    let reports =
+        rows.iter().zip(encoded_rows).map(|(row, files)| write_row(row, files, folder)).collect::<Result<_, _>>()?;
+    let path = folder.write(sheet)?;
     Ok(SheetReport { path, title, material: Some(columns.name.clone()), scene, rows: reports })
 }
 
-/// Writes each picture of a row.
-fn write_row(row: &DrawnRow, stem: &str, folder: &mut Folder<'_>) -> Result<RowReport, PictureError> {
-    let stem = format!("{stem}.d{}", row.distance);
+/// The files of a row.
+struct RowFiles {
+    /// Those of each column with filtered textures.
+    columns: Vec<PictureFiles>,
+    supersampled: PictureFiles,
+}
+
+/// Encodes each picture of a row.
+fn encode_row(row: &DrawnRow, stem: &str, folder: &Folder<'_>) -> RowFiles {
+    let encode = |name: &str, picture| folder.encode_picture(&format!("{stem}.d{}.{name}", row.distance), picture);
+    let columns = row.columns.par_iter().map(|column| encode(column.name, &column.picture)).collect();
+    RowFiles { columns, supersampled: encode("supersampled", &row.truth) }
+}
+
+/// Writes the files of a row.
+fn write_row(row: &DrawnRow, files: RowFiles, folder: &mut Folder<'_>) -> Result<RowReport, PictureError> {
     let mut columns = Vec::new();
-    for DrawnColumn { name, picture, difference } in &row.columns {
-        let path = folder.write_picture(&format!("{stem}.{name}"), picture, &row.tone)?;
-        columns.push(ColumnReport { name, path, difference: *difference });
+    for (DrawnColumn { name, difference, .. }, files) in row.columns.iter().zip(files.columns) {
+        columns.push(ColumnReport { name, path: folder.write_picture(files)?, difference: *difference });
     }
-    let supersampled = folder.write_picture(&format!("{stem}.supersampled"), &row.truth, &row.tone)?;
+    let supersampled = folder.write_picture(files.supersampled)?;
     let DrawnRow { distance, noise, crop, .. } = *row;
-    Ok(RowReport { distance, columns, supersampled, noise, size: row.truth.size, crop })
+    Ok(RowReport { distance, columns, supersampled, noise, size: row.truth.picture.size, crop })
 }
 
 #[cfg(test)]

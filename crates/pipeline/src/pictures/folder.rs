@@ -1,6 +1,6 @@
 //! Pictures as files: a sheet, each picture alone, and the gallery.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::error::PictureError;
 use crate::codec::encode_png;
@@ -8,32 +8,37 @@ use crate::codec::uastc::Effort;
 use crate::image::{Image, Samples};
 use crate::inspect::encode_exr;
 use crate::output::Guard;
-use crate::render::{Crop, Panel, Picture, Sheet, Tone};
+use crate::render::{Crop, Displayed, Panel, Sheet};
 
 /// A picture and its presentation.
 pub struct Shown<'a> {
     /// The line above the picture.
     pub heading: String,
     /// The picture.
-    pub picture: &'a Picture,
+    pub picture: &'a Displayed,
     /// The region that is shown enlarged.
     pub crop: Option<Crop>,
     /// The lines below the picture.
     pub labels: Vec<String>,
-    /// The tone mapping.
-    pub tone: Tone,
 }
 
 impl Shown<'_> {
     fn panel(&self) -> Panel<'_> {
-        Panel {
-            picture: self.picture,
-            tone: self.tone,
-            heading: self.heading.clone(),
-            crop: self.crop,
-            labels: self.labels.clone(),
-        }
+        Panel { picture: self.picture, heading: self.heading.clone(), crop: self.crop, labels: self.labels.clone() }
     }
+}
+
+/// A file before it is written.
+pub struct EncodedFile {
+    path: PathBuf,
+    /// Its bytes, or why it cannot be encoded.
+    encoded: Result<Vec<u8>, String>,
+}
+
+/// The files of one picture.
+pub struct PictureFiles {
+    png: EncodedFile,
+    exr: Option<EncodedFile>,
 }
 
 /// The output folder.
@@ -50,46 +55,49 @@ impl<'a> Folder<'a> {
         Self { output, has_exr, guard }
     }
 
-    /// Writes `picture` to a file of its own. Returns its path.
-    pub fn write_picture(&mut self, stem: &str, picture: &Picture, tone: &Tone) -> Result<String, PictureError> {
-        if self.has_exr {
-            let path = self.output.join(format!("{stem}.exr"));
-            let [width, height] = picture.size;
-            let samples = Samples::F32(picture.pixels.iter().flatten().copied().collect());
-            self.write_file(&path, encode_exr(Image { width, height, channels: 3, samples }))?;
-        }
-        self.write_png(stem, Sheet::from_picture(picture, tone))
+    /// Encodes a picture as files of its own.
+    pub fn encode_picture(&self, stem: &str, displayed: &Displayed) -> PictureFiles {
+        let exr = self.has_exr.then(|| {
+            let [width, height] = displayed.picture.size;
+            let samples = Samples::F32(displayed.picture.pixels.iter().flatten().copied().collect());
+            self.file(stem, "exr", encode_exr(Image { width, height, channels: 3, samples }))
+        });
+        PictureFiles { exr, png: self.png(stem, Sheet::from_picture(displayed)) }
     }
 
-    /// Writes a sheet of rows of pictures. Returns its path.
-    pub fn write_sheet(
-        &mut self,
-        stem: &str,
-        title: &str,
-        subtitle: &str,
-        rows: &[Vec<Shown<'_>>],
-    ) -> Result<String, PictureError> {
+    /// Encodes a sheet of rows of pictures.
+    pub fn encode_sheet(&self, stem: &str, title: &str, subtitle: &str, rows: &[Vec<Shown<'_>>]) -> EncodedFile {
         let rows: Vec<Vec<Panel<'_>>> = rows.iter().map(|row| row.iter().map(Shown::panel).collect()).collect();
-        self.write_png(stem, Sheet::from_rows(title, subtitle, &rows))
+        self.png(stem, Sheet::from_rows(title, subtitle, &rows))
     }
 
-    /// Writes `text` to the file `name`.
-    pub fn write_text(&mut self, name: &str, text: String) -> Result<String, PictureError> {
-        self.write_file(&self.output.join(name), Ok(text.into_bytes()))
-    }
-
-    fn write_png(&mut self, stem: &str, sheet: Option<Sheet>) -> Result<String, PictureError> {
-        let path = self.output.join(format!("{stem}.png"));
+    fn png(&self, stem: &str, sheet: Option<Sheet>) -> EncodedFile {
         let encoded = match sheet {
             Some(sheet) => encode_png(&sheet.rgba, sheet.width, sheet.height, Effort::Best),
             None => Err("more pixels than a file can hold".to_owned()),
         };
-        self.write_file(&path, encoded)
+        self.file(stem, "png", encoded)
     }
 
-    fn write_file(&mut self, path: &Path, encoded: Result<Vec<u8>, String>) -> Result<String, PictureError> {
-        let output = self.guard.reserve_file(path)?;
-        let bytes = encoded.map_err(|reason| PictureError::Encode { path: path.to_owned(), reason })?;
+    fn file(&self, stem: &str, extension: &str, encoded: Result<Vec<u8>, String>) -> EncodedFile {
+        EncodedFile { path: self.output.join(format!("{stem}.{extension}")), encoded }
+    }
+
+    /// Writes the files of a picture. Returns the path of the PNG file.
+    pub fn write_picture(&mut self, files: PictureFiles) -> Result<String, PictureError> {
+        files.exr.map(|exr| self.write(exr)).transpose()?;
+        self.write(files.png)
+    }
+
+    /// Writes `text` to the file `name`.
+    pub fn write_text(&mut self, name: &str, text: String) -> Result<String, PictureError> {
+        self.write(EncodedFile { path: self.output.join(name), encoded: Ok(text.into_bytes()) })
+    }
+
+    /// Writes a file. Returns its path.
+    pub fn write(&mut self, EncodedFile { path, encoded }: EncodedFile) -> Result<String, PictureError> {
+        let output = self.guard.reserve_file(&path)?;
+        let bytes = encoded.map_err(|reason| PictureError::Encode { path: path.clone(), reason })?;
         output.write(&bytes)?;
         Ok(path.display().to_string())
     }

@@ -3,7 +3,7 @@
 use super::columns::{Column, Columns, title_of};
 use super::folder::Shown;
 use super::options::PictureOptions;
-use crate::render::{Advance, Crop, Difference, Picture, SceneName, Tone, filtered, relative_l1, supersampled};
+use crate::render::{Advance, Crop, Difference, Displayed, Scene, Tone, filtered, relative_l1, supersampled};
 
 /// A drawn row.
 pub struct DrawnRow {
@@ -12,11 +12,9 @@ pub struct DrawnRow {
     /// The pictures with filtered textures.
     pub columns: Vec<DrawnColumn>,
     /// The supersampled picture.
-    pub truth: Picture,
+    pub truth: Displayed,
     /// Expected relative L1 of `truth` against a picture with infinitely many samples.
     pub noise: f64,
-    /// The tone mapping of all pictures.
-    pub tone: Tone,
     /// The region that is shown enlarged.
     pub crop: Crop,
 }
@@ -26,46 +24,46 @@ pub struct DrawnColumn {
     /// The name of its column.
     pub name: &'static str,
     /// The picture.
-    pub picture: Picture,
+    pub picture: Displayed,
     /// Its difference from the supersampled picture.
     pub difference: Difference,
 }
 
 impl DrawnRow {
-    /// Draws `columns` at one distance. Returns `None` if the scene shows no material.
+    /// Draws `columns` in `scene`, which shows them at the `distance`.
     pub fn new(
         options: &PictureOptions,
-        scene: SceneName,
+        scene: &Scene,
         distance: f64,
         columns: &Columns,
         advance: Advance<'_>,
-    ) -> Option<Self> {
-        let scene = scene.scene(options.width, distance)?;
+    ) -> Self {
         let shader = options.shader(scene.f0);
         // Only the supersampled column reports progress, since it takes most of the time.
-        let truth = supersampled(&scene, &columns.plain, &shader, options.samples, advance);
+        let truth = supersampled(scene, &columns.plain, &shader, options.samples, advance);
         let tone = Tone::expose_for(&truth.picture, scene.key);
         // The halves of the samples differ by twice the expected error of their mean.
         let noise = relative_l1(&truth.half, &truth.picture);
-        let truth = truth.picture;
+        let truth = Displayed::new(truth.picture, &tone);
         let columns: Vec<DrawnColumn> = columns
             .filtered()
             .map(|Column { name, material }| {
-                let picture = filtered(&scene, material, &shader, options.filter, &|_| {});
-                let difference = Difference::between(&picture, &truth, &tone);
+                let picture = filtered(scene, material, &shader, options.filter, &|_| {});
+                let picture = Displayed::new(picture, &tone);
+                let difference = Difference::between(&picture, &truth);
                 DrawnColumn { name, picture, difference }
             })
             .collect();
-        let pictures: Vec<&Picture> = columns.iter().map(|column| &column.picture).collect();
-        let crop = Crop::most_different(&pictures, &truth, &tone);
-        Some(Self { distance, columns, truth, noise, tone, crop })
+        let pictures: Vec<&Displayed> = columns.iter().map(|column| &column.picture).collect();
+        let crop = Crop::most_different(&pictures, &truth);
+        Self { distance, columns, truth, noise, crop }
     }
 
     /// Returns the pictures with what a sheet says of them.
     pub fn panels(&self) -> Vec<Shown<'_>> {
         let shown = |name: &str, picture, labels| {
             let heading = format!("{}, distance {}", title_of(name), self.distance);
-            Shown { heading, picture, crop: Some(self.crop), labels, tone: self.tone }
+            Shown { heading, picture, crop: Some(self.crop), labels }
         };
         let columns = self.columns.iter().map(|DrawnColumn { name, picture, difference }| {
             let labels = vec![

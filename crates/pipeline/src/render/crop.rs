@@ -2,8 +2,7 @@
 
 use serde::Serialize;
 
-use super::draw::Picture;
-use super::tone::Tone;
+use super::displayed::Displayed;
 
 /// How much larger than on the picture a region is shown.
 pub const MAGNIFICATION: u32 = 4;
@@ -22,19 +21,17 @@ pub struct Crop {
 }
 
 impl Crop {
-    /// Returns the region in which the worst of `pictures` differs most from `truth` as `tone` displays both. Its sides
-    /// are those of the pictures divided by [`MAGNIFICATION`]. Pixels that the surface does not fill count as equal. If
+    /// Returns the region in which the worst of `pictures` differs most from `truth` on a display. Its sides are
+    /// those of the pictures divided by [`MAGNIFICATION`]. Pixels that the surface does not fill count as equal. If
     /// nothing differs, the region is in the middle.
-    pub fn most_different(pictures: &[&Picture], truth: &Picture, tone: &Tone) -> Self {
-        let [columns, rows] = truth.size;
-        let [width, height] = truth.size.map(|side| (side / MAGNIFICATION).max(1));
-        let sums = Sums::new(truth.size, |i| {
-            let shown = tone.displayed(truth.pixels[i]);
-            let difference = |picture: &&Picture| {
-                let other = tone.displayed(picture.pixels[i]);
-                shown.iter().zip(other).map(|(a, b)| (a - b).abs()).sum::<f64>()
+    pub fn most_different(pictures: &[&Displayed], truth: &Displayed) -> Self {
+        let [columns, rows] = truth.picture.size;
+        let [width, height] = truth.picture.size.map(|side| (side / MAGNIFICATION).max(1));
+        let sums = Sums::new(truth.picture.size, |i| {
+            let difference = |picture: &&Displayed| {
+                picture.values[i].iter().zip(truth.values[i]).map(|(a, b)| (a - b).abs()).sum::<f64>()
             };
-            if truth.coverage[i] == 1.0 { pictures.iter().map(difference).fold(0.0, f64::max) } else { 0.0 }
+            if truth.picture.coverage[i] == 1.0 { pictures.iter().map(difference).fold(0.0, f64::max) } else { 0.0 }
         });
         let mut best = Self { left: (columns - width) / 2, top: (rows - height) / 2, width, height };
         let mut most = sums.within(&best);
@@ -84,20 +81,19 @@ impl Sums {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::render::{Picture, Tone};
 
-    fn picture(spots: &[[u32; 2]]) -> Picture {
+    fn picture(spots: &[[u32; 2]]) -> Displayed {
         let mut pixels = vec![[0.2; 3]; 40 * 24];
         spots.iter().for_each(|[x, y]| pixels[(y * 40 + x) as usize] = [1.0; 3]);
-        Picture { size: [40, 24], pixels, coverage: vec![1.0; 40 * 24] }
+        Displayed::new(Picture { size: [40, 24], pixels, coverage: vec![1.0; 40 * 24] }, &Tone { exposure: 1.0 })
     }
-
-    const TONE: Tone = Tone { exposure: 1.0 };
 
     #[test]
     fn the_region_holds_the_largest_difference() {
         let truth = picture(&[]);
         let [few, many] = [picture(&[[2, 2]]), picture(&[[30, 15], [31, 16], [38, 19]])];
-        let found = Crop::most_different(&[&few, &many], &truth, &TONE);
+        let found = Crop::most_different(&[&few, &many], &truth);
         assert_eq!((found.width, found.height), (10, 6));
         let holds =
             |[x, y]: [u32; 2]| (found.left..found.left + 10).contains(&x) && (found.top..found.top + 6).contains(&y);
@@ -107,15 +103,16 @@ mod tests {
     #[test]
     fn surroundings_do_not_count_and_equal_pictures_show_the_middle() {
         let mut truth = picture(&[]);
-        truth.coverage[2 * 40 + 2] = 0.5;
-        let found = Crop::most_different(&[&picture(&[[2, 2]])], &truth, &TONE);
+        truth.picture.coverage[2 * 40 + 2] = 0.5;
+        let found = Crop::most_different(&[&picture(&[[2, 2]])], &truth);
         assert_eq!(found, Crop { left: 15, top: 9, width: 10, height: 6 });
     }
 
     #[test]
     fn a_picture_of_one_pixel_is_its_own_region() {
         let one = Picture { size: [1, 1], pixels: vec![[0.5; 3]], coverage: vec![1.0] };
-        let found = Crop::most_different(&[&one], &one, &TONE);
+        let one = Displayed::new(one, &Tone { exposure: 1.0 });
+        let found = Crop::most_different(&[&one], &one);
         assert_eq!(found, Crop { left: 0, top: 0, width: 1, height: 1 });
     }
 }

@@ -1,7 +1,7 @@
 //! Measures of the difference between a picture and the ground truth.
 
+use super::displayed::Displayed;
 use super::draw::Picture;
-use super::tone::Tone;
 
 /// Two measures of the difference between two pictures.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
@@ -22,9 +22,9 @@ const WINDOW: usize = 8;
 const STEP: usize = 4;
 
 impl Difference {
-    /// Compares `picture` with `truth`, both displayed by `tone`.
-    pub fn between(picture: &Picture, truth: &Picture, tone: &Tone) -> Self {
-        Self { relative_l1: relative_l1(picture, truth), ssim: ssim(picture, truth, tone) }
+    /// Compares `picture` with `truth`.
+    pub fn between(picture: &Displayed, truth: &Displayed) -> Self {
+        Self { relative_l1: relative_l1(&picture.picture, &truth.picture), ssim: ssim(picture, truth) }
     }
 }
 
@@ -42,21 +42,17 @@ pub fn relative_l1(picture: &Picture, truth: &Picture) -> f64 {
     if light > 0.0 { wrong / light } else { 0.0 }
 }
 
-fn ssim(picture: &Picture, truth: &Picture, tone: &Tone) -> f64 {
-    let (width, height) = (truth.size[0] as usize, truth.size[1] as usize);
-    let shown = |picture: &Picture| -> Vec<f64> {
-        let luminance = |p: &[f32; 3]| {
-            let [r, g, b] = tone.displayed(*p);
-            0.2126 * r + 0.7152 * g + 0.0722 * b
-        };
-        picture.pixels.iter().map(luminance).collect()
+fn ssim(picture: &Displayed, truth: &Displayed) -> f64 {
+    let [width, height] = truth.picture.size.map(|side| side as usize);
+    let luminance = |displayed: &Displayed| -> Vec<f64> {
+        displayed.values.iter().map(|[r, g, b]| 0.2126 * r + 0.7152 * g + 0.0722 * b).collect()
     };
-    let (a, b) = (shown(picture), shown(truth));
+    let (a, b) = (luminance(picture), luminance(truth));
     let (mut sum, mut count) = (0.0, 0.0);
     for top in (0..(height + 1).saturating_sub(WINDOW)).step_by(STEP) {
         for left in (0..(width + 1).saturating_sub(WINDOW)).step_by(STEP) {
             let inside = || (0..WINDOW * WINDOW).map(|i| (top + i / WINDOW) * width + left + i % WINDOW);
-            if inside().all(|i| truth.coverage[i] == 1.0) {
+            if inside().all(|i| truth.picture.coverage[i] == 1.0) {
                 sum += similarity(inside().map(|i| (a[i], b[i])));
                 count += 1.0;
             }

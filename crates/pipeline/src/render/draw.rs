@@ -33,35 +33,51 @@ const EDGE_SAMPLES: u32 = 4;
 /// coverage.
 pub fn filtered(scene: &Scene, material: &Material, shader: &Shader, filter: Filter, advance: Advance<'_>) -> Picture {
     by_pixel(scene, advance, &|x, y| {
-        let samples = (0..EDGE_SAMPLES * EDGE_SAMPLES).map(|i| {
-            let at = |k: u32| (f64::from(k) + 0.5) / f64::from(EDGE_SAMPLES);
-            (x + at(i % EDGE_SAMPLES), y + at(i / EDGE_SAMPLES))
-        });
-        let (mut covered, mut covered_sum, mut behind) = (0.0, [0.0; 2], [0.0; 3]);
-        for (x, y) in samples {
-            let ray = scene.camera.ray(x, y);
-            if scene.shape.hit(scene.camera.eye, ray).is_some() {
-                covered += 1.0;
-                covered_sum = [covered_sum[0] + x, covered_sum[1] + y];
-            } else {
-                add(&mut behind, scene.background(ray), 1.0);
-            }
-        }
-        let count = f64::from(EDGE_SAMPLES * EDGE_SAMPLES);
-        let mut sum = behind.map(|c| c / count);
-        // The shaded point is the mean of the covered samples.
-        let [x, y] = covered_sum.map(|c| c / f64::max(covered, 1.0));
+        let Covered { share, middle: [x, y], behind: mut sum } = covered(scene, [x, y]);
         let ray = scene.camera.ray(x, y);
-        if let (true, Some(hit)) = (covered > 0.0, scene.shape.hit(scene.camera.eye, ray)) {
+        if let (true, Some(hit)) = (share > 0.0, scene.shape.hit(scene.camera.eye, ray)) {
             let footprint = hit.footprint(&scene.camera, x, y);
             let point = material.point(&|texture: &Texture| texture.sample(hit.uv, &footprint, filter));
             let view = shader.view(&point, hit.to_tangent(ray).map(|c| -c));
             let to_world = |d: Vector| hit.to_world(d);
-            add(&mut sum, view.from_environment(&scene.environment, &to_world), covered / count);
-            add(&mut sum, light_of_lamp(scene, &view, &hit), covered / count);
+            add(&mut sum, view.from_environment(&scene.environment, &to_world), share);
+            add(&mut sum, light_of_lamp(scene, &view, &hit), share);
         }
-        (sum, covered / count)
+        (sum, share)
     })
+}
+
+/// What of a pixel the surface covers.
+struct Covered {
+    share: f64,
+    /// The middle of that part, where the surface is shaded.
+    middle: [f64; 2],
+    /// Light from behind the surface in the rest of the pixel.
+    behind: Radiance,
+}
+
+fn covered(scene: &Scene, [x, y]: [f64; 2]) -> Covered {
+    let at = |k: u32| (f64::from(k) + 0.5) / f64::from(EDGE_SAMPLES);
+    let last = EDGE_SAMPLES - 1;
+    let is_hit = |right: u32, down: u32| {
+        scene.shape.hit(scene.camera.eye, scene.camera.ray(x + at(right), y + at(down))).is_some()
+    };
+    // The outlines of all shapes are convex.
+    if is_hit(0, 0) && is_hit(last, 0) && is_hit(0, last) && is_hit(last, last) {
+        return Covered { share: 1.0, middle: [x + 0.5, y + 0.5], behind: [0.0; 3] };
+    }
+    let (mut hits, mut sum, mut behind) = (0.0, [0.0; 2], [0.0; 3]);
+    for (right, down) in (0..EDGE_SAMPLES).flat_map(|down| (0..EDGE_SAMPLES).map(move |right| (right, down))) {
+        let [x, y] = [x + at(right), y + at(down)];
+        if is_hit(right, down) {
+            hits += 1.0;
+            sum = [sum[0] + x, sum[1] + y];
+        } else {
+            add(&mut behind, scene.background(scene.camera.ray(x, y)), 1.0);
+        }
+    }
+    let count = f64::from(EDGE_SAMPLES * EDGE_SAMPLES);
+    Covered { share: hits / count, middle: sum.map(|c| c / f64::max(hits, 1.0)), behind: behind.map(|c| c / count) }
 }
 
 /// Returns the radiance that a point reflects from the light of the scene.

@@ -1,10 +1,13 @@
 //! Light from the surroundings: a procedural map, exact for rays, with levels of growing blur for filtered look-ups.
 
+mod studio;
+
 use std::f64::consts::{PI, TAU};
 
 use rayon::prelude::*;
 
 use crate::math::vector::{Vector, combine, frame, normalised};
+use crate::simd::map_row;
 
 /// Radiance in red, green and blue.
 pub type Radiance = [f64; 3];
@@ -39,31 +42,24 @@ impl Surroundings {
                 let edge = 6.0 * libm::sin(phase);
                 grey(0.03 + 0.94 * smooth_step(0.5 + 0.5 * edge))
             }
-            Self::Studio => {
-                let lamp = smooth_step((d[2] - 0.94) / 0.03);
-                let wall = 0.10 + 0.08 * smooth_step(0.5 + 4.0 * d[2]);
-                let room = |light: f64| [wall + light, wall + 0.97 * light, 1.1 * wall + 0.92 * light];
-                // Most directions need no angles: they are below or above the windows, whose angles of elevation are
-                // 0.08 to 0.82, or beside them. The windows end 0.47 and 0.32 beside their middles, which are at -0.4
-                // and 2.4. The cosines of 0.47 and 0.32 are 0.8916 and 0.9492. The ones here leave a margin of 0.01.
-                let length = (d[0] * d[0] + d[1] * d[1]).sqrt();
-                let is_toward = |x: f64, y: f64, cosine: f64| d[0] * x + d[1] * y >= cosine * length;
-                let is_beside = !is_toward(0.92106, -0.38942, 0.88699) && !is_toward(-0.73739, 0.67546, 0.94604);
-                if is_beside || !(0.0799..=0.7312).contains(&d[2]) {
-                    return room(2.5 * lamp);
-                }
-                let (east, up) = (libm::atan2(d[1], d[0]), libm::asin(d[2]));
-                let window = |at: f64, half_width: f64| {
-                    let beside = east - at;
-                    let across = if beside < -PI { beside + TAU } else { beside };
-                    let inside = |x: f64, half: f64| smooth_step((half - x.abs()) / 0.04 + 0.5);
-                    // A bar down and a bar across make four panes.
-                    let panes = 1.0 - inside(across, 0.03).max(inside(up - 0.45, 0.03));
-                    inside(across, half_width) * inside(up - 0.45, 0.35) * panes
-                };
-                room(3.0 * (window(-0.4, 0.45) + 0.6 * window(2.4, 0.3)) + 2.5 * lamp)
-            }
+            Self::Studio => studio::radiance(d.map(|c| c as f32)).map(f64::from),
             Self::Even(percent) => grey(f64::from(percent) / 100.0),
+        }
+    }
+
+    /// Stores in `out` the radiance from each of `directions`, of which there are as many.
+    pub fn radiance_row(self, directions: impl Iterator<Item = [f32; 3]>, out: &mut [[f32; 3]]) {
+        match self {
+            Self::Studio => map_row(
+                directions,
+                out,
+                #[inline(always)]
+                |[x, y, z]| studio::radiance([x, y, z]),
+                |out, radiance| *out = radiance,
+            ),
+            _ => out.iter_mut().zip(directions).for_each(|(out, d)| {
+                *out = self.radiance(d.map(f64::from)).map(|value| value as f32);
+            }),
         }
     }
 }
@@ -106,6 +102,11 @@ impl Environment {
             levels.push(coarser);
         }
         Self { surroundings, levels }
+    }
+
+    /// Returns the surroundings without blur.
+    pub fn surroundings(&self) -> Surroundings {
+        self.surroundings
     }
 
     /// Returns the exact radiance from the direction `d`.
@@ -177,15 +178,16 @@ impl Panorama {
         let texel = TAU / self.width as f64;
         let [x, y] = angles.map(|angle| angle / texel - 0.5);
         let (left, top) = (x.floor(), y.floor());
-        let at = |dx: f64, dy: f64| {
-            let column = (left + dx).rem_euclid(self.width as f64) as usize % self.width;
-            // The rows at the poles are repeated.
-            let row = (top + dy).clamp(0.0, self.height as f64 - 1.0) as usize;
-            self.texels[row * self.width + column]
+        // A full turn begins again with the first column. The rows at the poles are repeated.
+        let west = if left < 0.0 { self.width - 1 } else { (left as usize).min(self.width - 1) };
+        let east = if west + 1 < self.width { west + 1 } else { 0 };
+        let upper = (top.max(0.0) as usize).min(self.height - 1);
+        let lower = ((top + 1.0) as usize).min(self.height - 1);
+        let row = |row: usize| {
+            let texels = &self.texels[row * self.width..];
+            mix(texels[west], texels[east], x - left)
         };
-        let upper = mix(at(0.0, 0.0), at(1.0, 0.0), x - left);
-        let lower = mix(at(0.0, 1.0), at(1.0, 1.0), x - left);
-        mix(upper, lower, y - top)
+        mix(row(upper), row(lower), y - top)
     }
 }
 

@@ -16,8 +16,28 @@ pub struct Facets<'a> {
 /// A point for each texel of the finest texture.
 struct Grid {
     size: (u32, u32),
-    /// Normal and squared alphas.
-    points: Vec<[f32; 6]>,
+    facets: Vec<Facet>,
+}
+
+/// A point of level 0 in single precision.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Facet {
+    /// Unit normal in the tangent frame.
+    pub normal: [f32; 3],
+    /// Squared alphas uu, uv, vv about the normal.
+    pub squared_alpha: [f32; 3],
+}
+
+impl From<Point> for Facet {
+    fn from(Point { normal, squared_alpha }: Point) -> Self {
+        Self { normal: normal.map(|c| c as f32), squared_alpha: squared_alpha.map(|a| a as f32) }
+    }
+}
+
+impl From<Facet> for Point {
+    fn from(Facet { normal, squared_alpha }: Facet) -> Self {
+        Self { normal: normal.map(f64::from), squared_alpha: squared_alpha.map(f64::from) }
+    }
 }
 
 impl<'a> Facets<'a> {
@@ -31,8 +51,17 @@ impl<'a> Facets<'a> {
     /// Returns the point at `uv`.
     pub fn at(&self, uv: [f64; 2]) -> Point {
         match &self.grid {
-            Some(grid) => grid.at(uv),
+            Some(grid) => grid.facet(texel_of(uv, grid.size)).into(),
             None => self.material.point(&|texture: &Texture| texture.nearest(uv)),
+        }
+    }
+
+    /// Returns the point at `uv` in single precision. `uv` is from 0 to 1.
+    #[inline]
+    pub fn within(&self, uv: [f32; 2]) -> Facet {
+        match &self.grid {
+            Some(grid) => grid.within(uv),
+            None => self.at(uv.map(f64::from)).into(),
         }
     }
 }
@@ -42,18 +71,21 @@ impl Grid {
         let (width, height) = size;
         let point = |x: u32, y: u32| {
             let uv = [(f64::from(x) + 0.5) / f64::from(width), (f64::from(y) + 0.5) / f64::from(height)];
-            let Point { normal: [x, y, z], squared_alpha: [uu, uv, vv] } =
-                material.point(&|texture: &Texture| texture.nearest(uv));
-            [x, y, z, uu, uv, vv].map(|value| value as f32)
+            material.point(&|texture: &Texture| texture.nearest(uv)).into()
         };
-        let points = (0..height).into_par_iter().flat_map_iter(|y| (0..width).map(move |x| point(x, y))).collect();
-        Self { size, points }
+        let facets = (0..height).into_par_iter().flat_map_iter(|y| (0..width).map(move |x| point(x, y))).collect();
+        Self { size, facets }
     }
 
-    fn at(&self, uv: [f64; 2]) -> Point {
-        let [x, y] = texel_of(uv, self.size);
-        let [nx, ny, nz, uu, uv, vv] = self.points[y * self.size.0 as usize + x].map(f64::from);
-        Point { normal: [nx, ny, nz], squared_alpha: [uu, uv, vv] }
+    fn facet(&self, [x, y]: [usize; 2]) -> Facet {
+        self.facets[y * self.size.0 as usize + x]
+    }
+
+    #[inline]
+    fn within(&self, [u, v]: [f32; 2]) -> Facet {
+        let (width, height) = self.size;
+        let texel = |at: f32, size: u32| ((at * size as f32) as u32).min(size - 1) as usize;
+        self.facet([texel(u, width), texel(v, height)])
     }
 }
 

@@ -110,13 +110,14 @@ impl View<'_> {
     /// solid angle that one sample stands for (J. Křivánek, M. Colbert, "Real-time shading with filtered importance
     /// sampling", 2008).
     fn filter_by_facets(&self, environment: &Environment, to_world: &impl Fn(Vector) -> Vector) -> Radiance {
+        let visible = self.visible_facets();
         let mut sum = [0.0; 3];
         for i in 0..FACETS {
             // The points of Hammersley.
             let azimuth = f64::from(i.reverse_bits()) / (1u64 << 32) as f64;
             let at = [(f64::from(i) + 0.5) / f64::from(FACETS), azimuth];
             let (facet, weight) = match self.shader.reflection {
-                Reflection::Ggx => (self.sample_visible_facet(at), Weight::VisibleFacets),
+                Reflection::Ggx => (visible.sample(at), Weight::VisibleFacets),
                 _ => (self.lobe.sample(at), Weight::AllFacets),
             };
             let seen = dot(self.view, facet).max(0.0);

@@ -71,8 +71,8 @@ impl Patch {
         }
     }
 
-    /// Finds the points at `places` in the pixel, from (0, 0) to (1, 1), and stores them in `out`, which is as long.
-    pub fn trace(&self, places: &[[f32; 2]], out: &mut [PatchPoint]) {
+    /// Finds the points at `places` in the pixel, from (0, 0) to (1, 1), and stores them in `out`, which has as many.
+    pub fn trace(&self, places: impl Iterator<Item = [f32; 2]>, out: &mut [PatchPoint]) {
         // Compilers do not vectorise a loop that chooses between the shapes.
         if self.is_plane {
             trace_with(
@@ -144,8 +144,8 @@ impl Patch {
 }
 
 /// Stores in `out` the points that `meet` finds: position, texture coordinates, and the meeting as a number.
-fn trace_with(places: &[[f32; 2]], out: &mut [PatchPoint], meet: impl Fn([f32; 2]) -> [f32; 6]) {
-    map_row(places.iter().copied(), out, meet, |out, [x, y, z, u, v, meeting]| {
+fn trace_with(places: impl Iterator<Item = [f32; 2]>, out: &mut [PatchPoint], meet: impl Fn([f32; 2]) -> [f32; 6]) {
+    map_row(places, out, meet, |out, [x, y, z, u, v, meeting]| {
         let meeting = match meeting {
             HIT => Meeting::Hit,
             FAR => Meeting::Far,

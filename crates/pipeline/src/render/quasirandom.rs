@@ -26,10 +26,10 @@ impl Quasirandom {
 
     /// Returns point `i`.
     #[inline]
-    pub fn point(&self, i: u32) -> [f64; 4] {
+    pub fn point(&self, i: u32) -> [f32; 4] {
         let at = |axis: usize| {
             let bits = self.start[axis].wrapping_add(Self::STEPS[axis].wrapping_mul(u64::from(i) + 1));
-            (bits >> 11) as f64 / (1u64 << 53) as f64
+            (bits >> 40) as f32 / (1u32 << 24) as f32
         };
         [at(0), at(1), at(2), at(3)]
     }

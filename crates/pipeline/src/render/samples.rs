@@ -3,6 +3,7 @@
 //! The equations are those of [`super::shade`], in single precision and without branches. *Local* coordinates are those
 //! in the frame of a bump's normal, and *tangent* coordinates those in the frame (T, B, N) of the surface.
 
+use super::facets::Facet;
 use super::scene::{Light, Scene};
 use super::shade::MIN_FACING;
 use super::shape::Shape;
@@ -17,12 +18,10 @@ type Vector = [f32; 3];
 pub struct Sample {
     /// The point.
     pub position: Vector,
-    /// Unit normal of the bump, tangent.
-    pub normal: Vector,
-    /// Squared alphas uu, uv, vv about that normal.
-    pub squared_alpha: [f32; 3],
-    /// The point of the unit square that samples a facet.
-    pub facet: [f32; 2],
+    /// The bump, tangent.
+    pub bump: Facet,
+    /// The point of the unit square that samples a facet of the lobe.
+    pub at: [f32; 2],
 }
 
 /// A shaded sample.
@@ -73,8 +72,8 @@ impl SampleShader {
     /// Shades each of `samples`, and stores the results in `out`, which is as long.
     pub fn shade(&self, samples: &[Sample], out: &mut [ShadedSample]) {
         let numbers = samples.iter().map(|sample| {
-            let Sample { position: [x, y, z], normal: [nx, ny, nz], .. } = *sample;
-            let Sample { squared_alpha: [uu, uv, vv], facet: [radial, azimuth], .. } = *sample;
+            let Sample { position: [x, y, z], bump, at: [radial, azimuth] } = *sample;
+            let Facet { normal: [nx, ny, nz], squared_alpha: [uu, uv, vv] } = bump;
             [x, y, z, nx, ny, nz, uu, uv, vv, radial, azimuth]
         });
         map_row(
@@ -109,7 +108,8 @@ impl SampleShader {
             return [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         }
         let ring = (x * x + y * y).sqrt();
-        let [cos, sin] = [x / ring, y / ring];
+        let scale = 1.0 / ring;
+        let [cos, sin] = [scale * x, scale * y];
         [[-sin, cos, 0.0], [-z * cos, -z * sin, ring], [x, y, z]]
     }
 }
@@ -159,7 +159,7 @@ impl LocalPoint {
         self.view[2] / self.axes[2][2].max(MIN_FACING as f32)
     }
 
-    /// Works like the function of [`super::View`] with the same name.
+    /// Works like [`super::shade::VisibleFacets`].
     #[inline(always)]
     fn sample_visible_facet(&self, radial: f32, azimuth: f32) -> Vector {
         let [uu, uv, vv] = self.a;
@@ -169,8 +169,8 @@ impl LocalPoint {
         let eye = unit([l * x + m * y, r * y, z]);
         let length = (eye[0] * eye[0] + eye[1] * eye[1]).sqrt();
         let is_upright = length < 1e-12;
-        let length = length.max(1e-12);
-        let first = [if is_upright { 1.0 } else { -eye[1] / length }, eye[0] / length, 0.0];
+        let scale = 1.0 / length.max(1e-12);
+        let first = [if is_upright { 1.0 } else { -scale * eye[1] }, scale * eye[0], 0.0];
         let second = cross(eye, first);
         let [sin, cos] = sin_cos(azimuth);
         let radius = radial.sqrt();
@@ -200,11 +200,12 @@ impl LocalPoint {
         let [x, y, z] = unit([self.view[0] + light[0], self.view[1] + light[1], self.view[2] + light[2]]);
         let [uu, uv, vv] = self.a;
         let determinant = uu * vv - uv * uv;
-        let q = (vv * x * x - 2.0 * uv * x * y + uu * y * y) / determinant + z * z;
-        let distribution = 1.0 / (std::f32::consts::PI * determinant.sqrt() * q * q);
-        let masking_shadowing = 1.0 / (1.0 + self.hidden + lambda(self.a, light));
+        // D = |A|^(3/2) / (pi q^2). Both factors of D G / (4 (n.v)) share one division.
+        let q = vv * x * x - 2.0 * uv * x * y + uu * y * y + determinant * z * z;
+        let hidden = 1.0 + self.hidden + lambda(self.a, light);
         let seen = dot(self.view, [x, y, z]);
-        let share = distribution * fresnel(seen, f0) * masking_shadowing / (4.0 * self.view[2]);
+        let share = determinant * determinant.sqrt() * fresnel(seen, f0)
+            / (4.0 * std::f32::consts::PI * q * q * hidden * self.view[2]);
         if light[2] > 0.0 { share } else { 0.0 }
     }
 }
@@ -235,7 +236,8 @@ fn tangents([x, y, z]: Vector) -> [Vector; 2] {
     let squared = y * y + z * z;
     let is_along_t = squared < 1e-12;
     let length = squared.max(1e-12).sqrt();
-    let t = [length, -x * y / length, if is_along_t { -1.0 } else { -x * z / length }];
+    let scale = x / length;
+    let t = [length, -scale * y, if is_along_t { -1.0 } else { -scale * z }];
     [t, cross([x, y, z], t)]
 }
 

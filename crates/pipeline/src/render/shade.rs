@@ -164,15 +164,14 @@ impl View<'_> {
     ) -> Radiance {
         let radiance = |d: Vector| environment.radiance(to_world(d));
         match self.shader.reflection {
-            Reflection::Ggx => self.reflect(self.sample_visible_facet(at), radiance, Weight::VisibleFacets),
+            Reflection::Ggx => self.reflect(self.visible_facets().sample(at), radiance, Weight::VisibleFacets),
             _ => self.reflect(self.lobe.sample(at), radiance, Weight::AllFacets),
         }
     }
 
-    /// Samples a facet of a GGX lobe from the facets that the eye sees (E. Heitz, "Sampling the GGX distribution of
-    /// visible normals", 2018), with any factor S of A = S S^T instead of diag(alpha_x, alpha_y). Half-vectors sampled
-    /// from D would have the weight F G (v.h) / ((n.v) (n.h)), which is unbounded near grazing views.
-    pub(super) fn sample_visible_facet(&self, [radial, azimuth]: [f64; 2]) -> Vector {
+    /// Prepares to sample facets of a GGX lobe from those that the eye sees. Half-vectors sampled from D would have the
+    /// weight F G (v.h) / ((n.v) (n.h)), which is unbounded near grazing views.
+    pub(super) fn visible_facets(&self) -> VisibleFacets<'_> {
         let [uu, uv, vv] = self.lobe.squared_alpha();
         let l = uu.sqrt();
         let (m, r) = (uv / l, (vv - uv * uv / uu).max(0.0).sqrt());
@@ -180,14 +179,7 @@ impl View<'_> {
         let eye = normalised([l * x + m * y, r * y, z]);
         let length = (eye[0] * eye[0] + eye[1] * eye[1]).sqrt();
         let first = if length > 0.0 { [-eye[1] / length, eye[0] / length, 0.0] } else { [1.0, 0.0, 0.0] };
-        let second = cross(eye, first);
-        let (sin, cos) = libm::sincos(std::f64::consts::TAU * azimuth);
-        let (p, q) = (radial.sqrt() * cos, radial.sqrt() * sin);
-        let share = 0.5 * (1.0 + eye[2]);
-        let q = (1.0 - share) * (1.0 - p * p).max(0.0).sqrt() + share * q;
-        let facet = combine([p, q, (1.0 - p * p - q * q).max(0.0).sqrt()], [first, second, eye]);
-        let [x, y, z] = [l * facet[0], m * facet[0] + r * facet[1], facet[2].max(1e-6)];
-        normalised(combine([x, y, z], self.axes))
+        VisibleFacets { axes: &self.axes, stretch: [l, m, r], stretched: [first, cross(eye, first), eye] }
     }
 
     /// Returns the radiance that `facet` reflects to the eye, weighted for the distribution that it was sampled from.
@@ -235,5 +227,29 @@ impl View<'_> {
                 if a < 1.6 { (1.0 - 1.259 * a + 0.396 * a * a) / (3.535 * a + 2.181 * a * a) } else { 0.0 }
             }
         }
+    }
+}
+
+/// The facets of a GGX lobe that the eye sees (E. Heitz, "Sampling the GGX distribution of visible normals", 2018),
+/// with any factor S of A = S S^T instead of diag(alpha_x, alpha_y).
+pub(super) struct VisibleFacets<'a> {
+    axes: &'a [Vector; 3],
+    /// S: its diagonal is (l, r), and m is below l.
+    stretch: [f64; 3],
+    /// The frame whose third axis points to the eye after the lobe is stretched to a hemisphere.
+    stretched: [Vector; 3],
+}
+
+impl VisibleFacets<'_> {
+    /// Samples a facet by a point of the unit square.
+    pub(super) fn sample(&self, [radial, azimuth]: [f64; 2]) -> Vector {
+        let [l, m, r] = self.stretch;
+        let (sin, cos) = libm::sincos(std::f64::consts::TAU * azimuth);
+        let (p, q) = (radial.sqrt() * cos, radial.sqrt() * sin);
+        let share = 0.5 * (1.0 + self.stretched[2][2]);
+        let q = (1.0 - share) * (1.0 - p * p).max(0.0).sqrt() + share * q;
+        let facet = combine([p, q, (1.0 - p * p - q * q).max(0.0).sqrt()], self.stretched);
+        let [x, y, z] = [l * facet[0], m * facet[0] + r * facet[1], facet[2].max(1e-6)];
+        normalised(combine([x, y, z], *self.axes))
     }
 }

@@ -2,16 +2,13 @@
 //! text.
 
 use super::crop::{Crop, MAGNIFICATION};
-use super::draw::Picture;
+use super::displayed::Displayed;
 use super::font;
-use super::tone::Tone;
 
 /// A labelled picture on a sheet.
 pub struct Panel<'a> {
     /// The picture.
-    pub picture: &'a Picture,
-    /// Its tone mapping.
-    pub tone: Tone,
+    pub picture: &'a Displayed,
     /// The line of text above the picture.
     pub heading: String,
     /// The region that is framed, and shown enlarged below the picture.
@@ -50,9 +47,10 @@ impl Sheet {
     }
 
     /// Makes a sheet of one picture without a label. Returns `None` if the picture has no pixels.
-    pub fn from_picture(picture: &Picture, tone: &Tone) -> Option<Self> {
-        let mut sheet = Self::new(picture.size[0], picture.size[1])?;
-        sheet.place(picture, tone, [0, 0]);
+    pub fn from_picture(displayed: &Displayed) -> Option<Self> {
+        let [width, height] = displayed.picture.size;
+        let mut sheet = Self::new(width, height)?;
+        sheet.place(displayed, [0, 0]);
         Some(sheet)
     }
 
@@ -61,7 +59,7 @@ impl Sheet {
     pub fn from_rows(title: &str, subtitle: &str, rows: &[Vec<Panel<'_>>]) -> Option<Self> {
         let panels = || rows.iter().flatten();
         let columns = rows.iter().map(Vec::len).max()? as u32;
-        let [picture_width, height] = rows.first()?.first()?.picture.size;
+        let [picture_width, height] = rows.first()?.first()?.picture.picture.size;
         let texts = panels().flat_map(|panel| panel.labels.iter().chain([&panel.heading]));
         let width = texts.map(|text| font::width(text, font::LABEL)).max()?.max(picture_width);
         let lines = panels().map(|panel| panel.labels.len()).max()? as u32;
@@ -86,10 +84,10 @@ impl Sheet {
 
     /// Draws `panel` at (`left`, `top`), with texts of at most `width` pixels.
     fn draw(&mut self, panel: &Panel<'_>, [left, top]: [u32; 2], width: u32) {
-        let [_, height] = panel.picture.size;
+        let [_, height] = panel.picture.picture.size;
         self.write(&panel.heading, font::LABEL, [left, top], width);
         let mut below = top + LINE;
-        self.place(panel.picture, &panel.tone, [left, below]);
+        self.place(panel.picture, [left, below]);
         if let Some(crop) = panel.crop {
             self.frame(&crop, [left, below]);
         }
@@ -103,10 +101,10 @@ impl Sheet {
         }
     }
 
-    fn place(&mut self, picture: &Picture, tone: &Tone, [left, top]: [u32; 2]) {
-        let width = picture.size[0];
-        for (i, pixel) in (0..).zip(&picture.pixels) {
-            self.set([left + i % width, top + i / width], shown(*pixel, tone));
+    fn place(&mut self, displayed: &Displayed, [left, top]: [u32; 2]) {
+        let [width, height] = displayed.picture.size;
+        for i in 0..width * height {
+            self.set([left + i % width, top + i / width], displayed.bytes(i as usize));
         }
     }
 
@@ -127,10 +125,8 @@ impl Sheet {
         for y in 0..crop.height * MAGNIFICATION {
             for x in 0..crop.width * MAGNIFICATION {
                 let [column, row] = [crop.left + x / MAGNIFICATION, crop.top + y / MAGNIFICATION];
-                let at = row as usize * panel.picture.size[0] as usize + column as usize;
-                if let Some(pixel) = panel.picture.pixels.get(at) {
-                    self.set([left + x, top + y], shown(*pixel, &panel.tone));
-                }
+                let at = row as usize * panel.picture.picture.size[0] as usize + column as usize;
+                self.set([left + x, top + y], panel.picture.bytes(at));
             }
         }
     }
@@ -151,8 +147,4 @@ impl Sheet {
             }
         }
     }
-}
-
-fn shown(pixel: [f32; 3], tone: &Tone) -> [u8; 3] {
-    tone.displayed(pixel).map(|c| (c * 255.0).round() as u8)
 }

@@ -6,6 +6,7 @@ use super::facets::Facets;
 use super::material::Material;
 use super::patch::{Meeting, Patch, PatchPoint};
 use super::quasirandom::Quasirandom;
+use super::sample_sums::{PixelSums, SampleSums};
 use super::samples::{Sample, SampleShader, ShadedSample};
 use super::scene::Scene;
 use super::shade::{Reflection, Shader};
@@ -16,7 +17,18 @@ use crate::math::vector::Vector;
 const EMPTY_PIXEL: u32 = 16;
 
 /// Samples that are shaded together.
-const BATCH: u32 = 256;
+const BATCH: usize = 256;
+
+/// Memory for samples that are shaded together.
+#[derive(Default)]
+struct Batch {
+    points: Vec<[f32; 4]>,
+    found: Vec<PatchPoint>,
+    samples: Vec<Sample>,
+    shaded: Vec<ShadedSample>,
+    /// The light from the surroundings.
+    light: Vec<[f32; 3]>,
+}
 
 /// The ground truth, and a picture of half of its samples for an estimate of its noise.
 pub struct Supersampled {
@@ -77,10 +89,13 @@ impl Truth<'_> {
         match (&self.together, middle) {
             (Some(together), Some(middle)) => {
                 let patch = Patch::new(self.scene.shape, &self.scene.camera, [x, y], &middle);
-                for start in (0..samples).step_by(BATCH as usize) {
-                    let points: Vec<[f64; 4]> =
-                        (start..samples.min(start + BATCH)).map(|i| sequence.point(i)).collect();
-                    self.add_batch(&mut sums, together, &patch, [x, y], &points);
+                let mut batch = Batch::default();
+                for (half, sums) in (0..).zip(&mut sums.halves) {
+                    let count = samples.saturating_sub(half).div_ceil(2);
+                    for start in (0..count).step_by(BATCH) {
+                        let points = (start..count.min(start + BATCH as u32)).map(|i| sequence.point(2 * i + half));
+                        self.add_batch(sums, together, &patch, [x, y], points, &mut batch);
+                    }
                 }
             }
             _ => {
@@ -94,49 +109,50 @@ impl Truth<'_> {
         self.scene.shape.hit(self.scene.camera.eye, ray)
     }
 
-    /// Adds the samples of `points` in the pixel, the first of which has an even number.
+    /// Adds the samples of `points` in the pixel.
     fn add_batch(
         &self,
-        sums: &mut PixelSums,
+        sums: &mut SampleSums,
         together: &SampleShader,
         patch: &Patch,
         [x, y]: [f64; 2],
-        points: &[[f64; 4]],
+        points: impl Iterator<Item = [f32; 4]>,
+        batch: &mut Batch,
     ) {
-        let places: Vec<[f32; 2]> = points.iter().map(|[px, py, ..]| [*px as f32, *py as f32]).collect();
-        let mut found = vec![PatchPoint::default(); points.len()];
-        patch.trace(&places, &mut found);
-        let (mut samples, mut halves) = (Vec::with_capacity(points.len()), Vec::with_capacity(points.len()));
-        for (i, (PatchPoint { position, uv, meeting }, point)) in found.iter().zip(points).enumerate() {
-            let half = &mut sums.halves[i % 2];
+        let Batch { points: places, found, samples, shaded, light } = batch;
+        places.clear();
+        places.extend(points);
+        found.resize(places.len(), PatchPoint::default());
+        patch.trace(places.iter().map(|[px, py, ..]| [*px, *py]), found);
+        samples.clear();
+        for (PatchPoint { position, uv, meeting }, point) in found.iter().zip(&*places) {
             match meeting {
-                Meeting::Miss => half.add_background(self.scene, self.scene.camera.ray(x + point[0], y + point[1])),
-                Meeting::Far => self.add_sample(half, [x, y], *point),
-                Meeting::Hit => {
-                    let bump = self.facets.at(uv.map(f64::from));
-                    halves.push(i % 2);
-                    samples.push(Sample {
-                        position: *position,
-                        normal: bump.normal.map(|c| c as f32),
-                        squared_alpha: bump.squared_alpha.map(|a| a as f32),
-                        facet: [point[2] as f32, point[3] as f32],
-                    });
-                }
+                Meeting::Hit => samples.push(Sample {
+                    position: *position,
+                    bump: self.facets.within(*uv),
+                    at: [point[2], point[3]],
+                }),
+                Meeting::Miss => sums.add_background(
+                    self.scene,
+                    self.scene.camera.ray(x + f64::from(point[0]), y + f64::from(point[1])),
+                ),
+                Meeting::Far => self.add_sample(sums, [x, y], *point),
             }
         }
-        let mut shaded = vec![ShadedSample::default(); samples.len()];
-        together.shade(&samples, &mut shaded);
-        for (half, ShadedSample { from, weight, of_light, area }) in halves.into_iter().zip(shaded) {
-            let mut light = [f64::from(of_light); 3];
-            if weight > 0.0 {
-                add(&mut light, self.scene.environment.radiance(from.map(f64::from)), f64::from(weight));
-            }
-            sums.halves[half].add_surface(light, f64::from(area));
-        }
+        shaded.resize(samples.len(), ShadedSample::default());
+        together.shade(samples, shaded);
+        light.resize(samples.len(), [0.0; 3]);
+        self.scene.environment.surroundings().radiance_row(shaded.iter().map(|sample| sample.from), light);
+        sums.add_surface(
+            shaded.iter().zip(&*light).map(|(ShadedSample { weight, of_light, area, .. }, light)| {
+                (light.map(|c| weight * c + of_light), *area)
+            }),
+        );
     }
 
     /// Adds the sample of one point in the pixel.
-    fn add_sample(&self, half: &mut SampleSums, [x, y]: [f64; 2], [px, py, radial, azimuth]: [f64; 4]) {
+    fn add_sample(&self, half: &mut SampleSums, [x, y]: [f64; 2], point: [f32; 4]) {
+        let [px, py, radial, azimuth] = point.map(f64::from);
         let ray = self.scene.camera.ray(x + px, y + py);
         let Some(hit) = self.hit(ray) else {
             return half.add_background(self.scene, ray);
@@ -146,69 +162,6 @@ impl Truth<'_> {
         let to_world = |d| hit.to_world(d);
         let mut light = view.sample_environment([radial, azimuth], &self.scene.environment, &to_world);
         add(&mut light, light_of_lamp(self.scene, &view, &hit), 1.0);
-        half.add_surface(light, view.visible_area());
-    }
-}
-
-/// The samples of a pixel: the even ones and the odd ones.
-#[derive(Default)]
-struct PixelSums {
-    halves: [SampleSums; 2],
-}
-
-impl PixelSums {
-    fn all(&self) -> SampleSums {
-        let [even, odd] = &self.halves;
-        let sum = |a: Radiance, b: Radiance| [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
-        SampleSums {
-            surface: sum(even.surface, odd.surface),
-            area: even.area + odd.area,
-            covered: even.covered + odd.covered,
-            behind: sum(even.behind, odd.behind),
-            count: even.count + odd.count,
-        }
-    }
-
-    fn light(&self) -> Radiance {
-        self.all().light()
-    }
-
-    fn coverage(&self) -> f32 {
-        let SampleSums { covered, count, .. } = self.all();
-        (covered / count) as f32
-    }
-}
-
-/// Sums over samples.
-#[derive(Default)]
-struct SampleSums {
-    /// Light of the surface times area.
-    surface: Radiance,
-    area: f64,
-    /// Number of samples that show the surface.
-    covered: f64,
-    /// Light of samples that show the background.
-    behind: Radiance,
-    /// Number of samples.
-    count: f64,
-}
-
-impl SampleSums {
-    fn add_surface(&mut self, light: Radiance, area: f64) {
-        add(&mut self.surface, light, area);
-        self.area += area;
-        self.covered += 1.0;
-        self.count += 1.0;
-    }
-
-    fn add_background(&mut self, scene: &Scene, ray: Vector) {
-        add(&mut self.behind, scene.background(ray), 1.0);
-        self.count += 1.0;
-    }
-
-    /// Returns the mean light.
-    fn light(&self) -> Radiance {
-        let share = if self.area > 0.0 { self.covered / self.area } else { 0.0 };
-        [0, 1, 2].map(|c| (share * self.surface[c] + self.behind[c]) / self.count.max(1.0))
+        half.add_surface([(light.map(|c| c as f32), view.visible_area() as f32)].into_iter());
     }
 }

@@ -132,18 +132,19 @@ fn differences_have_known_sizes() {
         pixels: (0..256).map(|i| [value * (1.0 + (i % 7) as f32); 3]).collect(),
         coverage: vec![1.0; 256],
     };
-    let tone = Tone { exposure: 1.0 };
-    let same = Difference::between(&picture(0.5), &picture(0.5), &tone);
+    let shown = |picture| Displayed::new(picture, &Tone { exposure: 1.0 });
+    let between = |a, b| Difference::between(&shown(a), &shown(b));
+    let same = between(picture(0.5), picture(0.5));
     assert_eq!(same.relative_l1, 0.0);
     assert!((same.ssim - 1.0).abs() < 1e-12);
-    let double = Difference::between(&picture(1.0), &picture(0.5), &tone);
+    let double = between(picture(1.0), picture(0.5));
     assert!((double.relative_l1 - 1.0).abs() < 1e-6 && double.ssim < 0.99, "{double:?}");
     // Pixels that the surface does not fill do not count.
     let mut half = picture(0.5);
     half.coverage[..128].fill(0.5);
     let mut wrong = picture(0.5);
     wrong.pixels[..128].fill([9.0; 3]);
-    assert_eq!(Difference::between(&wrong, &half, &tone), Difference { relative_l1: 0.0, ssim: 1.0 });
+    assert_eq!(between(wrong, half), Difference { relative_l1: 0.0, ssim: 1.0 });
     assert_eq!(relative_l1(&picture(1.0), &picture(0.0)), 0.0);
 }
 
@@ -167,10 +168,10 @@ fn waves_have_their_documented_slope() {
 #[test]
 fn sheets_have_their_panels_and_labels() {
     let picture = Picture { size: [40, 10], pixels: vec![[0.0; 3]; 400], coverage: vec![1.0; 400] };
-    let tone = Tone { exposure: 1.0 };
+    let picture = Displayed::new(picture, &Tone { exposure: 1.0 });
     let crop = Some(Crop { left: 20, top: 4, width: 10, height: 2 });
     let labels = || vec!["A1".to_owned()];
-    let panel = |crop| Panel { picture: &picture, tone, heading: "H".to_owned(), crop, labels: labels() };
+    let panel = |crop| Panel { picture: &picture, heading: "H".to_owned(), crop, labels: labels() };
     let sheet = Sheet::from_rows("T", "s", &[vec![panel(None), panel(crop)], vec![panel(crop)]]).expect("a sheet");
     // A header of 53 pixels, then two rows of heading (19), picture (10), region (2 x 4) and label (19), with gaps.
     assert_eq!((sheet.width, sheet.height), (104, 205));
@@ -189,7 +190,7 @@ fn sheets_have_their_panels_and_labels() {
     assert!(has_ink(8..16, label.clone()) && has_ink(16..24, label.clone()) && !has_ink(24..48, label));
     // Texts that are wider than the picture widen their columns, and a title widens the sheet.
     let heading = "supersampled".to_owned();
-    let wide = || Panel { picture: &picture, tone, heading: heading.clone(), crop: None, labels: labels() };
+    let wide = || Panel { picture: &picture, heading: heading.clone(), crop: None, labels: labels() };
     let width = |title: &str| Sheet::from_rows(title, "s", &[vec![panel(None), wide()]]).expect("a sheet").width;
     assert_eq!(width("T"), 2 * (12.0 * 7.8_f32).ceil() as u32 + 3 * 8);
     assert_eq!(width("a title that is wider than both"), (31.0 * 11.385_f32).ceil() as u32 + 2 * 8);

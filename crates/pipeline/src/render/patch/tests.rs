@@ -14,7 +14,7 @@ fn points_of_a_patch_are_those_of_single_rays() {
             let ray = |[dx, dy]: [f32; 2]| camera.ray(x + f64::from(dx), y + f64::from(dy));
             let Some(middle) = shape.hit(camera.eye, ray([0.5, 0.5])) else { continue };
             let mut found = [PatchPoint::default(); 5];
-            Patch::new(shape, camera, [x, y], &middle).trace(&offsets, &mut found);
+            Patch::new(shape, camera, [x, y], &middle).trace(offsets.iter().copied(), &mut found);
             for (found, offset) in found.iter().zip(offsets) {
                 let exact = shape.hit(camera.eye, ray(offset));
                 match (found.meeting, exact) {

@@ -46,9 +46,8 @@ fn samples_are_shaded_as_views_are() {
             expected.push([reflected(&even), of_light, view.visible_area(), reflected(&scene.environment)]);
             samples.push(Sample {
                 position: hit.position.map(|c| c as f32),
-                normal: point.normal.map(|c| c as f32),
-                squared_alpha: point.squared_alpha.map(|c| c as f32),
-                facet: facet.map(|c| c as f32),
+                bump: point.into(),
+                at: facet.map(|c| c as f32),
             });
         }
         let mut found = vec![ShadedSample::default(); samples.len()];
