@@ -253,8 +253,12 @@ async function open(sources, isPlaced = false) {
   expire();
 }
 
+/** Steps that load files follow each other, so that files which come while others load are shown after those. */
+let earlier = Promise.resolve();
+const attempt = (step) => (earlier = earlier.then(() => run(step)));
+
 /** Runs a step that may fail, and says what failed. */
-async function attempt(step) {
+async function run(step) {
   status.textContent = 'Loading…';
   try {
     await step();

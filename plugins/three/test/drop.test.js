@@ -62,6 +62,35 @@ test('shows files that are dropped or chosen', options, async (t) => {
   );
 });
 
+test('shows what was dropped last, however long the files before take', options, async (t) => {
+  const { url } = await view(t, path.join(repository, 'fixtures/waves/waves.glb'));
+  const browser = await launch();
+  t.after(() => browser.close());
+  const page = await ready(browser, url, { viewport: VIEWPORT });
+  await page.evaluate(() => {
+    const figures = document.getElementById('figures');
+    const bytes = () => figures.querySelector('td:last-child').textContent;
+    window.sizes = [bytes()];
+    // Errors change the table, too.
+    const note = () => bytes() !== window.sizes.at(-1) && window.sizes.push(bytes());
+    new MutationObserver(note).observe(figures, { childList: true });
+    // The first image takes long.
+    const { createImageBitmap } = window;
+    window.createImageBitmap = async (...given) => {
+      window.createImageBitmap = createImageBitmap;
+      await new Promise((resolve) => setTimeout(resolve, 1000));
+      return createImageBitmap(...given);
+    };
+  });
+  const contents = (names) => names.map((name) => [path.basename(name), [...readFileSync(name)]]);
+  await drop(page, contents(files(FIXTURE)));
+  await drop(page, contents([path.join(repository, 'fixtures/waves/waves.glb')]));
+  await page.waitForFunction(() => window.sizes.length === 3);
+  const [first, , last] = await page.evaluate(() => window.sizes);
+  assert.equal(last, first);
+  assert.deepEqual(page.problems, []);
+});
+
 test('adds a dropped bake to its original', options, async (t) => {
   const folder = temporary(t);
   roughcast('bake', FIXTURE, '-o', folder, '--gltf', 'strict', '--quiet');
