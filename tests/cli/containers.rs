@@ -98,6 +98,27 @@ fn a_named_glb_packs_the_files_of_a_gltf() {
     assert!(stale.code == 3 && stale.out.contains("brushed_normal.png as it was baked"), "{}", stale.out);
 }
 
+/// Some exporters name KTX2 files as core sources, which glTF allows in no .glb.
+#[test]
+fn copied_ktx2_images_are_named_by_the_extension_in_a_glb() {
+    let scene = scene();
+    let folder = scene.path();
+    done(folder, "bake brushed -o all -q --textures all");
+    let is_colour = |name: &&String| name.contains("colour") && name.ends_with(".ktx2");
+    let all = names(&folder.join("all"));
+    let colour = all.iter().find(is_colour).expect("a base colour");
+    fs::copy(folder.join("all").join(colour), folder.join("brushed/colour.ktx2")).expect("a copy");
+    let path = folder.join("brushed/brushed.gltf");
+    let document = fs::read_to_string(&path).expect("a document");
+    fs::write(&path, document.replace("brushed_colour.png", "colour.ktx2")).expect("a file");
+    done(folder, "bake brushed/brushed.gltf -o packed.glb -q");
+    let (root, bin) = glb(&folder.join("packed.glb"));
+    assert_eq!(images(&root, &bin), (4, 0));
+    assert!(root["textures"].as_array().expect("textures").iter().all(|texture| texture.get("source").is_none()));
+    assert_eq!(root["extensionsRequired"], json!(["KHR_texture_basisu"]));
+    done(folder, "check packed.glb --deep --allow RC1510");
+}
+
 #[test]
 fn a_named_gltf_writes_the_files_of_a_glb_beside_it() {
     let scene = scene();

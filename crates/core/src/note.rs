@@ -132,7 +132,7 @@ fn note(kind: NoteKind, text: impl Into<String>) -> Note {
 
 /// Returns the note on a material without bumps.
 pub fn no_bump_map() -> Note {
-    note(NoteKind::NoBumpMap, "no normal or height map: left as it was")
+    note(NoteKind::NoBumpMap, "no normal or height map: no roughness is added")
 }
 
 /// Returns the note `text` on levels that exceed the error bound. `is_avoidable` if another setting comes closer to the

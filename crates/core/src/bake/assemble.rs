@@ -20,7 +20,7 @@ use crate::gltf::document::{Container, Document};
 use crate::gltf::extensions::declare;
 use crate::gltf::json::Json;
 use crate::gltf::layers::LayerKind;
-use crate::gltf::rewrite::{NewImage, NewTexture, add_textures};
+use crate::gltf::rewrite::{NewImage, NewTexture, add_textures, name_ktx2_sources};
 use crate::gltf::texture::ImageLocation;
 use crate::gltf::uri::{encode_path, relative_path};
 use crate::material::Range;
@@ -189,6 +189,9 @@ impl<'a> Assembly<'a> {
         output_document::check_images(self.document.json(), source)?;
         if self.document.container() == Container::Glb {
             output_document::embed_images(&mut self.document, source)?;
+            if self.is_rewritten() {
+                name_ktx2_sources(self.document.json_mut())?;
+            }
             output_document::compact_glb(&mut self.document, source.document)?;
         }
         if let Some(NewFile { path, bytes }) = self.bin.take() {
@@ -198,10 +201,14 @@ impl<'a> Assembly<'a> {
         Ok(())
     }
 
+    /// Returns whether the document has new textures or another container than its source.
+    fn is_rewritten(&self) -> bool {
+        !self.textures.is_empty() || self.document.container() != self.reader.source.document.container()
+    }
+
     fn write_provenance(&mut self) -> Result<(), BakeError> {
         // A document that only changed its container shows by its record what it was made of.
-        let is_converted = self.document.container() != self.reader.source.document.container();
-        if self.settings.provenance && (is_converted || !self.textures.is_empty()) {
+        if self.settings.provenance && self.is_rewritten() {
             let recorded: BTreeSet<PathBuf> = self.recorded.iter().filter_map(|location| file_of(location)).collect();
             let provenance = DocumentProvenance::new(self.reader, &self.files, |path| recorded.contains(path))?;
             provenance.write(self.document.json_mut())?;

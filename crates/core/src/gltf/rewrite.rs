@@ -2,6 +2,7 @@
 
 mod freed;
 mod images;
+mod ktx2_sources;
 #[cfg(test)]
 mod tests;
 mod texture;
@@ -15,6 +16,7 @@ use super::json::{Json, JsonError, escaped};
 use freed::Freed;
 use images::{Placed, place_images, remove_images};
 
+pub use ktx2_sources::name_ktx2_sources;
 pub use texture::{NewImage, NewTexture, Slot, references};
 
 const BASISU: &str = "KHR_texture_basisu";
