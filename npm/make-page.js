@@ -64,6 +64,7 @@ const VIEWER = [
   'direction.js',
   'measure.js',
   'ramp.js',
+  'refusal.js',
   'start.js',
   'subject.js',
   'supersample.js',

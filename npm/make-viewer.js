@@ -26,8 +26,8 @@ const DECODERS = [
   'draco/gltf/draco_wasm_wrapper.js',
 ].map((name) => `examples/jsm/libs/${name}`);
 
-/** Modules that Node runs, and the module of the page that they share. */
-const SERVER = ['server.js', 'show.js', 'page/variants.js'];
+/** Modules that Node runs, and the modules of the page that they share. */
+const SERVER = ['server.js', 'show.js', 'page/refusal.js', 'page/variants.js'];
 
 const LICENCES = `The page of this folder has parts of other projects:
 

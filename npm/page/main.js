@@ -5,6 +5,7 @@ import { control } from './input.js';
 import { label } from './labels.js';
 import { commandOf, nameOf, settingsOf } from './settings.js';
 import { Stage } from './stage.js';
+import { refusal } from './viewer/refusal.js';
 
 const element = (id) => document.getElementById(id);
 const form = element('form');
@@ -171,6 +172,8 @@ function takeFile(chosen) {
 /** Returns the bytes of a file that a person has chosen. */
 async function contentOf(chosen) {
   const bytes = new Uint8Array(await chosen.arrayBuffer());
+  const reason = refusal(chosen.name, bytes);
+  if (reason) throw new Error(`${chosen.name}: ${reason}`);
   if (String.fromCharCode(...bytes.subarray(0, 4)) !== 'glTF') {
     const remedy = 'pack a .gltf with its files into a .glb first';
     throw new Error(`${chosen.name}: expected a .glb, found something else; ${remedy}`);

@@ -53,6 +53,36 @@ test('the command line bakes natively and by WebAssembly, to the same bytes', op
   const [one, two] = [native, wasm].map((folder) => readFileSync(path.join(folder, 'out/model.glb')));
   assert.ok(one.equals(two));
   assert.ok(jsonOf(path.join(wasm, 'out/model.glb')).extensionsRequired.includes('KHR_texture_basisu'));
+  // A document with a name of its own records the name of its source.
+  for (const folder of [native, wasm]) npx(folder, 'bake', 'model.glb', '-o', 'baked.glb', '--gltf', 'strict');
+  const named = [native, wasm].map((folder) => readFileSync(path.join(folder, 'baked.glb')));
+  assert.ok(named[0].equals(named[1]));
+  assert.equal(jsonOf(path.join(wasm, 'baked.glb')).asset.extras.roughcast.source, 'model.glb');
+});
+
+test('both command lines refuse the same names of outputs', options, (t) => {
+  const folders = [[packages.platform, packages.main], [packages.main]].map((installed) => project(t, installed));
+  for (const folder of folders) mkdirSync(path.join(folder, 'folder.glb'));
+  const refused = (folder, args) => {
+    try {
+      return npx(folder, 'bake', ...args);
+    } catch ({ status, stderr }) {
+      return { status, stderr };
+    }
+  };
+  for (const args of [
+    ['model.glb', '-o', 'w.zip'],
+    ['model.glb', '-o', 'x.GLB'],
+    ['model.glb', '-o', 'folder.glb'],
+    ['model.glb', 'model.glb', '-o', 'x.glb'],
+    ['folder.glb', '-o', 'x.glb'],
+    ['model.glb', '-o', 'x.gltf', '--glb'],
+  ]) {
+    const [native, wasm] = folders.map((folder) => refused(folder, args));
+    assert.equal(native.status, 2, args.join(' '));
+    assert.deepEqual(wasm, native);
+  }
+  assert.ok(!existsSync(path.join(folders[1], 'w.zip')));
 });
 
 test('one command bakes in an empty folder, and its time is printed', options, (t) => {

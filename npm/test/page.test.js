@@ -206,6 +206,8 @@ test('bakes with threads on an isolated page, to the same bytes', options, async
   assert.deepEqual(page.problems, []);
 });
 
+const POINTER = 'version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n';
+
 test('takes a file, a dropped file, and says why another is refused', options, async () => {
   const page = await open();
   await finished(page);
@@ -226,8 +228,18 @@ test('takes a file, a dropped file, and says why another is refused', options, a
   await openFile(page, 'model.gltf', Buffer.from('{}'));
   await finished(page, 'failed');
   assert.match(await status(page), /model\.gltf: expected a \.glb/);
+  // The page shows what has backticks as code.
+  for (const [name, content, problem] of [
+    ['lfs.glb', POINTER, 'a Git LFS pointer instead of the file; run git lfs pull'],
+    ['empty.glb', '', 'an empty file; copy or export it again'],
+    ['m.fbx', 'Kaydara FBX Binary  \0', 'a .fbx file (export the scene as glTF 2.0)'],
+  ]) {
+    await openFile(page, name, Buffer.from(content));
+    await page.getByText(`found ${problem}`).waitFor();
+    assert.ok((await status(page)).startsWith(`${name}: expected a `));
+  }
   await openFile(page, 'broken.glb', Buffer.from('glTF and no more'));
-  await page.waitForFunction(() => !document.getElementById('status').textContent.includes('model.gltf'));
+  await page.waitForFunction(() => !document.getElementById('status').textContent.includes('m.fbx'));
   await finished(page, 'failed');
 });
 

@@ -117,6 +117,8 @@ test('decodes Draco and meshoptimizer', compressed, async (t) => {
     const page = await open(t, await view(t, folder, `${name}.gltf`));
     assert.ok((await colours(page, `view-${name}`)) > 500, name);
     assert.deepEqual(page.problems, []);
+    // Otherwise the page draws on while the next one works.
+    await page.context().close();
   }
 });
 
@@ -131,6 +133,17 @@ test('says what it cannot show', options, (t) => {
     );
   fails(/nosuch\.glb: expected .* found nothing/, 1, 'nosuch.glb');
   fails(/broken\.gltf: cannot be shown: /, 1, 'broken.gltf');
+  const others = {
+    'lfs.glb': ['version https://git-lfs.github.com/spec/v1\n', /Git LFS pointer .*`git lfs pull`$/m],
+    'empty.glb': ['', /expected a glTF document, found an empty file; copy or export it again$/m],
+    'm.fbx': ['Kaydara FBX Binary  \0', /expected a \.gltf or \.glb file, found a \.fbx file/],
+    'map.ktx2': ['\u00abKTX 20\u00bb\r\n\x1a\n', /expected a glTF document, found something else$/m],
+    'short.glb': ['glTF\x02\0\0\0', /found 8; the file is cut short$/m],
+  };
+  for (const [name, [content, message]] of Object.entries(others)) {
+    writeFileSync(path.join(folder, name), content, 'latin1');
+    fails(message, 1, name);
+  }
   fails(/model\.glb and .*copies.*“Plain mips”/, 2, 'model.glb', 'copies');
   fails(/unknown/i, 2, '--unknown');
   assert.match(npx(folder, 'view', '--help'), /127\.0\.0\.1/);

@@ -6,6 +6,7 @@ import path from 'node:path';
 import process from 'node:process';
 import { fileURLToPath } from 'node:url';
 import { parseArgs } from 'node:util';
+import { refusal } from './page/refusal.js';
 import { readDocument, variantOf } from './page/variants.js';
 import { show, temporaryFolder } from './show.js';
 import { missing, repository, roughcast } from './test/roughcast.js';
@@ -13,7 +14,12 @@ import { missing, repository, roughcast } from './test/roughcast.js';
 const here = path.dirname(fileURLToPath(import.meta.url));
 
 /** Returns which variant a file is. */
-const variant = (file) => variantOf(readDocument(readFileSync(file)));
+function variant(file) {
+  const bytes = readFileSync(file);
+  const reason = refusal(file, bytes);
+  if (reason) throw new Error(`${file}: ${reason}`);
+  return variantOf(readDocument(bytes));
+}
 
 function fixture() {
   if (missing) throw new Error(missing);

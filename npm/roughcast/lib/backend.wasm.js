@@ -62,8 +62,8 @@ export function wasmBackend({ load, canShare, processors }) {
       return { report, onAnisotropy };
     },
 
-    async bakeDocument({ name, input, beside, settings, threads, onProgress }) {
-      const header = { command: 'bake', stem: name, settings };
+    async bakeDocument({ name, output, input, beside, settings, threads, onProgress }) {
+      const header = { command: 'bake', stem: name, output, settings };
       const response = await call(header, [input, ...beside], { threads, onProgress });
       const [document, ...files] = response.files;
       const { copies, run: runReport, report } = response.header;

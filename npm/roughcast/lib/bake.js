@@ -12,8 +12,11 @@ export async function bake(document, options) {
   return { ...baked, report: { version, settings, layers, textures } };
 }
 
-/** Bakes as `bake` does, with all members of the backend's report, and with the report of the run. */
-export async function bakeWithSizes(document, options = {}) {
+/**
+ * Bakes as `bake` does, with all members of the backend's report, and with the report of the run. WebAssembly names the
+ * outputs after `output`, if it is given, and records the document under its own name.
+ */
+export async function bakeWithSizes(document, options = {}, output = undefined) {
   const { name = 'model', files = {}, threads, onProgress, backend: kind } = options;
   const [bytes, settings] = [asBytes(document, 'document'), tomlSettings(options.settings)];
   const { bakeDocument } = await backend(kind);
@@ -25,7 +28,7 @@ export async function bakeWithSizes(document, options = {}) {
     if (file) beside.push({ path, bytes: asBytes(file, path) });
   }
   const input = { path: `${name}.${isGlb(bytes) ? 'glb' : 'gltf'}`, bytes };
-  const baked = await bakeDocument({ name, input, beside, settings, threads, onProgress });
+  const baked = await bakeDocument({ name, output, input, beside, settings, threads, onProgress });
   baked.files.sort((a, b) => (a.path < b.path ? -1 : 1));
   return { ...baked, copies: baked.copies.sort() };
 }

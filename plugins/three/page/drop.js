@@ -1,4 +1,5 @@
 // Files that a person drops on the page or chooses.
+import { isOtherScene, refusal } from './refusal.js';
 import { TITLES, readDocument, variantOf } from './variants.js';
 
 /** Returns the files of an entry of a drop, folders included, as [path, file]. */
@@ -54,9 +55,11 @@ export async function documents(files) {
   const found = new Map();
   for (const [path, file] of files) {
     if (!/\.(gltf|glb)$/i.test(path)) continue;
+    const bytes = new Uint8Array(await file.arrayBuffer());
+    refuse(path, bytes);
     let variant;
     try {
-      variant = variantOf(readDocument(new Uint8Array(await file.arrayBuffer())));
+      variant = variantOf(readDocument(bytes));
     } catch (error) {
       throw new Error(`${path} is no glTF: ${error.message}`);
     }
@@ -64,6 +67,17 @@ export async function documents(files) {
       throw new Error(`${found.get(variant)} and ${path} are both “${TITLES[variant]}”: drop one of them`);
     found.set(variant, path);
   }
-  if (found.size === 0) throw new Error('No .glb or .gltf was dropped: drop one with all its files');
+  if (found.size === 0) {
+    // A scene in another format is what a person wanted to see.
+    const scene = [...files.keys()].find(isOtherScene);
+    if (scene) refuse(scene, new Uint8Array());
+    throw new Error('No .glb or .gltf was dropped: drop one with all its files');
+  }
   return found;
+}
+
+/** Throws an Error where a file is no document. */
+function refuse(path, bytes) {
+  const reason = refusal(path, bytes);
+  if (reason) throw new Error(`${path}: ${reason}`);
 }

@@ -53,11 +53,13 @@ export class Figures {
   #render() {
     const known = [...this.#errors.values()].filter((error) => error !== null);
     const best = known.length > 1 ? Math.min(...known) : null;
+    // Errors that read alike are a tie.
+    const isTie = known.filter((error) => percent(error) === percent(best)).length > 1;
     this.body.replaceChildren(
       ...[...this.assets].flatMap(([name, { files, textures, isMisdrawn }]) => {
         const row = document.createElement('tr');
         const error = this.#errors.get(name);
-        const isBest = error != null && error === best;
+        const isBest = error != null && error === best && !isTie;
         row.append(
           cell('th', TITLES[name], { scope: 'row' }),
           cell('td', error == null ? '–' : percent(error), { className: isBest ? 'error best' : 'error' }),

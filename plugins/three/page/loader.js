@@ -6,6 +6,7 @@ import { KTX2Loader } from 'three/addons/loaders/KTX2Loader.js';
 import { MeshoptDecoder } from 'three/addons/libs/meshopt_decoder.module.js';
 import { RoughcastPlugin } from 'three-roughcast';
 import { textureBytes, texturesOf } from './bytes.js';
+import { refusal } from './refusal.js';
 import { isMisdrawn } from './variants.js';
 
 /** The decoders of three.js' own package. */
@@ -56,8 +57,8 @@ export class Loader {
       .setMeshoptDecoder(MeshoptDecoder)
       .register((parser) => new RoughcastPlugin(parser, { reflections }));
     try {
-      const { scene, parser } = await loader.loadAsync(url).catch((error) => {
-        throw this.#missing.length ? this.#absent(url) : error;
+      const { scene, parser } = await loader.loadAsync(url).catch(async (error) => {
+        throw this.#missing.length ? this.#absent(url) : ((await this.#refused(url)) ?? error);
       });
       if (this.#missing.length) throw this.#absent(url);
       for (const texture of texturesOf(scene)) texture.anisotropy = this.anisotropy;
@@ -93,7 +94,14 @@ export class Loader {
 
   #absent(url) {
     const names = this.#missing.join(', ');
-    return new Error(`${pathOf(url).split('/').pop()} needs ${names}: drop all its files, or the whole folder`);
+    return new Error(`${nameOf(url)} needs ${names}: drop all its files, or the whole folder`);
+  }
+
+  /** Returns the error that the file at an address is no document, or nothing if that is not what is wrong. */
+  async #refused(url) {
+    const response = await fetch(this.#resolve(url)).catch(() => undefined);
+    const reason = response?.ok && refusal(nameOf(url), new Uint8Array(await response.arrayBuffer()));
+    return reason ? new Error(`${nameOf(url)}: ${reason}`) : undefined;
   }
 
   /** Returns the bytes of the files that were read from a folder. */
@@ -111,3 +119,6 @@ export class Loader {
 
 /** Returns the decoded path of an address, without `.` and `..`. */
 const pathOf = (url) => decodeURIComponent(new URL(url, location.origin).pathname);
+
+/** Returns the file name of an address. */
+const nameOf = (url) => pathOf(url).split('/').pop();

@@ -16,11 +16,12 @@ export const VARIANTS = Object.keys(TITLES);
  * Reads the JSON of a .gltf or .glb file.
  *
  * @param {Uint8Array} bytes
- * @throws SyntaxError where the bytes hold no JSON.
+ * @throws Error where the bytes hold no JSON.
  */
 export function readDocument(bytes) {
   const text = (from, to) => new TextDecoder().decode(bytes.subarray(from, to));
-  if (bytes.length < 20 || text(0, 4) !== 'glTF') return JSON.parse(text(0));
+  if (text(0, 4) !== 'glTF') return JSON.parse(text(0));
+  if (bytes.length < 20) throw new Error(`expected 20 bytes of GLB, found ${bytes.length}; the file is cut short`);
   const length = new DataView(bytes.buffer, bytes.byteOffset).getUint32(12, true);
   return JSON.parse(text(20, 20 + length));
 }

@@ -48,13 +48,19 @@ test('shows files that are dropped or chosen', options, async (t) => {
   await page.waitForFunction(() => !document.getElementById('problem').textContent);
   await drop(page, [['notes.txt', [1]]]);
   assert.match(await problem.textContent(), /drop one with all its files/);
-  await drop(page, [['broken.gltf', [1]]]);
-  await page.waitForFunction(() => /broken.gltf is no glTF/.test(document.getElementById('problem').textContent));
+  const says = (text) =>
+    page.waitForFunction((part) => document.getElementById('problem').textContent.includes(part), text);
+  await drop(page, [['broken.gltf', [...Buffer.from('{')]]]);
+  await says('broken.gltf is no glTF');
+  await drop(page, [['lfs.glb', [...Buffer.from('version https://git-lfs.github.com/spec/v1\n')]]]);
+  await says('lfs.glb: expected a glTF document, found a Git LFS pointer instead of the file; run `git lfs pull`');
+  await drop(page, [['m.fbx', [1]]]);
+  await says('m.fbx: expected a .gltf or .glb file, found a .fbx file (export the scene as glTF 2.0)');
   await drop(page, [
     ['a.glb', [...waves]],
     ['b.glb', [...waves]],
   ]);
-  await page.waitForFunction(() => /a.glb and b.glb/.test(document.getElementById('problem').textContent));
+  await says('a.glb and b.glb');
   const expected = /Couldn't load texture brushed_/;
   assert.deepEqual(
     page.problems.filter((text) => !expected.test(text)),

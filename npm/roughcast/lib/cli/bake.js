@@ -5,8 +5,9 @@ import path from 'node:path';
 import { backend } from '#backend';
 import { bakeWithSizes } from '../bake.js';
 import { stem } from '../names.js';
+import { destination } from './destination.js';
 import { bufferPaths, findAssets, readIfThere, writeOutput } from './files.js';
-import { DOCUMENT, UsageError, parse } from './options.js';
+import { DOCUMENT, parse } from './options.js';
 import { notesToActOn, printable, sum, summary, total } from './summary.js';
 
 const OWN = { ...DOCUMENT, report: { type: 'string' }, 'no-config': { type: 'boolean' } };
@@ -20,13 +21,14 @@ const NOTHING = { seconds: 0, inputBytes: 0, bytes: 0, layers: [], textures: [],
 export async function bakeCommand(args, stdout, stderr) {
   const started = performance.now();
   const { inputs, settings, values } = parse(args, OWN);
+  const { folder, name } = await destination(values.output, inputs, settings);
   const assets = (await Promise.all(inputs.map(findAssets))).flat();
-  const place = placeOf(values.output, assets, settings);
   const { report: run, onAnisotropy } = await (await backend('wasm')).startRun(settings, values.threads);
   const outcomes = [];
   for (const asset of assets) {
     if (!values['no-config']) warnOfConfig(asset.file, stderr);
-    const outcome = await bakeAsset(asset, place(asset), settings, values.threads);
+    const below = path.join(folder, path.dirname(path.relative(asset.folder, asset.file)));
+    const outcome = await bakeAsset(asset.file, { folder: below, name }, settings, values.threads);
     outcomes.push(outcome);
     if (outcome.error) stderr.write(`error: ${asset.file}: ${outcome.error}\n`);
     else if (!values.quiet && !values.json) stdout.write(summary(outcome, values.verbose));
@@ -47,18 +49,8 @@ export async function bakeCommand(args, stdout, stderr) {
 /** Returns whether a layer of an asset was baked to anisotropic lobes. */
 const hasAnisotropicLobes = ({ layers }) => layers.some((layer) => layer.model === 'anisotropic');
 
-/** Returns a function from an asset to the path of its output document. */
-function placeOf(output, assets, settings) {
-  const named = /\.(glb|gltf)$/i.exec(output)?.[1].toLowerCase();
-  if (!named) return ({ file, folder }) => path.join(output, path.relative(folder, file));
-  if (assets.length > 1)
-    throw new UsageError(`-o ${output}: expected one asset, found ${assets.length}; name a folder`);
-  if (named === 'gltf' && settings.glb) throw new UsageError(`-o ${output}: expected a .glb with --glb; name one`);
-  settings.glb = named === 'glb';
-  return () => output;
-}
-
-async function bakeAsset({ file }, place, settings, threads) {
+/** Bakes a file into a folder, to a document called `name` or as the file. Returns what the report says of it. */
+async function bakeAsset(file, to, settings, threads) {
   const started = performance.now();
   const outcome = { input: file, status: 'failed', ...NOTHING };
   try {
@@ -71,13 +63,14 @@ async function bakeAsset({ file }, place, settings, threads) {
       read += bytes?.byteLength ?? 0;
       return bytes;
     };
-    const baked = await bakeWithSizes(document, { name: stem(place), files, settings, threads, backend: 'wasm' });
-    const output = path.join(path.dirname(place), baked.document.path);
+    const options = { name: stem(file), files, settings, threads, backend: 'wasm' };
+    const baked = await bakeWithSizes(document, options, to.name);
+    const output = path.join(to.folder, baked.document.path);
     const copies = await Promise.all(
       baked.copies.map(async (name) => ({ path: name, bytes: await readFile(path.join(folder, name)) })),
     );
     const all = [...copies, ...baked.files, baked.document];
-    for (const { path: name, bytes } of all) await writeOutput(path.join(path.dirname(place), name), bytes, sources);
+    for (const { path: name, bytes } of all) await writeOutput(path.join(to.folder, name), bytes, sources);
     const { report } = baked;
     const buffers = copies.length > 0 ? bufferPaths(baked.document.bytes) : new Set();
     Object.assign(outcome, {

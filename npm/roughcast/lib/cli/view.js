@@ -7,6 +7,7 @@ import { parseArgs } from 'node:util';
 import { stem } from '../names.js';
 import { findAssets } from './files.js';
 import { UsageError } from './options.js';
+import { printable } from './summary.js';
 
 const VIEWER = fileURLToPath(new URL('../../viewer', import.meta.url));
 
@@ -34,9 +35,9 @@ export async function viewCommand(args, { stdin, stdout, stderr }) {
   if (!existsSync(VIEWER)) {
     throw new Error(`expected the viewer at ${VIEWER}, found none; a checkout has npm run view --prefix plugins/three`);
   }
-  const modules = await Promise.all(['show.js', 'page/variants.js'].map((name) => load(name)));
-  const [{ show }, variants] = modules;
-  const { files, others } = await choose(positionals, variants);
+  const modules = await Promise.all(['show.js', 'page/variants.js', 'page/refusal.js'].map((name) => load(name)));
+  const [{ show }, variants, { refusal }] = modules;
+  const { files, others } = await choose(positionals, variants, refusal);
   if (values.original) files.original = path.resolve(values.original);
   const folders = { page: path.join(VIEWER, 'page'), three: path.join(VIEWER, 'three') };
   const url = await show(files, folders, { events: values.events && stdin });
@@ -70,7 +71,7 @@ const load = (name) => import(pathToFileURL(path.join(VIEWER, name)));
  * @returns {Promise<{files: Record<string, string>, others: number}>} the documents by variant, and the number of
  * documents of other assets
  */
-async function choose(inputs, { TITLES, readDocument, variantOf }) {
+async function choose(inputs, { TITLES, readDocument, variantOf }, refusal) {
   const [named, found] = [[], []];
   for (const input of inputs) {
     const isFolder = (await stat(input).catch(() => undefined))?.isDirectory();
@@ -93,9 +94,12 @@ async function choose(inputs, { TITLES, readDocument, variantOf }) {
   /** Returns a document with the variant that it is. */
   async function described(file) {
     try {
-      return { file, variant: variantOf(readDocument(await readFile(file))) };
+      const bytes = await readFile(file);
+      const reason = refusal(file, bytes);
+      if (reason) throw new Error(reason);
+      return { file, variant: variantOf(readDocument(bytes)) };
     } catch (error) {
-      throw new Error(`${file}: cannot be shown: ${error.message}`, { cause: error });
+      throw new Error(`${file}: cannot be shown: ${printable(error.message)}`, { cause: error });
     }
   }
 }
