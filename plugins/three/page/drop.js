@@ -15,8 +15,8 @@ async function filesOf(entry) {
 }
 
 /**
- * Calls `opened` with the files by path, when files are dropped on `frame` or chosen by `input`. A frame that files are
- * over has the attribute data-over.
+ * Calls `opened` with a promise of the files by path, when files are dropped on `frame` or chosen by `input`. Folders
+ * take time to be read. A frame that files are over has the attribute data-over.
  */
 export function listen(frame, input, opened) {
   let depth = 0;
@@ -27,7 +27,7 @@ export function listen(frame, input, opened) {
   frame.addEventListener('dragenter', () => over(1));
   frame.addEventListener('dragleave', () => over(-1));
   frame.addEventListener('dragover', (event) => event.preventDefault());
-  frame.addEventListener('drop', async (event) => {
+  frame.addEventListener('drop', (event) => {
     event.preventDefault();
     over(0);
     // Items are gone after the first pause.
@@ -37,10 +37,10 @@ export function listen(frame, input, opened) {
       const file = item.getAsFile();
       return entry ? filesOf(entry) : [[file.name, file]];
     });
-    opened(new Map((await Promise.all(found)).flat()));
+    opened(Promise.all(found).then((files) => new Map(files.flat())));
   });
   input.addEventListener('change', () => {
-    opened(new Map([...input.files].map((file) => [file.webkitRelativePath || file.name, file])));
+    opened(Promise.resolve(new Map([...input.files].map((file) => [file.webkitRelativePath || file.name, file]))));
     input.value = '';
   });
 }

@@ -270,8 +270,9 @@ async function run(step) {
   }
 }
 
-listenToDrops(document.documentElement, element('files'), (files) =>
+listenToDrops(document.documentElement, element('files'), (given) =>
   attempt(async () => {
+    const files = await given;
     const found = await documents(files);
     if (found.has('original')) element('controls').elements.subject.value = 'asset';
     await open(Object.fromEntries([...found].map(([name, file]) => [name, { file, files }])));

@@ -1,4 +1,4 @@
-// What is wrong with files that are no glTF documents, for a person. The native tool says the same.
+// What is wrong with files that are no glTF documents, for a person. The native tool has the same words.
 
 /** Extensions of scene formats from which other tools export glTF. */
 const SCENES = /\.(3ds|abc|blend|c4d|dae|fbx|ma|max|mb|obj|ply|stl|usd|usda|usdc|usdz)$/i;

@@ -188,8 +188,8 @@ impl<'a> Assembly<'a> {
         let source = self.reader.source;
         output_document::check_images(self.document.json(), source)?;
         if self.document.container() == Container::Glb {
-            output_document::embed_images(&mut self.document, source)?;
-            if self.is_rewritten() {
+            let has_moved = output_document::embed_images(&mut self.document, source)?;
+            if has_moved || self.is_rewritten() {
                 name_ktx2_sources(self.document.json_mut())?;
             }
             output_document::compact_glb(&mut self.document, source.document)?;

@@ -105,8 +105,9 @@ pub fn embed(document: &mut Document, bytes: &[u8]) -> Result<usize, ContainerEr
     Ok(document.json_mut().push("/bufferViews", &view)?)
 }
 
-/// Moves every image that is a file into the BIN chunk of a .glb.
-pub fn embed_images(document: &mut Document, source: &Source<'_>) -> Result<(), ContainerError> {
+/// Moves every image that is a file into the BIN chunk of a .glb. Returns whether there was one.
+pub fn embed_images(document: &mut Document, source: &Source<'_>) -> Result<bool, ContainerError> {
+    let mut is_any_moved = false;
     for (index, uri) in image_uris(document.json())?.into_iter().enumerate() {
         let Some(uri) = uri else { continue };
         let bytes = source.uri(&uri)?;
@@ -117,8 +118,9 @@ pub fn embed_images(document: &mut Document, source: &Source<'_>) -> Result<(), 
         json.remove(&format!("/images/{index}/uri"))?;
         json.set(&format!("/images/{index}/bufferView"), &view)?;
         json.set(&format!("/images/{index}/mimeType"), mime)?;
+        is_any_moved = true;
     }
-    Ok(())
+    Ok(is_any_moved)
 }
 
 /// Most bytes of a Git LFS pointer, by the specification of Git LFS.

@@ -130,11 +130,20 @@ mod tests {
                 let exact = material.point(&|texture: &Texture| texture.nearest(uv));
                 let found = facets.at(uv);
                 let pairs = found.normal.iter().zip(&exact.normal);
+                let fraction = uv.map(|c| (c - c.floor()) as f32);
+                assert_eq!(facets.within(fraction), Facet::from(facets.at(fraction.map(f64::from))));
                 for (a, b) in pairs.chain(found.squared_alpha.iter().zip(&exact.squared_alpha)) {
                     assert!((a - b).abs() < 1e-6, "{uv:?}: {found:?} {exact:?}");
                 }
             }
         }
+    }
+
+    #[test]
+    fn the_last_texel_reaches_to_the_end_of_the_map() {
+        let material = material(noise(4, 4, 2));
+        let facets = Facets::new(&material, 1 << 10);
+        assert_eq!(facets.within([1.0, 1.0]), facets.within([0.999, 0.999]));
     }
 
     #[test]

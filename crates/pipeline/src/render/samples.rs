@@ -200,7 +200,7 @@ impl LocalPoint {
         let [x, y, z] = unit([self.view[0] + light[0], self.view[1] + light[1], self.view[2] + light[2]]);
         let [uu, uv, vv] = self.a;
         let determinant = uu * vv - uv * uv;
-        // D = |A|^(3/2) / (pi q^2). Both factors of D G / (4 (n.v)) share one division.
+        // q is |A| times the sum in GGX, so that D = |A|^(3/2) / (pi q^2). D, G and 4 (n.v) share one division.
         let q = vv * x * x - 2.0 * uv * x * y + uu * y * y + determinant * z * z;
         let hidden = 1.0 + self.hidden + lambda(self.a, light);
         let seen = dot(self.view, [x, y, z]);

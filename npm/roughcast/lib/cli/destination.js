@@ -2,7 +2,6 @@
 // `crates/pipeline/src/project/destination.rs`.
 import { stat } from 'node:fs/promises';
 import path from 'node:path';
-import { stem } from '../names.js';
 import { UsageError } from './options.js';
 
 /** Extensions of files that a bake cannot write as its document. No one names a new folder so. */
@@ -38,7 +37,7 @@ export async function destination(output, inputs, settings) {
     throw new UsageError(`${output}: expected a name that suits ${found}`);
   }
   settings.glb = glb;
-  return { folder: path.dirname(output), name: stem(path.basename(output)) };
+  return { folder: path.dirname(output), name: path.parse(output).name };
 }
 
 /** Returns whether there is a folder at a path. */

@@ -29,7 +29,7 @@ const HALF_HEIGHT: f32 = 0.35;
 /// Half the width of the bars that divide a window into four panes.
 const HALF_BAR: f32 = 0.03;
 
-/// Sines of angles outside of the windows, and the largest for which [`arc_sine`] is accurate.
+/// A sine of angles outside of all windows. [`arc_sine`] is accurate up to it.
 const OUTSIDE: f32 = 0.5;
 
 /// Returns the radiance from the direction `d`.
