@@ -1,12 +1,14 @@
-// A reader of docs/extension/README.md draws the same picture as the plugin of three.js.
+// A reader of docs/extension/README.md draws the same picture as the plugin of three.js, and the pixels that it lists.
 import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import path from 'node:path';
 import test from 'node:test';
 import { picture } from './extension_picture.js';
 import { EXTENSION } from './extension_reader.js';
 import { exactLevel } from './extension_texture.js';
 import { PLANE, WITHOUT_K, bake, material, withTextures, write } from './plane_asset.js';
 import { VIEW, difference, openPictures, skip } from './plane_page.js';
-import { temporary } from './roughcast.js';
+import { missing, repository, temporary } from './roughcast.js';
 import { THREE_JS } from './three_engine.js';
 
 const LIGHT = { direction: [-0.3, 1, -0.9], irradiance: 3 };
@@ -144,4 +146,24 @@ test('a reader of the page draws the picture of the plugin', { skip }, async (t)
       assert.ok(bad > WRONG, `a wrong reader is off by ${bad} only`);
     });
   }
+});
+
+test('the pixels that the page lists are those of its reader', { skip: missing }, (t) => {
+  const page = readFileSync(path.join(repository, 'docs/extension/README.md'), 'utf8');
+  const [, table] = page.match(/<!-- pixels: [^]*?-->([^]*?)<!-- pixels end -->/);
+  const rows = [...table.matchAll(/^\| (\d+) \| (\d+) \| (.*) \|$/gm)];
+  const { textures, ...baked } = bake(temporary(t), 'anisotropic');
+  const drawn = (members) => {
+    const core = material(baked, { isCore: true, lobe: { roughnessFactor: 0.35 }, members });
+    const engine = { ...THREE_JS, level: exactLevel };
+    return picture({ material: core, plane: PLANE, textures, engine }, { ...VIEW, light: LIGHT });
+  };
+  const [right, withoutK] = [drawn({}), drawn({ correctionFactor: 0 })];
+  assert.equal(rows.length, 5);
+  for (const [, column, row, printed] of rows) {
+    const pixel = Number(row) * VIEW.size + Number(column);
+    const values = [...right[pixel], withoutK[pixel][0]].map((value) => value.toFixed(4));
+    assert.equal(values.join(' | '), printed, `column ${column}, row ${row}`);
+  }
+  assert.equal(Math.max(...right.flatMap((pixel) => pixel ?? [])).toFixed(2), '7.36');
 });
