@@ -125,7 +125,7 @@ impl Totals {
 }
 
 fn layer_lines(layer: &LayerReport) -> String {
-    let model = layer.model.map_or_else(|| "unchanged".to_owned(), |model| model.name().to_owned());
+    let model = layer.model.map_or_else(|| "no bumps".to_owned(), |model| model.name().to_owned());
     let choice = layer.choice.as_ref().map(Choice::summary).unwrap_or_default();
     let finest = layer.finest.map_or_else(String::new, |finest| {
         format!(", sampled from level {} on, typically {}", finest.level, finest.typical_level)

@@ -67,7 +67,7 @@ impl Document {
     /// Reads a file of either container. The first four bytes decide which.
     ///
     /// # Errors
-    /// [`DocumentError::Json`] if the JSON is not well formed, [`DocumentError::NotGltf`] and
+    /// [`DocumentError::Json`] if the JSON is not well formed, [`DocumentError::Image`], [`DocumentError::NotGltf`] and
     /// [`DocumentError::Foreign`] for other files, and for a GLB the errors of its version, lengths and chunks. The
     /// meaning of the JSON is not checked: see [`check_version`].
     pub fn parse(bytes: &[u8]) -> Result<Document, DocumentError> {

@@ -95,7 +95,7 @@ export function notesToActOn(assets) {
 }
 
 function layerLines(layer) {
-  const { model = 'unchanged', choice, finest, notes } = layer;
+  const { model = 'no bumps', choice, finest, notes } = layer;
   const sampled = finest ? `, sampled from level ${finest.level} on, typically ${finest.typicalLevel}` : '';
   return [
     `  ${printable(nameOf(layer))}: ${model}${choice ? choiceText(choice) : ''}${sampled}`,

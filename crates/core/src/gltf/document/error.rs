@@ -16,6 +16,15 @@ pub enum DocumentError {
         /// What the file is.
         found: Foreign,
     },
+    /// The file is an image.
+    #[error(
+        "expected a glTF document, found {found}; name the .gltf or .glb that uses it, or bake it by itself with \
+         `roughcast map`"
+    )]
+    Image {
+        /// Format of the image.
+        found: &'static str,
+    },
     /// The file is neither a GLB nor a JSON object.
     #[error("expected a GLB or a JSON object, found {found}; export the scene as glTF 2.0 (.glb or .gltf)")]
     NotGltf {

@@ -5,31 +5,33 @@ use serde_json::Value;
 use super::DocumentError;
 use crate::foreign::Foreign;
 
+/// The first bytes of images that `roughcast map` reads.
+const IMAGES: [(&[u8], &str); 3] =
+    [(b"\x89PNG", "a PNG image"), (b"\xff\xd8\xff", "a JPEG image"), (b"\x76\x2f\x31\x01", "an OpenEXR image")];
+
 /// Checks that `bytes`, which are not a GLB, may be a JSON object.
 ///
 /// # Errors
-/// [`DocumentError::Foreign`] and [`DocumentError::NotGltf`], which name what the file is instead.
+/// [`DocumentError::Foreign`], [`DocumentError::Image`] and [`DocumentError::NotGltf`], which name what the file is
+/// instead.
 pub(super) fn check_text(bytes: &[u8]) -> Result<(), DocumentError> {
     if let Some(found) = Foreign::detect(bytes) {
         return Err(DocumentError::Foreign { found });
+    }
+    if let Some((_, found)) = IMAGES.into_iter().find(|(signature, _)| bytes.starts_with(signature)) {
+        return Err(DocumentError::Image { found });
     }
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
     // The JSON reader reports errors in a text that begins as an object does.
     if text.starts_with(b"{") {
         return Ok(());
     }
-    let found = format(bytes).map_or_else(
-        || format!("a file that starts with \"{}\"", bytes[..bytes.len().min(8)].escape_ascii()),
-        str::to_owned,
-    );
+    let found = if bytes.starts_with(b"<?xml") {
+        "an XML file".to_owned()
+    } else {
+        format!("a file that starts with \"{}\"", bytes[..bytes.len().min(8)].escape_ascii())
+    };
     Err(DocumentError::NotGltf { found })
-}
-
-/// Returns the format of a file that users mistake for a glTF document.
-fn format(bytes: &[u8]) -> Option<&'static str> {
-    const SIGNATURES: [(&[u8], &str); 3] =
-        [(b"<?xml", "an XML file"), (b"\x89PNG", "a PNG image"), (b"\xff\xd8\xff", "a JPEG image")];
-    SIGNATURES.iter().find(|(signature, _)| bytes.starts_with(signature)).map(|(_, format)| *format)
 }
 
 /// Checks that `root`, a document's JSON, declares glTF 2.0 or a version that readers of 2.0 may read (glTF 2.0 section

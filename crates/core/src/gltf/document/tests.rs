@@ -222,7 +222,7 @@ fn names_the_damage_of_a_file() {
 fn names_other_formats_and_what_to_do() {
     const EXPORT: &str = "; export the scene as glTF 2.0 (.glb or .gltf)";
     for (bytes, found) in [
-        (&b"\x89PNG\r\n"[..], "a PNG image"),
+        (&b"<?xml version=\"1.0\"?>"[..], "an XML file"),
         (b"#?RADIANCE\n", "a file that starts with \"#?RADIAN\""),
         (b"null", "a file that starts with \"null\""),
         (b"[]", "a file that starts with \"[]\""),
@@ -238,6 +238,14 @@ fn names_other_formats_and_what_to_do() {
         (b"PXR-USDC\0", "a USD file"),
     ] {
         assert_eq!(message(bytes), format!("expected a glTF document, found {found}{EXPORT}"));
+    }
+    for (bytes, found) in [
+        (&b"\x89PNG\r\n"[..], "a PNG image"),
+        (b"\xff\xd8\xff\xe0", "a JPEG image"),
+        (b"\x76\x2f\x31\x01\x02\0\0\0", "an OpenEXR image"),
+    ] {
+        let remedy = "name the .gltf or .glb that uses it, or bake it by itself with `roughcast map`";
+        assert_eq!(message(bytes), format!("expected a glTF document, found {found}; {remedy}"));
     }
     assert_eq!(message(b""), "expected a glTF document, found an empty file; copy or export it again");
     let pointer = b"version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n";
