@@ -64,8 +64,8 @@ fn two_textures(bencher: Bencher) {
     whole(bencher, Form::Strict, Model::Isotropic);
 }
 
-/// Bakes with default settings: the smallest model within the error bound, and PNGs.
+/// Bakes the smallest model within the error bound, and PNGs.
 #[divan::bench(sample_count = 5)]
-fn by_default(bencher: Bencher) {
+fn with_png_copies(bencher: Bencher) {
     whole(bencher, Form::Fallback, Model::Auto);
 }

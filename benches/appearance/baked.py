@@ -29,7 +29,8 @@ BAKES = {
 
 def bake(roughcast, gltf, folder, name, arguments=None):
     """Bakes a material with the arguments of a variant, or with others, and returns the variant."""
-    command = [str(roughcast), "bake", str(gltf), "-o", str(folder), *(arguments or BAKES[name])]
+    options = ["--scale-normals=false", *(arguments or BAKES[name])]
+    command = [str(roughcast), "bake", str(gltf), "-o", str(folder), *options]
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode:
         raise RuntimeError(f"{' '.join(command)} failed: {done.stderr.strip()}")

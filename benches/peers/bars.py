@@ -121,7 +121,7 @@ def whole(part):
 
 def growth(part):
     rows = []
-    for form in ("two textures", "default"):
+    for form in ("two textures", "PNG copies"):
         if "16384" in part["sizes"]:
             peak = part["sizes"]["16384"][form].get("peak")
             rows.append(upper_bound(f"a material of 16384 x 16384, {form}: peak memory, MiB", 2048, peak, "{:.0f}"))

@@ -2,8 +2,9 @@
 
 python3 benches/peers/before.py EARLIER NOW MATERIAL.gltf ...
 
-EARLIER and NOW are the paths of two builds of the tool. The images of each material are repeated to 4096 x 4096 texels,
-as PNGs in a temporary folder. Needs Pillow (benches/appearance/requirements.txt).
+EARLIER and NOW are the paths of two builds of the tool. Both write PNG copies of level 0, so that their outputs are
+alike whichever form is the default. The images of each material are repeated to 4096 x 4096 texels, as PNGs in a
+temporary folder. Needs Pillow (benches/appearance/requirements.txt).
 """
 
 import json
@@ -38,7 +39,8 @@ def repeated(source, folder):
 
 
 def bake(tool, material, out):
-    return Contender([tool, "bake", str(material), "-o", str(out), "--quiet", "--threads", "2"], out=str(out))
+    options = ["--gltf", "fallback", "--quiet", "--threads", "2"]
+    return Contender([tool, "bake", str(material), "-o", str(out), *options], out=str(out))
 
 
 def main():

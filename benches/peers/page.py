@@ -8,7 +8,7 @@ from bars import bars, ratio, share
 # Names of the contenders in the tables.
 NAMES = {
     "two textures": "Roughcast, two textures: `bake --gltf strict --model isotropic --threads 2`",
-    "default": "Roughcast, default: `bake --threads 2`",
+    "PNG copies": "Roughcast, PNG copies: `bake --gltf fallback --threads 2`",
     "maketx": "`maketx --bumpslopes -d half --threads 2`",
     "decoding in turn": "decoding both images, one after the other",
     "decoding side by side": "decoding both images side by side",
@@ -261,7 +261,7 @@ def decoders(part):
 
 def whole(part):
     found = part["errors"]
-    model = {"two textures": "isotropic", "default": "default", "pack": "none", "pack both": "none"}
+    model = {"two textures": "isotropic", "PNG copies": "chosen", "pack": "none", "pack both": "none"}
     written = lambda name: part["times"][name]["written"]
     more = lambda name: [
         rate(part, name),
@@ -275,11 +275,11 @@ def whole(part):
             "",
             "`--only whole`. The times are from PNGs on disk to files on disk, mips included. `maketx` and the first "
             "`ktx create` process the normal map only. Lobe errors (mean of all levels, worst level) are the "
-            "estimates by which the default bake chose its model, from decoded blocks: of isotropic lobes, of the "
-            "chosen model, and of plain mips with the material's roughness. The errors of plain mips are in the rows "
-            "of `ktx create`, which makes such mips, but they are of Roughcast's blocks. `maketx` writes data for "
-            "renderers that roughen lobes themselves. Mtexel/s are texels of level 0 of one map; the table of kernels "
-            "above has copies.",
+            "estimates by which the bake with PNG copies chose its model, from decoded blocks: of isotropic lobes, of "
+            "the chosen model, and of plain mips with the material's roughness. The errors of plain mips are in the "
+            "rows of `ktx create`, which makes such mips, but they are of Roughcast's blocks. `maketx` writes data "
+            "for renderers that roughen lobes themselves. Mtexel/s are texels of level 0 of one map; the table of "
+            "kernels above has copies.",
             "",
             timed(part["times"], "two textures", more, ["Mtexel/s", "written MiB", "lobe error"], pack),
         ]
@@ -294,7 +294,7 @@ PACK = (
 
 def growth(part):
     header = [
-        f"{form}: {what}" for form in ("two textures", "default") for what in ("wall s", "CPU s", "peak MiB", "{}")
+        f"{form}: {what}" for form in ("two textures", "PNG copies") for what in ("wall s", "CPU s", "peak MiB", "{}")
     ]
     with_last = lambda last: [column.format(last) for column in header]
     return "\n".join(
@@ -347,12 +347,12 @@ def size_rows(part):
     for size, point in part["sizes"].items():
         found = point["errors"]
         other = [seconds(point[name]["wall"]) if "wall" in point.get(name, {}) else "-" for name in ("maketx", "pack")]
-        two, default = point["two textures"], point["default"]
+        two, copies = point["two textures"], point["PNG copies"]
         rows.append(
             [
                 square(size),
                 *cells(two, [lobes(found.get("isotropic"))]),
-                *cells(default, [lobes(found.get("default"))]),
+                *cells(copies, [lobes(found.get("chosen"))]),
                 *other,
                 two.get("runs", 0),
             ]
@@ -364,9 +364,9 @@ def count_rows(part):
     """Returns a row for each number of materials."""
     rows = []
     for count, point in part["counts"].items():
-        two, default = point["two textures"], point.get("default", {"failed": "-"})
+        two, copies = point["two textures"], point.get("PNG copies", {"failed": "-"})
         busy = lambda run: [f"{share(run):.1f}" if "cpu" in run else ""]
-        rows.append([count, *cells(two, busy(two)), *cells(default, busy(default)), two.get("runs", 0)])
+        rows.append([count, *cells(two, busy(two)), *cells(copies, busy(copies)), two.get("runs", 0)])
     return rows
 
 
@@ -381,9 +381,9 @@ def memory(part):
             "`--only memory`. `roughcast map --roughness-factor 0.4`, with `--model isotropic` or `anisotropic`: "
             + "; ".join(runs)
             + ". Above, assets",
-            "also have a roughness map of three channels and equal size, and by default PNGs of level 0 for engines "
-            "without KTX2. An explicit model is not compared with others. The lobe errors of these normals are in the "
-            "last row of sizes above.",
+            "also have a roughness map of three channels and equal size, and with PNG copies also PNGs of level 0 for "
+            "engines without KTX2. An explicit model is not compared with others. The lobe errors of these normals "
+            "are in the last row of sizes above.",
         ]
     )
 

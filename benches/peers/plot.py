@@ -12,7 +12,7 @@ COLOURS = {
         "grid": "#e3e6ea",
         "paper": "#ffffff",
         "two": "#0060a8",
-        "default": "#4a9bd9",
+        "pngs": "#4a9bd9",
         "maketx": "#b34700",
         "pack": "#7a5195",
     },
@@ -22,13 +22,13 @@ COLOURS = {
         "grid": "#333a44",
         "paper": "#14181d",
         "two": "#6cbcf2",
-        "default": "#3f7fb0",
+        "pngs": "#3f7fb0",
         "maketx": "#f0a35e",
         "pack": "#c49be0",
     },
 }
 # Name of each line in the results, and its class.
-LINES = {"two textures": "two", "default": "default", "maketx": "maketx", "pack": "pack"}
+LINES = {"two textures": "two", "PNG copies": "pngs", "maketx": "maketx", "pack": "pack"}
 
 
 def growth(results):

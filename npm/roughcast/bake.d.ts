@@ -42,8 +42,8 @@ export interface Settings {
    * `gltf` is strict, or what `engine` needs.
    */
   scaleNormals?: boolean;
-  /** How the document refers to textures. Default: auto, which is strict in a .glb and fallback in a .gltf. */
-  gltf?: 'auto' | 'fallback' | 'strict' | 'dual';
+  /** How the document refers to textures. Default: strict, or what `engine` needs. */
+  gltf?: 'strict' | 'fallback' | 'dual';
   /** Whether a .glb with everything inside is written. Default: the container of the input. */
   glb?: boolean;
   /** Frame of the offsets of the pyramid profile. Default: unit. */

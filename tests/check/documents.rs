@@ -74,7 +74,7 @@ const FIXTURES: &[Fixture] = &[
         b.edit(|d| remove(&mut d["textures"][0], "extensions"));
     }),
     fixture(Code::NotDeclared, &[], "/extensionsUsed", |b| b.edit(|d| remove(d, "extensionsUsed"))),
-    fixture(Code::NeedlesslyRequired, &[], "/extensionsRequired", |b| {
+    fixture(Code::NeedlesslyRequired, &["--gltf", "fallback"], "/extensionsRequired", |b| {
         b.edit(|d| d["extensionsRequired"] = json!(["KHR_texture_basisu"]));
     }),
     fixture(Code::NotRequired, &["--gltf", "strict"], "/textures/0", |b| b.edit(|d| remove(d, "extensionsRequired"))),

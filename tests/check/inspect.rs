@@ -34,7 +34,7 @@ fn shows_levels_format_and_provenance_of_a_texture() {
 
 #[test]
 fn shows_materials_and_ranges_of_a_document() {
-    let bake = bake(&["--profile", "both", "--model", "anisotropic"]);
+    let bake = bake(&["--profile", "both", "--model", "anisotropic", "--gltf", "fallback"]);
     let facts: Value = serde_json::from_str(&inspect(&bake.document(), &["--json"])).unwrap();
     let material = &facts["materials"][0];
     assert_eq!(material["name"], "Ridges");

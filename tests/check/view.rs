@@ -77,7 +77,8 @@ fn trimmed_textures_have_the_coarser_levels_of_whole_textures() {
     for profile in ["portable", "both"] {
         for target in ["basis", "float"] {
             let with = |view: Vec<String>| {
-                let options = ["--profile", profile, "--target", target, "--model", "anisotropic"];
+                let options =
+                    ["--profile", profile, "--target", target, "--model", "anisotropic", "--gltf", "fallback"];
                 [view, options.map(str::to_owned).to_vec()].concat()
             };
             let (whole, _) = bake(&source, "whole", &with(vec![]));

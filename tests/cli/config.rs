@@ -55,7 +55,7 @@ fn flags_win_and_every_value_names_its_origin() {
     for (asset, name, expected) in [
         (brushed, "max-error", "max-error = 0.5|assets/roughcast.toml"),
         (brushed, "model", "model = \"anisotropic\"|command line"),
-        (brushed, "gltf", "gltf = \"auto\"|default"),
+        (brushed, "gltf", "gltf = \"strict\"|default"),
         (brushed, "glb", "glb = false|command line"),
         (waves, "model", "model = \"anisotropic\"|command line"),
         (waves, "gltf", "gltf = \"dual\"|assets/roughcast.toml, override of waves.glb, engine = bevy"),

@@ -84,7 +84,7 @@ fn the_form_decides_without_an_engine() {
         (&["--gltf", "fallback"], false),
         (&["--gltf", "fallback", "--scale-normals"], true),
         (&["--gltf", "dual"], false),
-        (&[], false),
+        (&[], true),
     ] {
         let (source, baked) = (tempdir().expect("a folder"), tempdir().expect("a folder"));
         write_asset(source.path(), &[]);

@@ -152,17 +152,15 @@ pub enum DiffuseLight {
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum Form {
-    /// [`Form::Strict`] in a .glb, which would hold every texture twice otherwise, and [`Form::Fallback`] in a .gltf.
+    /// Only the KTX2 is there, and `KHR_texture_basisu` is required. Conforms to the specification, and stays valid in
+    /// tools that keep one image for each texture.
     #[default]
-    #[cfg_attr(feature = "cli", value(help = "strict in a .glb, fallback in a .gltf"))]
-    Auto,
+    #[cfg_attr(feature = "cli", value(help = "KTX2 only, KHR_texture_basisu required"))]
+    Strict,
     /// A PNG of level 0 is the `source` of the texture, and `KHR_texture_basisu` names the KTX2. Engines without KTX2
     /// show the PNG. Conforms to the specification.
     #[cfg_attr(feature = "cli", value(help = "PNG of level 0 as source, KTX2 on KHR_texture_basisu"))]
     Fallback,
-    /// Only the KTX2 is there, and `KHR_texture_basisu` is required. Conforms to the specification.
-    #[cfg_attr(feature = "cli", value(help = "KTX2 only, KHR_texture_basisu required"))]
-    Strict,
     /// `source` and `KHR_texture_basisu` both name the KTX2: against the specification, but every engine loads it. The
     /// KTX2 is a file, so that the document is a .gltf.
     #[cfg_attr(

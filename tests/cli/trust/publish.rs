@@ -195,7 +195,7 @@ fn only_textures_that_an_asset_no_longer_has_are_removed() {
     fixture(folder, "knobs", "in");
     for options in ["", "--cache cache"] {
         done(folder, &format!("bake in -o clean -q --gltf strict {options}"));
-        done(folder, &format!("bake in -o out -q {options}"));
+        done(folder, &format!("bake in -o out -q --gltf fallback {options}"));
         let textures_folder = folder.join("out/knobs.roughcast");
         let stale: Vec<String> = names(&textures_folder).into_iter().filter(|name| name.ends_with(".png")).collect();
         assert!(stale.len() > 2, "{stale:?}");
@@ -222,7 +222,7 @@ fn only_textures_that_an_asset_no_longer_has_are_removed() {
         fs::remove_dir_all(folder.join("out")).expect("a folder");
         fs::remove_dir_all(folder.join("clean")).expect("a folder");
     }
-    done(folder, "bake in -o out -q --no-provenance");
+    done(folder, "bake in -o out -q --gltf fallback --no-provenance");
     let before = names(&folder.join("out"));
     done(folder, "bake in -o out -q --gltf strict --no-provenance");
     assert_eq!(names(&folder.join("out")), before, "without provenance nothing is known, and nothing is removed");

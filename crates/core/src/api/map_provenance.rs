@@ -30,7 +30,8 @@ impl MapProvenance<'_> {
             return Vec::new();
         }
         let settings = MapSettings {
-            bake: RecordedSettings::new(settings, model),
+            // Only documents have a scale of normals.
+            bake: RecordedSettings::new(&settings.with_scale_normals(false), model),
             range: texture.range.as_ref().map(RecordedRange::new),
             scale: texture.scale.map(f64::from),
             map: self.recorded(),

@@ -107,7 +107,7 @@ impl Engine {
             // the form is the one that every importer of glTF reads. For normalTexture.scale it mixes the normal with
             // that of the surface.
             Self::Godot => Preset {
-                form: Form::Auto,
+                form: Form::Fallback,
                 glb: Some(false),
                 reads_normal_scale: false,
                 anisotropy: Anisotropy::Unread,

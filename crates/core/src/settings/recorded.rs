@@ -47,8 +47,7 @@ pub struct RecordedSettings {
     /// [`Settings::rdo`]; absent if it is not set.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rdo: Option<f64>,
-    /// Whether scales may have changed ([`Settings::scale_normals`]); absent if not, or if the form goes by the
-    /// container.
+    /// Whether scales may have changed ([`Settings::scale_normals`]); absent if not.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub scale_normals: bool,
     /// [`Settings::textures`]; absent if only baked textures are written.

@@ -22,7 +22,6 @@ use crate::gltf::roughness_pyramid::RoughnessPyramid;
 use crate::gltf::texture::ImageLocation;
 use crate::gltf::uri::{Uri, relative_path};
 use crate::ktx2::Ktx2;
-use crate::settings::Settings;
 
 const KTX2_MIME: &str = "image/ktx2";
 
@@ -44,7 +43,7 @@ pub fn check_document(name: &str, bytes: &[u8], files: &dyn Files, scope: &Scope
             return CheckedDocument { findings: findings.into_list(), files: Vec::new() };
         }
     };
-    let settings = scope.settings.map(|settings| expected_settings(settings, document.container()));
+    let settings = scope.settings.map(|settings| settings.resolved_for(document.container()));
     let scope = &Scope { settings: settings.as_ref(), ..*scope };
     let textures = Textures::read(&root, &mut findings);
     let uses = check_materials(&root, &value, &textures, &mut findings);
@@ -79,13 +78,6 @@ pub fn check_document(name: &str, bytes: &[u8], files: &dyn Files, scope: &Scope
     let mut list = findings.into_list();
     list.append(&mut images.findings.into_list());
     CheckedDocument { findings: list, files: named_files(&root) }
-}
-
-/// Returns the explicit settings that a bake to a document in `container` would have had. If the container itself is
-/// wrong, that is a finding of its own, and the form is still that of the container.
-fn expected_settings(settings: &Settings, container: Container) -> Settings {
-    let form = settings.with_glb(container == Container::Glb).resolved_for(container).gltf;
-    settings.with_gltf(form).resolved_for(container)
 }
 
 /// Parses the document with our reader, and with the typed reader of crate `gltf`: engines refuse what that reader

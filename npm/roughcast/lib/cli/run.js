@@ -17,7 +17,7 @@ Usage:
   roughcast view [ASSET|FOLDER]...                        assets and bakes in a browser
 
 Settings: --profile portable|pyramid|both, --model auto|none|isotropic|anisotropic, --engine NAME, --quality fast|best,
---max-error E, --rdo DB, --target basis|float, --gltf fallback|strict|dual, --glb, --textures bumps|all, --max-size N,
+--max-error E, --rdo DB, --target basis|float, --gltf strict|fallback|dual, --glb, --textures bumps|all, --max-size N,
 --frame, --height-scale, ...
 --threads N (default: one for each processor, at most 16)
 They are those of the native tool, which has more commands and is faster.

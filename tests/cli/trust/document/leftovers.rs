@@ -55,7 +55,11 @@ fn a_glb_keeps_no_byte_of_replaced_images() {
 #[test]
 fn baked_images_and_files_have_the_names_of_images() {
     let folder = tempdir().expect("a folder");
-    bake(&fixtures().join("waves/waves.glb"), folder.path(), &["--profile", "both", "--glb=false"]);
+    bake(
+        &fixtures().join("waves/waves.glb"),
+        folder.path(),
+        &["--profile", "both", "--glb=false", "--gltf", "fallback"],
+    );
     let names: Vec<String> = files(&folder.path().join("waves.roughcast")).into_iter().map(|(name, _)| name).collect();
     for name in
         ["waves_normal.normal.ktx2", "waves_normal.normal.png", "waves_normal.offset.ktx2", "Lake.roughness.ktx2"]

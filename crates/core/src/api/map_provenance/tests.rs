@@ -5,7 +5,7 @@ use super::*;
 fn recorded(texels: BumpTexels) -> Value {
     let map = MapProvenance { texels, layer: None, roughness_factor: Some(0.1), sources: Vec::new() };
     let range = RecordedRange::new(&Range { min: vec![-0.1], max: vec![0.1] });
-    let bake = RecordedSettings::new(&Settings::default(), Model::None);
+    let bake = RecordedSettings::new(&Settings::default().with_scale_normals(false), Model::None);
     json!(MapSettings { bake, range: Some(range), scale: Some(0.5), map: map.recorded() })
 }
 

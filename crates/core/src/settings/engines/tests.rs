@@ -43,7 +43,7 @@ fn presets_write_a_gltf_where_an_engine_cannot_use_what_is_inside_a_glb() {
         let preset = engine.preset();
         let (glb, form) = match engine {
             Engine::Bevy => (Some(false), Form::Dual),
-            Engine::Godot => (Some(false), Form::Auto),
+            Engine::Godot => (Some(false), Form::Fallback),
             // These load KTX2, and need no PNG copies.
             _ => (None, Form::Strict),
         };

@@ -8,7 +8,8 @@ fn text(settings: &Settings, model: Model) -> String {
 fn writes_defaults_in_a_fixed_order_with_the_digits_of_double_precision() {
     let expected = concat!(
         r#"{"profile":"portable","model":"auto","maxError":0.10000000149011612,"distribution":"auto","lobe":"ggx","#,
-        r#""target":"basis","quality":"fast","gltf":"auto","frame":"unit","heightScale":null}"#
+        r#""target":"basis","quality":"fast","gltf":"strict","frame":"unit","heightScale":null,"#,
+        r#""scaleNormals":true}"#
     );
     assert_eq!(text(&Settings::default(), Model::Auto), expected);
 }
@@ -30,7 +31,7 @@ fn appends_settings_that_have_no_default() {
     };
     let expected = concat!(
         r#"{"profile":"portable","model":"none","maxError":0.10000000149011612,"distribution":"auto","lobe":"ggx","#,
-        r#""target":"basis","quality":"best","gltf":"auto","#,
+        r#""target":"basis","quality":"best","gltf":"strict","#,
         r#""frame":{"mainDirection":[0.6000000238418579,0.800000011920929,0.0]},"heightScale":0.20000000298023224,"#,
         r#""asked":"auto","maxModel":"isotropic","ownAnisotropy":"keep","rdo":0.5,"scaleNormals":true,"textures":"all","#,
         r#""diffuseLight":"suns","#,

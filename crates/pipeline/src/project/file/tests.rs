@@ -78,8 +78,8 @@ fn an_engine_sets_its_preset_beneath_other_values_of_its_source() {
                 [[override]]\nfiles = 'e_far.gltf'\nprofile = 'pyramid'\n";
     let needs = |asset| ["target", "gltf", "model"].map(|name| value(text, asset, name));
     assert_eq!(needs("a.gltf"), ["basis", "dual", "isotropic"]);
-    assert_eq!(needs("b.gltf"), ["basis", "auto", "anisotropic"]);
-    assert_eq!(needs("c.gltf"), ["float", "auto", "none"]);
+    assert_eq!(needs("b.gltf"), ["basis", "fallback", "anisotropic"]);
+    assert_eq!(needs("c.gltf"), ["float", "strict", "none"]);
     assert_eq!(needs("d.gltf"), ["basis", "strict", "isotropic"]);
     assert_eq!(needs("e.gltf"), ["basis", "strict", "isotropic"]);
     // A plugin shades this asset, not the shader of the engine.

@@ -92,7 +92,7 @@ fn the_id_covers_version_settings_and_files_as_json_in_a_fixed_order() {
     let job = job(&settings_of_every_kind());
     let settings = concat!(
         r#"{"profile":"portable","model":"auto","max-model":"anisotropic","own-anisotropy":"bake","max-error":0.1,"quality":"fast","#,
-        r#""distribution":"auto","lobe":"ggx","target":"basis","max-texels":268435456,"provenance":false,"textures":"bumps","diffuse-light":"environment","gltf":"auto","frame":"unit","#,
+        r#""distribution":"auto","lobe":"ggx","target":"basis","max-texels":268435456,"provenance":false,"textures":"bumps","diffuse-light":"environment","gltf":"strict","frame":"unit","#,
         r#""main-direction":[0.0,1.0,0.0],"fov":45.0,"aspect":1.778,"trim":false,"#,
         r#""rdo":1.0,"height-scale":-0.5,"nearest":30.0,"screen-height":720}"#,
     );
@@ -129,7 +129,7 @@ fn the_command_line_has_the_settings_as_flags() {
         "--no-provenance",
         "--textures=bumps",
         "--diffuse-light=environment",
-        "--gltf=auto",
+        "--gltf=strict",
         "--frame=unit",
         "--main-direction=0.0,1.0,0.0",
         "--fov=45.0",
