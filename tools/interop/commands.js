@@ -1,5 +1,6 @@
 // The commands of other tools that the tables of docs/interop.md are about.
 import path from 'node:path';
+import process from 'node:process';
 import { fileURLToPath } from 'node:url';
 
 const folder = fileURLToPath(new URL('.', import.meta.url));
@@ -10,10 +11,13 @@ const GLTFPACK = script('gltfpack/cli.js');
 /** The scripts that `npm ci` installs. */
 export const scripts = [GLTF_TRANSFORM, GLTFPACK];
 
+/** The native gltfpack that `benches/sizes/install` builds. Only this one can compress textures. */
+export const NATIVE_GLTFPACK = path.join(folder, '../../target/sizes/bin/gltfpack');
+
 /**
- * A command: its name in the tables, and what Node runs for an input and an output.
+ * A command: its name in the tables, and what is run for an input and an output: a program and its arguments.
  *
- * @typedef {{name: string, arguments: (input: string, output: string) => string[]}} Command
+ * @typedef {{name: string, argv: (input: string, output: string) => string[]}} Command
  */
 
 /** Makes a command of glTF-Transform. */
@@ -21,15 +25,19 @@ const transform = (line) => {
   const [command, ...options] = line.split(' ');
   return {
     name: `gltf-transform ${line}`,
-    arguments: (input, output) => [GLTF_TRANSFORM, command, input, output, ...options],
+    argv: (input, output) => [process.execPath, GLTF_TRANSFORM, command, input, output, ...options],
   };
 };
 
-/** Makes a command of gltfpack. */
-const pack = (line) => ({
-  name: `gltfpack ${line}`.trim(),
-  arguments: (input, output) => [GLTFPACK, '-i', input, '-o', output, ...line.split(' ').filter(Boolean)],
-});
+/** Makes commands of gltfpack, which `program` starts. */
+const pack =
+  (...program) =>
+  (line) => ({
+    name: `gltfpack ${line}`.trim(),
+    argv: (input, output) => [...program, '-i', input, '-o', output, ...line.split(' ').filter(Boolean)],
+  });
+
+const nodePack = pack(process.execPath, GLTFPACK);
 
 /**
  * Commands that are run on a baked asset. The commands of glTF-Transform that write no asset (`inspect`, `validate`,
@@ -72,7 +80,7 @@ export const AFTER = [
     'optimize --compress draco --texture-compress webp',
     'optimize --texture-compress ktx2',
   ].map(transform),
-  ...['', '-noq', '-c', '-cc -kn -km -ke -kv'].map(pack),
+  ...['', '-noq', '-c', '-cc -kn -km -ke -kv'].map(nodePack),
 ];
 
 /**
@@ -94,5 +102,12 @@ export const BEFORE = [
     'optimize --compress draco --texture-compress webp',
     'optimize --texture-compress ktx2',
   ].map(transform),
-  ...['', '-c'].map(pack),
+  ...['', '-c'].map(nodePack),
 ];
+
+/**
+ * Commands of the native gltfpack that compress textures, which are run before the bake and after it.
+ *
+ * @type {Command[]}
+ */
+export const NATIVE = ['-tc', '-tu'].map(pack(NATIVE_GLTFPACK));

@@ -38,6 +38,17 @@ export async function after(baked, folder, commands = AFTER) {
   return table(['command', ...COLUMNS, ...FORMS.map((form) => `after \`${form}\``)], commands, rows);
 }
 
+/** Returns the table of what commands keep of each form. `baked` are the files of bakeForms. */
+export async function afterByForm(baked, folder, commands) {
+  const runs = commands.flatMap((command) => FORMS.map((form) => ({ ...command, form })));
+  const rows = await each(runs, async ({ form, ...command }, index) => {
+    const output = path.join(folder, `${index}.glb`);
+    await execute(command, baked[form], output);
+    return [`\`${form}\``, ...compare(baked[form], output), await validity(output)];
+  });
+  return table(['command', 'form', ...COLUMNS, 'after it'], runs, rows);
+}
+
 /** Options of a bake for which it reads meshes: a view needs densities, and a frame tangents. */
 const NEEDS_MESHES = ['--nearest', '1', '--screen-height', '1080', '--frame', 'natural'];
 

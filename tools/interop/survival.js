@@ -44,7 +44,9 @@ function textures(old, found, names) {
   const changed = names.filter((name) => found.images[name].digest !== old.images[name].digest);
   if (changed.length === 0) return 'kept';
   const formats = [...new Set(changed.map((name) => found.images[name].format))].join(', ');
-  return changed.length === names.length ? `${formats}, no mips` : `${changed.join(', ')}: ${formats}, no mips`;
+  // A changed KTX2 has mips of the command, not those of the bake. The other formats have none.
+  const what = `${formats}, ${formats === 'KTX2' ? 'other mips' : 'no mips'}`;
+  return changed.length === names.length ? what : `${changed.join(', ')}: ${what}`;
 }
 
 function pyramid(old, found) {

@@ -5,7 +5,7 @@ import path from 'node:path';
 import process from 'node:process';
 import { fileURLToPath } from 'node:url';
 import { promisify } from 'node:util';
-import { scripts } from './commands.js';
+import { NATIVE_GLTFPACK, scripts } from './commands.js';
 
 const run = promisify(execFile);
 const folder = fileURLToPath(new URL('.', import.meta.url));
@@ -25,6 +25,10 @@ export const missing = !tool
   ? 'these tests need `cargo build` first (or $ROUGHCAST)'
   : !scripts.every(existsSync) && 'these tests need `npm ci --prefix tools/interop`';
 
+/** False, or the reason why the test of the native gltfpack cannot run. */
+export const nativeMissing =
+  !existsSync(NATIVE_GLTFPACK) && 'the test of the native gltfpack needs `bash benches/sizes/install`';
+
 /** Runs Roughcast. */
 export const roughcast = (...options) => run(tool, options);
 
@@ -32,7 +36,8 @@ export const roughcast = (...options) => run(tool, options);
 export async function execute(command, input, output) {
   // `ktx` in this folder stands in for that of KTX-Software, and finds Roughcast by its variable.
   const env = { ...process.env, PATH: `${folder}${path.delimiter}${process.env.PATH}`, ROUGHCAST: path.resolve(tool) };
-  const { stdout, stderr } = await run(process.execPath, command.arguments(input, output), { env });
+  const [program, ...options] = command.argv(input, output);
+  const { stdout, stderr } = await run(program, options, { env });
   if (!existsSync(output)) throw new Error(`${command.name}: no output\n${stdout}${stderr}`);
 }
 

@@ -6,8 +6,9 @@ import path from 'node:path';
 import process from 'node:process';
 import test from 'node:test';
 import { blender, missing as blenderMissing } from '../blender.js';
-import { after, bakeForms, before } from '../matrix.js';
-import { missing, repository } from '../tools.js';
+import { NATIVE } from '../commands.js';
+import { after, afterByForm, bakeForms, before } from '../matrix.js';
+import { missing, nativeMissing, repository } from '../tools.js';
 
 const PAGE = path.join(repository, 'docs/interop.md');
 
@@ -15,6 +16,8 @@ for (const reason of [missing, blenderMissing].filter(Boolean)) {
   if (process.env.CI === 'true') throw new Error(reason);
   console.log(`skipped: ${reason}`);
 }
+// CI does not build gltfpack.
+if (nativeMissing) console.log(`skipped: ${nativeMissing}`);
 
 function temporary(t) {
   const folder = mkdtempSync(path.join(os.tmpdir(), 'roughcast-interop-'));
@@ -47,4 +50,10 @@ test('a bake takes what commands write', { skip: missing }, async (t) => {
 test('Blender keeps of a baked asset what the page says', { skip: missing || blenderMissing }, async (t) => {
   const folder = temporary(t);
   assertTable('blender', await blender(await bakeForms(folder), folder));
+});
+
+test('native gltfpack compresses textures as the page says', { skip: missing || nativeMissing }, async (t) => {
+  const folder = temporary(t);
+  assertTable('native-after', await afterByForm(await bakeForms(folder), folder, NATIVE));
+  assertTable('native-before', await before(folder, NATIVE));
 });
