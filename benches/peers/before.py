@@ -2,9 +2,10 @@
 
 python3 benches/peers/before.py EARLIER NOW MATERIAL.gltf ...
 
-EARLIER and NOW are the paths of two builds of the tool. Both write PNG copies of level 0, so that their outputs are
-alike whichever form is the default. The images of each material are repeated to 4096 x 4096 texels, as PNGs in a
-temporary folder. Needs Pillow (benches/appearance/requirements.txt).
+EARLIER and NOW are the paths of two builds of the tool. Both write PNG copies of level 0, which were the default of
+earlier builds, so that their outputs are alike. NOW also writes KTX2 alone, as it does by default. The images of each
+material are repeated to 4096 x 4096 texels, as PNGs in a temporary folder. Needs Pillow
+(benches/appearance/requirements.txt).
 """
 
 import json
@@ -38,24 +39,25 @@ def repeated(source, folder):
     return folder / source.name
 
 
-def bake(tool, material, out):
-    options = ["--gltf", "fallback", "--quiet", "--threads", "2"]
+def bake(tool, form, material, out):
+    options = ["--gltf", form, "--quiet", "--threads", "2"]
     return Contender([tool, "bake", str(material), "-o", str(out), *options], out=str(out))
 
 
 def main():
     earlier, now, *materials = sys.argv[1:]
+    bakes = {"earlier": (earlier, "fallback"), "now": (now, "fallback"), "by default": (now, "strict")}
     for source in map(Path, materials):
         with tempfile.TemporaryDirectory() as folder:
             material = repeated(source, Path(folder))
-            tools = {"earlier": earlier, "now": now}
-            contenders = {name: bake(tool, material, Path(folder, name)) for name, tool in tools.items()}
+            contenders = {name: bake(*run, material, Path(folder, name)) for name, run in bakes.items()}
             results = alternate(contenders, ROUNDS, note=lambda _: None)
         for name, result in results.items():
             if "failed" in result:
-                sys.exit(f"{source}: {tools[name]} {result['failed']}")
-        before, after = (results[name]["wall"] for name in tools)
-        print(f"{source.stem}: {before:.2f} s, now {after:.2f} s: {after / before:.2f} x", flush=True)
+                sys.exit(f"{source}: {bakes[name][0]} {result['failed']}")
+        before, *after = (results[name]["wall"] for name in bakes)
+        now_text, default_text = (f"{wall:.2f} s: {wall / before:.2f} x" for wall in after)
+        print(f"{source.stem}: {before:.2f} s, now {now_text}, without PNG copies {default_text}", flush=True)
 
 
 if __name__ == "__main__":
