@@ -54,9 +54,10 @@ METHOD = """
   needs PyTorch, whose package for Linux brings about three gigabytes of CUDA libraries, too much for this benchmark.
 - **Closer** is the picture error of plain mips divided by that of the variant: the geometric mean over materials.
 - **Materials.** {count} materials: {origins}. Intervals hold 95 %, by resampling materials.
-- **Encoding.** Ours are UASTC textures in KTX2 as `roughcast bake --scale-normals=false` writes them, so that `auto`
-  may choose any model and size; *isotropic* has `--model isotropic`. Plain mips and peers have 8 bits per channel
-  without block compression, and LEAN has half floats. *plain mips, UASTC* is `--model none`.
+- **Encoding.** Ours are UASTC textures in KTX2 as `roughcast bake --scale-normals=false` writes them with all other
+  settings at their defaults: `auto` may choose any model and size. *isotropic* has `--model isotropic`. Plain mips and
+  peers have 8 bits per channel without block compression, and LEAN has half floats. *plain mips, UASTC* is
+  `--model none`.
 - **Pyramid.** The lobe is A' = A + 2 c K, as the plugins shade lights. The plugin of three.js averages the environment
   over the slopes of the bumps, which is not done here.
 - **Not here.** MIPNet (A. Gauthier et al., "MIPNet: Neural normal-to-anisotropic-roughness MIP mapping", 2022) learns

@@ -1,8 +1,8 @@
 //! Measures the cost of checking many up-to-date outputs, with and without decoding them.
 //!
-//! `cargo run --release -p studies --bin check_cost -- 1000` bakes an asset and copies the asset and its source 1000
-//! times. It prints the time of `check --source` and of `check --source --deep`, and the time of reading and hashing
-//! the sources. A folder after the number is baked in place of a fixture.
+//! `cargo run --release -p studies --bin check_cost -- 1000` bakes an asset with PNG copies, and copies the asset and
+//! its source 1000 times. It prints the time of `check --source` and of `check --source --deep`, and the time of
+//! reading and hashing the sources. A folder after the number is baked in place of a fixture.
 
 use std::error::Error;
 use std::fs;
@@ -13,6 +13,9 @@ use clap::Parser;
 use roughcast::cli::{Cli, Outcome, run};
 use walkdir::WalkDir;
 
+/// The form of the baked assets, which has PNG copies.
+const FORM: &str = "--gltf=fallback";
+
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
     let count: usize = arguments.next().map_or(Ok(1000), |n| n.parse())?;
@@ -22,12 +25,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (source, baked) = (folder.path().join("source"), folder.path().join("baked"));
     let (sources, outputs) = (folder.path().join("sources"), folder.path().join("outputs"));
     copy(&asset, &source)?;
-    roughcast(&["bake".as_ref(), &source, "-o".as_ref(), &baked, "-q".as_ref()])?;
+    roughcast(&["bake".as_ref(), &source, "-o".as_ref(), &baked, "-q".as_ref(), FORM.as_ref()])?;
     for index in 0..count {
         copy(&source, &sources.join(format!("{index:05}")))?;
         copy(&baked, &outputs.join(format!("{index:05}")))?;
     }
-    let check: [&Path; 4] = ["check".as_ref(), &outputs, "--source".as_ref(), &sources];
+    let check: [&Path; 5] = ["check".as_ref(), &outputs, "--source".as_ref(), &sources, FORM.as_ref()];
     let hashing = best(|| hash_all(&sources))?;
     let heads = best(|| roughcast(&check))?;
     let deep = best(|| roughcast(&[&check[..], &["--deep".as_ref()]].concat()))?;

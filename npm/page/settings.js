@@ -10,7 +10,6 @@ export function settingsOf(form) {
     ...(engine && { engine }),
     ...(maxSize && { maxSize: Number(maxSize) }),
     ...(rdo && { rdo: Number(rdo) }),
-    gltf: 'strict',
   };
 }
 
@@ -26,8 +25,8 @@ export function nameOf(name, { engine = 'any', textures, maxSize, quality, rdo }
   return [name, 'baked', ...marks.filter(Boolean)].join('-') + '.glb';
 }
 
-/** Settings of the page that the command line has without a flag, for a .glb. */
-const DEFAULTS = { quality: 'fast', textures: 'bumps', gltf: 'strict' };
+/** Settings of the page that the command line has without a flag. */
+const DEFAULTS = { quality: 'fast', textures: 'bumps' };
 
 /** Returns the command that makes the file which the page offers. */
 export function commandOf(name, settings) {

@@ -151,7 +151,7 @@ test('bakes a sample, shows all three pictures with errors, and offers the file 
   const { name, bytes } = await download(page);
   assert.equal(name, 'brushed-baked.glb');
   const sample = readFileSync(path.join(folder, NAME, 'samples/brushed.glb'));
-  const settings = { engine: 'three', quality: 'fast', gltf: 'strict' };
+  const settings = { engine: 'three', quality: 'fast' };
   const { document } = await bake(sample, { name: 'brushed', settings, backend: 'wasm' });
   assert.ok(bytes.equals(document.bytes), 'the bytes of the page are those of Node');
   assert.deepEqual(page.problems, []);
@@ -196,7 +196,7 @@ test('bakes with threads on an isolated page, to the same bytes', options, async
   const processors = await page.evaluate(() => navigator.hardwareConcurrency);
   assert.deepEqual(modulesOf(page), [processors > 1 ? 'roughcast.threads.wasm' : 'roughcast.wasm']);
   const sample = readFileSync(path.join(folder, NAME, 'samples/brushed.glb'));
-  const settings = { engine: 'three', quality: 'fast', gltf: 'strict' };
+  const settings = { engine: 'three', quality: 'fast' };
   const { document } = await bake(sample, { name: 'brushed', settings, backend: 'wasm', threads: 1 });
   assert.ok((await download(page)).bytes.equals(document.bytes));
   // A new bake ends the one that runs, with its threads.

@@ -10,17 +10,17 @@ use super::process::{bake, files, fixtures, hashes};
 #[test]
 fn bytes_do_not_depend_on_threads() {
     let (one, three) = (tempdir().expect("a folder"), tempdir().expect("a folder"));
-    bake(&fixtures(), one.path(), &["--profile", "both", "--threads", "1"]);
-    bake(&fixtures(), three.path(), &["--profile", "both", "--threads", "3"]);
+    bake(&fixtures(), one.path(), &["--profile", "both", "--gltf", "fallback", "--threads", "1"]);
+    bake(&fixtures(), three.path(), &["--profile", "both", "--gltf", "fallback", "--threads", "3"]);
     assert_eq!(hashes(one.path()), hashes(three.path()));
 }
 
 #[test]
 fn a_second_bake_writes_equal_bytes() {
     let folder = tempdir().expect("a folder");
-    bake(&fixtures(), folder.path(), &[]);
+    bake(&fixtures(), folder.path(), &["--gltf", "fallback"]);
     let first = hashes(folder.path());
-    bake(&fixtures(), folder.path(), &[]);
+    bake(&fixtures(), folder.path(), &["--gltf", "fallback"]);
     assert_eq!(hashes(folder.path()), first);
 }
 

@@ -129,7 +129,7 @@ fn a_named_gltf_writes_the_files_of_a_glb_beside_it() {
     for part in ["lake.roughcast/lake.bin", "lake.roughcast/Lake.roughness.ktx2"] {
         assert!(found.iter().any(|name| name == part), "{part} of {found:?}");
     }
-    assert!(!found.iter().any(|name| name == "lake.roughcast/Lake.roughness.png"), "{found:?}");
+    assert!(!found.iter().any(|name| name.ends_with(".png")), "{found:?}");
     assert_eq!(gltf(&folder.join("out/lake.gltf"))["buffers"][0]["uri"], "lake.roughcast/lake.bin");
     done(folder, "check out/lake.gltf --source waves --deep --allow RC1510");
 }

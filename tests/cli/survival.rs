@@ -20,7 +20,7 @@ fn start(folder: &Path, options: &[&str]) -> Child {
 }
 
 /// Two sets of options that bake quickly.
-const OPTIONS: [&[&str]; 2] = [&["--model=isotropic"], &["--model=none", "--gltf=dual"]];
+const OPTIONS: [&[&str]; 2] = [&["--model=isotropic", "--gltf=fallback"], &["--model=none", "--gltf=dual"]];
 
 /// Returns the outputs with each set of options, by name.
 fn expected(folder: &Path) -> Vec<BTreeMap<String, String>> {

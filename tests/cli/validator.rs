@@ -64,20 +64,19 @@ fn defaults_and_presets_are_valid() {
 #[test]
 fn all_textures_and_smaller_ones_are_valid() {
     assert_valid(&["--textures", "all"]);
-    assert_valid(&["--textures", "all", "--diffuse-light", "suns"]);
+    assert_valid(&["--textures", "all", "--diffuse-light", "suns", "--gltf", "fallback"]);
     assert_valid(&["--textures", "all", "--max-size", "8", "--gltf", "strict", "--glb"]);
 }
 
 #[test]
 fn trimmed_textures_are_valid() {
     let view = ["--nearest", "400", "--screen-height", "1080", "--trim", "--profile", "both"];
-    assert_valid(&view);
+    assert_valid(&[&view[..], &["--gltf", "fallback"]].concat());
     assert_valid(&[&view[..], &["--gltf", "strict", "--glb"]].concat());
 }
 
 #[test]
 fn strict_is_valid() {
-    assert_valid(&["--gltf", "strict"]);
     assert_valid(&["--gltf", "strict", "--profile", "both"]);
     assert_valid(&["--gltf", "strict", "--glb"]);
 }

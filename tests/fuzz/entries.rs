@@ -14,7 +14,7 @@ use roughcast::gltf::document::Document;
 use roughcast::image::DecodeOptions;
 use roughcast::inspect::{extract, inspect_document, inspect_texture};
 use roughcast::project::{Config, resolve};
-use roughcast::settings::{Model, Profile, Settings};
+use roughcast::settings::{Form, Model, Profile, Settings};
 
 /// Limit of texels, so that a header with a false size cannot make a run slow.
 const MAX_TEXELS: u64 = 1 << 12;
@@ -34,11 +34,12 @@ pub fn document(bytes: &[u8]) {
         let root = root.unwrap_or_default();
         let _ = inspect_document(&root, &ReferencedFiles::new(&document, &root, &read, true));
     }
-    for (profile, model, glb) in
-        [(Profile::Both, Model::Isotropic, false), (Profile::Portable, Model::Anisotropic, true)]
-    {
+    for (profile, model, form, glb) in [
+        (Profile::Both, Model::Isotropic, Form::Fallback, false),
+        (Profile::Portable, Model::Anisotropic, Form::Strict, true),
+    ] {
         let settings = Settings::default().with_profile(profile).with_model(model);
-        let settings = settings.with_glb(glb).with_max_texels(MAX_TEXELS);
+        let settings = settings.with_gltf(form).with_glb(glb).with_max_texels(MAX_TEXELS);
         if let Ok(baked) = bake_asset(&source, &settings, &|_| ()) {
             Document::parse(&baked.document).expect("what is baked is a document");
         }

@@ -63,8 +63,8 @@ pub struct DocumentOptions {
     /// and their base colour is darkened by as much from level 1 on. Needs --textures all. [default: environment]
     #[arg(long, value_enum, value_name = "LIGHT")]
     diffuse_light: Option<DiffuseLight>,
-    /// How textures are referenced. The default is the smallest form, and the one that stays valid in other tools. PNG
-    /// copies are for engines without KTX2. [default: strict, or what --engine needs]
+    /// How textures are referenced. The form strict has no PNG copies, which only engines without KTX2 need, and stays
+    /// valid in other tools. [default: strict, or what --engine needs]
     #[arg(long, value_enum)]
     gltf: Option<Form>,
     /// Preset of --target, --gltf, --glb, --model, --max-model, --own-anisotropy and --scale-normals for an engine; the

@@ -25,7 +25,7 @@ fn a_glb_keeps_no_byte_of_replaced_images() {
     let (before, old) = glb(&lake);
     let normal = image(&before, &old, 0);
     let colour = image(&before, &old, 1);
-    for options in [&[][..], &["--gltf", "fallback", "--profile", "both"], &["--glb=false"]] {
+    for options in [&[][..], &["--gltf", "fallback", "--profile", "both"], &["--glb=false", "--gltf", "fallback"]] {
         let folder = tempdir().expect("a folder");
         bake(&lake, folder.path(), options);
         let (root, bin) = if options.contains(&"--glb=false") {
