@@ -296,10 +296,10 @@ impl Settings {
         }
     }
 
-    /// Returns whether `normalTexture.scale` may change.
+    /// Returns whether `normalTexture.scale` may change. The pyramid profile leaves it alone.
     pub(crate) fn effective_scale_normals(&self) -> bool {
         // Bevy, which ignores the scale, refuses the strict form and loads all others.
-        self.scale_normals.unwrap_or(self.gltf == Form::Strict)
+        self.profile.is_portable() && self.scale_normals.unwrap_or(self.gltf == Form::Strict)
     }
 
     /// Returns what the bake does with the anisotropy that a material has of its own.

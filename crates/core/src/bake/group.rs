@@ -128,7 +128,7 @@ pub fn group_by_bump_map(
     let mut groups: Vec<BumpMapGroup> = Vec::new();
     let mut indices: HashMap<_, usize> = HashMap::new();
     let mut textures = Textures::of(root);
-    let may_scale = settings.effective_scale_normals() && settings.profile.is_portable();
+    let may_scale = settings.effective_scale_normals();
     let animated = if may_scale { animated_bumps(root) } else { BTreeSet::new() };
     for Material { index, name, layers } in materials {
         for layer in layers {

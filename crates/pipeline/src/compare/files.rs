@@ -19,7 +19,7 @@ use crate::output::{Guard, PublishError};
 use crate::readback::{Input, ReadBackError, file_name, read_back};
 use crate::render::{Material, SceneName};
 use crate::report::LayerReport;
-use crate::settings::{Form, Model, Settings, SettingsError};
+use crate::settings::{Model, Settings, SettingsError};
 
 /// What is compared, and where the charts are written.
 #[derive(Clone, Debug)]
@@ -109,8 +109,16 @@ fn compare_input(
     progress: &(dyn Fn(f32, &str) + Sync),
 ) -> Result<Vec<Comparison>, CompareError> {
     let input = Input::read(path, options.height_scale)?;
-    let mut comparisons = input
-        .with_source(SceneName::Plane, Some(options.roughness), |source| compare_document(options, source, progress))?;
+    let settings = input
+        .settings(Settings::default())
+        .with_glb(false)
+        .with_target(Target::Basis)
+        .with_max_error(options.max_error)?
+        .with_max_texels(options.max_texels)
+        .with_provenance(false);
+    let mut comparisons = input.with_source(SceneName::Plane, Some(options.roughness), |source| {
+        compare_document(options, source, &settings, progress)
+    })?;
     input.protect(guard, path);
     if options.inputs.len() > 1 {
         let file = path.file_name().unwrap_or_default().to_string_lossy();
@@ -143,6 +151,7 @@ fn write(output: &Path, guard: &mut Guard, comparisons: Vec<Comparison>) -> Resu
 fn compare_document(
     options: &CompareOptions,
     source: &Source<'_>,
+    settings: &Settings,
     progress: &(dyn Fn(f32, &str) + Sync),
 ) -> Result<Vec<Comparison>, CompareError> {
     let root: Value = source.document.json().value("").map_err(BakeError::from)?.unwrap_or_default();
@@ -162,7 +171,7 @@ fn compare_document(
             document.json_mut().set(&format!("/materials/{other}"), &json!({})).map_err(BakeError::from)?;
         }
         let advance = |share: f32, name: &str| progress((done as f32 + share) / bumpy.len() as f32, name);
-        comparisons.extend(compare_material(options, &Source { document: &document, ..*source }, &advance)?);
+        comparisons.extend(compare_material(options, &Source { document: &document, ..*source }, settings, &advance)?);
     }
     Ok(comparisons)
 }
@@ -171,17 +180,9 @@ fn compare_document(
 fn compare_material(
     options: &CompareOptions,
     source: &Source<'_>,
+    settings: &Settings,
     advance: &(dyn Fn(f32, &str) + Sync),
 ) -> Result<Option<Comparison>, CompareError> {
-    // Low bumps are stored as the bake of this document stores them.
-    let settings = Settings::default()
-        .resolved_for(source.document.container())
-        .with_gltf(Form::Strict)
-        .with_glb(false)
-        .with_target(Target::Basis)
-        .with_max_error(options.max_error)?
-        .with_max_texels(options.max_texels)
-        .with_provenance(false);
     let material = |baked: &BakedAsset| -> Result<(String, Material), ReadBackError> {
         read_back(source, baked, options.max_texels)?.into_iter().next().ok_or(ReadBackError::NoBumps)
     };

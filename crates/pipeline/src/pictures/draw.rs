@@ -28,7 +28,7 @@ pub fn draw_pictures(
     let input = path.map_or_else(Input::waves, |path| Input::read(path, options.height_scale))?;
     let mut folder = Folder::new(&options.output, options.has_exr, input.guard(path));
     let scenes = options.scenes();
-    let settings = options.bake_settings();
+    let settings = input.settings(options.bake_settings());
     let mut sheets = Vec::new();
     let mut baked: Option<(SceneName, Vec<Columns>)> = None;
     for (index, &scene) in scenes.iter().enumerate() {

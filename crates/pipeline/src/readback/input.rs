@@ -16,6 +16,7 @@ use crate::inspect::encode_exr;
 use crate::output::Guard;
 use crate::project::protect;
 use crate::render::{SceneName, waves};
+use crate::settings::Settings;
 
 /// Texels of the waves along each side.
 const WAVES: u32 = 512;
@@ -100,6 +101,14 @@ impl Input {
         }
     }
 
+    /// Returns `settings` as a bake of the input has them: only documents have a scale of normals.
+    pub fn settings(&self, settings: Settings) -> Settings {
+        match self {
+            Self::Asset { .. } => settings,
+            Self::Map { .. } => settings.with_scale_normals(false),
+        }
+    }
+
     /// Passes the document to `then`. A standalone map becomes the material of a new document, with `roughness`, else
     /// the roughness that suits `scene`.
     ///
@@ -147,6 +156,27 @@ impl Input {
                 };
                 then(&Source::new("", &document, &read))
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bakes_of_a_map_leave_the_scale_of_normals_alone() {
+        let waves = Input::waves().expect("waves");
+        let asset = Input::Asset {
+            document: Box::new(Document::parse(b"{}").expect("a document")),
+            folder: PathBuf::new(),
+            stem: String::new(),
+        };
+        for asked in [None, Some(true), Some(false)] {
+            let mut settings = Settings::default();
+            settings.scale_normals = asked;
+            assert_eq!(waves.settings(settings).scale_normals, Some(false));
+            assert_eq!(asset.settings(settings), settings);
         }
     }
 }

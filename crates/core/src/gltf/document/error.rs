@@ -2,6 +2,7 @@
 
 use crate::foreign::Foreign;
 use crate::gltf::json::JsonError;
+use crate::image::FileFormat;
 
 /// Why a file is not a glTF asset, or cannot be edited or written.
 #[derive(Debug, thiserror::Error)]
@@ -18,12 +19,12 @@ pub enum DocumentError {
     },
     /// The file is an image.
     #[error(
-        "expected a glTF document, found {found}; name the .gltf or .glb that uses it, or bake it by itself with \
-         `roughcast map`"
+        "expected a glTF document, found an image ({format}); name the .gltf or .glb that uses it, or bake it by \
+         itself with `roughcast map`"
     )]
     Image {
         /// Format of the image.
-        found: &'static str,
+        format: FileFormat,
     },
     /// The file is neither a GLB nor a JSON object.
     #[error("expected a GLB or a JSON object, found {found}; export the scene as glTF 2.0 (.glb or .gltf)")]

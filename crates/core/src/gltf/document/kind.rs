@@ -4,10 +4,7 @@ use serde_json::Value;
 
 use super::DocumentError;
 use crate::foreign::Foreign;
-
-/// The first bytes of images that `roughcast map` reads.
-const IMAGES: [(&[u8], &str); 3] =
-    [(b"\x89PNG", "a PNG image"), (b"\xff\xd8\xff", "a JPEG image"), (b"\x76\x2f\x31\x01", "an OpenEXR image")];
+use crate::image::FileFormat;
 
 /// Checks that `bytes`, which are not a GLB, may be a JSON object.
 ///
@@ -18,8 +15,8 @@ pub(super) fn check_text(bytes: &[u8]) -> Result<(), DocumentError> {
     if let Some(found) = Foreign::detect(bytes) {
         return Err(DocumentError::Foreign { found });
     }
-    if let Some((_, found)) = IMAGES.into_iter().find(|(signature, _)| bytes.starts_with(signature)) {
-        return Err(DocumentError::Image { found });
+    if let Some(format) = FileFormat::detect(bytes, None) {
+        return Err(DocumentError::Image { format });
     }
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
     // The JSON reader reports errors in a text that begins as an object does.

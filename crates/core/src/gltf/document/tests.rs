@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 
 use super::{Container, Document, DocumentError, check_version};
 use crate::gltf::json::Json;
+use crate::image::FileFormat;
 
 const TEXT: &str = "{ \"asset\": {\"version\":\"2.0\"},\n\"buffers\":[{\"byteLength\":6 }], \"odd\":1.0e+00 }";
 
@@ -223,7 +224,6 @@ fn names_other_formats_and_what_to_do() {
     const EXPORT: &str = "; export the scene as glTF 2.0 (.glb or .gltf)";
     for (bytes, found) in [
         (&b"<?xml version=\"1.0\"?>"[..], "an XML file"),
-        (b"#?RADIANCE\n", "a file that starts with \"#?RADIAN\""),
         (b"null", "a file that starts with \"null\""),
         (b"[]", "a file that starts with \"[]\""),
         (b"\"x\"", "a file that starts with \"\\\"x\\\"\""),
@@ -239,13 +239,13 @@ fn names_other_formats_and_what_to_do() {
     ] {
         assert_eq!(message(bytes), format!("expected a glTF document, found {found}{EXPORT}"));
     }
-    for (bytes, found) in [
-        (&b"\x89PNG\r\n"[..], "a PNG image"),
-        (b"\xff\xd8\xff\xe0", "a JPEG image"),
-        (b"\x76\x2f\x31\x01\x02\0\0\0", "an OpenEXR image"),
+    for (bytes, format) in [
+        (&b"\x89PNG\r\n\x1a\n"[..], FileFormat::Png),
+        (b"\xff\xd8\xff\xe0", FileFormat::Jpeg),
+        (b"#?RADIANCE\n", FileFormat::Hdr),
     ] {
         let remedy = "name the .gltf or .glb that uses it, or bake it by itself with `roughcast map`";
-        assert_eq!(message(bytes), format!("expected a glTF document, found {found}; {remedy}"));
+        assert_eq!(message(bytes), format!("expected a glTF document, found an image ({format}); {remedy}"));
     }
     assert_eq!(message(b""), "expected a glTF document, found an empty file; copy or export it again");
     let pointer = b"version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n";
