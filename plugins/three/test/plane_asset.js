@@ -25,14 +25,18 @@ export const WITHOUT_K = {
   roughnessMax: undefined,
 };
 
-/** Bakes the plane to half floats. Returns its document, its folder, and its textures as the reader takes them. */
-export function bake(folder, model) {
+/**
+ * Bakes the plane to half floats, with files that every loader reads unless `options` say otherwise. Returns its
+ * document, its folder, and its textures as the reader takes them.
+ */
+export function bake(folder, model, options = ['--profile', 'both', '--gltf', 'dual']) {
   const output = path.join(folder, model);
-  const form = ['--profile', 'both', '--target', 'float', '--gltf', 'dual', '--quiet'];
-  roughcast('bake', path.join(repository, 'fixtures/real'), '-o', output, '--model', model, ...form);
+  const target = ['--target', 'float', '--model', model, '--quiet'];
+  roughcast('bake', path.join(repository, 'fixtures/real'), '-o', output, ...target, ...options);
   const gltf = JSON.parse(readFileSync(path.join(output, 'gravel.gltf'), 'utf8'));
   const levels = ({ uri }) => (uri.endsWith('.ktx2') ? halfFloats(path.join(output, decodeURIComponent(uri))) : null);
-  const textures = gltf.textures.map(({ source }) => ({ levels: levels(gltf.images[source]), wrap: REPEAT }));
+  const image = ({ source, extensions }) => gltf.images[extensions?.KHR_texture_basisu?.source ?? source];
+  const textures = gltf.textures.map((texture) => ({ levels: levels(image(texture)), wrap: REPEAT }));
   return { gltf, output, textures };
 }
 
