@@ -102,7 +102,7 @@ for (const program of missing) {
   console.error(`${program} is missing or has no Basis: its rows are left out. \`benches/sizes/install\` builds it.`);
 }
 printRow(['textures by', ...names, 'all, MB', 'CPU seconds', 'base colour, dB']);
-console.log(`|${'---|'.repeat(names.length + 5)}`);
+console.log(`|${'---|'.repeat(names.length + 4)}`);
 for (const { name, make, program } of RECIPES.filter(isChosen)) {
   if (!missing.includes(program)) printRow([name, ...(await measure(make))]);
 }

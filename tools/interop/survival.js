@@ -43,9 +43,9 @@ function textures(old, found, names) {
   if (lost.length > 0) return `no ${lost.join(', ')}`;
   const changed = names.filter((name) => found.images[name].digest !== old.images[name].digest);
   if (changed.length === 0) return 'kept';
+  // A changed KTX2 has levels of the command, not those of the bake. The other formats have no mips.
   const formats = [...new Set(changed.map((name) => found.images[name].format))].join(', ');
-  // A changed KTX2 has mips of the command, not those of the bake. The other formats have none.
-  const what = `${formats}, ${formats === 'KTX2' ? 'other mips' : 'no mips'}`;
+  const what = `${formats}, ${formats === 'KTX2' ? 'other levels' : 'no mips'}`;
   return changed.length === names.length ? what : `${changed.join(', ')}: ${what}`;
 }
 
