@@ -123,7 +123,7 @@ fn every_input_is_clean_for_engines_and_with_other_models_and_encoders() {
     let mut rows: Vec<Row> = Vec::new();
     for target in targets() {
         for model in ["none", "isotropic", "anisotropic"] {
-            let options = vec!["--model", model, "--profile", "both", "--target", target, "--frame", "natural"];
+            let options = ["--model", model, "--profile", "both", "--target", target, "--frame", "natural"];
             rows.push(([&options[..], &["--gltf", "fallback"]].concat(), intended(target, "fallback")));
         }
     }
