@@ -19,7 +19,7 @@ const FORM: &str = "--gltf=fallback";
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
     let count: usize = arguments.next().map_or(Ok(1000), |n| n.parse())?;
-    let fixture = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/brushed");
+    let fixture = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/brushed");
     let asset = arguments.next().map_or(fixture, PathBuf::from);
     let folder = tempfile::tempdir()?;
     let (source, baked) = (folder.path().join("source"), folder.path().join("baked"));

@@ -19,7 +19,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let folder = tempfile::tempdir()?;
     let (assets, baked, cache) =
         (folder.path().join("assets"), folder.path().join("baked"), folder.path().join("cache"));
-    let fixture = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/brushed");
+    let fixture = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/brushed");
     for index in 0..count {
         let asset = assets.join(format!("{index:05}"));
         fs::create_dir_all(&asset)?;

@@ -28,7 +28,7 @@ impl Drop for Watching {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1).peekable();
-    let mut command = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/release/roughcast");
+    let mut command = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../target/release/roughcast");
     if arguments.next_if(|argument| argument == "--bin").is_some() {
         command = PathBuf::from(arguments.next().ok_or("expected a path after --bin, found none")?);
     }

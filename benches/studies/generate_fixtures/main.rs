@@ -10,7 +10,7 @@ use std::io;
 use std::path::Path;
 
 fn main() -> io::Result<()> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures");
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures");
     for (path, bytes) in fixtures::all() {
         let path = root.join(path);
         if let Some(folder) = path.parent() {
