@@ -2,7 +2,7 @@
 
 use crate::bump::NormalMap;
 use crate::lobe::{OrientedLobe, SquaredAlpha};
-use crate::math::symmetric::Symmetric2;
+use crate::math::symmetric::{Symmetric2, determinant};
 use crate::math::vector::{Vector, dot, normalised};
 
 /// Level 0 of a bumpy surface: the normals that an engine decodes, each with the material's base lobe.
@@ -55,8 +55,22 @@ pub struct FootprintMoments {
     pub second: [f64; 3],
     /// Covariance of the slopes, computed about their mean rather than as a difference of moments: uu, uv, vv.
     pub covariance: [f64; 3],
-    /// Mean of the squared alphas of the base lobes: uu, uv, vv.
+    /// The base lobe that mips of a roughness texture have, whose roughness is the mean: squared alphas uu, uv, vv.
     pub base: [f64; 3],
+}
+
+/// Returns a lobe's squared alphas multiplied so that means of the result, and not of `base`, are means of roughness.
+pub fn roughness_of_base(base: [f64; 3]) -> [f64; 3] {
+    // The determinant is the eighth power of the roughness.
+    let roughness = determinant(base).max(0.0).sqrt().sqrt().sqrt();
+    let cube = roughness * roughness * roughness;
+    if cube > 0.0 { base.map(|a| a / cube) } else { [0.0; 3] }
+}
+
+/// Returns the squared alphas of which [`roughness_of_base`] returns `scaled`.
+pub fn base_of_roughness(scaled: [f64; 3]) -> [f64; 3] {
+    let roughness = determinant(scaled).max(0.0).sqrt();
+    scaled.map(|a| a * roughness * roughness * roughness)
 }
 
 impl Surface {
@@ -83,6 +97,16 @@ impl Surface {
         }
         let base = vec![[base.0.uu, base.0.uv, base.0.vv].map(f64::from); normals.len()];
         Self { width, height, normals, base }
+    }
+
+    /// Returns the number of columns.
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Returns the number of rows.
+    pub fn height(&self) -> u32 {
+        self.height
     }
 
     /// Returns the footprint of texel (`x`, `y`) of a level of `size` texels. Level-0 texels are weighted by the area
@@ -144,9 +168,12 @@ impl Footprint {
         for part in &self.parts {
             for i in 0..3 {
                 sums.mean_normal[i] += part.weight * part.normal[i];
-                sums.base[i] += part.weight * part.base[i];
+            }
+            for (sum, value) in sums.base.iter_mut().zip(roughness_of_base(part.base)) {
+                *sum += part.weight * value;
             }
         }
+        sums.base = base_of_roughness(sums.base);
         for (weight, [u, v]) in slopes() {
             sums.mean = [sums.mean[0] + weight * u, sums.mean[1] + weight * v];
             add_products(&mut sums.second, weight, [u, v]);

@@ -9,6 +9,7 @@ mod decoded;
 mod density;
 mod draws;
 mod fit;
+mod fit_width;
 mod footprint;
 mod magnified;
 mod mixture;
@@ -24,7 +25,8 @@ pub use decoded::{Decoded, mean_errors, sample_texels, shown_lobe, shown_normal,
 pub use density::{Lobe, MIN_ALPHA};
 pub use draws::{DRAWN, DrawnFootprint};
 pub use fit::{FitEffort, Search, fit};
-pub use footprint::{Footprint, FootprintMoments, Part, Surface};
+pub use fit_width::fit_width;
+pub use footprint::{Footprint, FootprintMoments, Part, Surface, base_of_roughness, roughness_of_base};
 pub use oracle::oracle;
 pub use peaks::is_two_peaked;
 pub use peers::Peer;

@@ -74,8 +74,8 @@ impl Peer {
         !matches!(self, Self::D | Self::LeanHalf | Self::LeanFloat)
     }
 
-    /// Returns the lobe that an engine shows, with alphas of at most 1. Isotropic peers start from the isotropic lobe
-    /// with the determinant of the mean base lobe.
+    /// Returns the lobe that an engine shows, with alphas of at most 1. Peers start from the mean roughness, as mips of
+    /// a roughness texture have it, and isotropic peers from the isotropic lobe of this roughness.
     pub fn lobe(self, family: Family, m: &FootprintMoments) -> Lobe {
         let [uu, uv, vv] = m.base;
         let a2 = symmetric::determinant(m.base).max(0.0).sqrt();

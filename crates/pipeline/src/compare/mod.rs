@@ -22,6 +22,7 @@ mod verdict;
 use crate::lobe::{Family, SquaredAlpha};
 use crate::math::symmetric::Symmetric2;
 use crate::metric::{Lobe, Peer, Surface, mean_errors, oracle, sample_texels};
+use crate::mip::level_sizes;
 use crate::render::{Advance, Material};
 
 pub use chart::Measure;
@@ -65,10 +66,12 @@ pub fn compare(
 ) -> Option<Comparison> {
     let surface = surface(truth)?;
     let grid = normals(&ours[0].material)?;
-    let levels = grid.level_count().min(LAST_LEVEL + 1);
-    let mut by_level = Vec::with_capacity(levels);
-    for level in 0..levels {
-        let size = grid.size(level);
+    // Block encoding may have resampled the bumps to multiples of 4.
+    let (width, height) = ours[0].material.finest_size();
+    let mut sizes = level_sizes(width, height);
+    sizes.truncate(LAST_LEVEL + 1);
+    let mut by_level = Vec::with_capacity(sizes.len());
+    for (level, size) in sizes.iter().copied().enumerate() {
         let chosen = sample_texels(size, texels);
         by_level.push(mean_errors(&surface, Family::Ggx, size, &chosen, |texel, footprint, reference| {
             let moments = footprint.moments();
@@ -84,7 +87,7 @@ pub fn compare(
             errors
         }));
         let scoring = if picture_width > 0 { SCORING } else { 1.0 };
-        advance(scoring * (level + 1) as f32 / levels as f32);
+        advance(scoring * (level + 1) as f32 / sizes.len() as f32);
     }
     let drawn = |share: f32| advance(SCORING + (1.0 - SCORING) * share);
     let pictures = if picture_width > 0 { picture_errors(truth, &surface, &ours, picture_width, &drawn) } else { None };
@@ -116,15 +119,16 @@ fn centre(size: (u32, u32), (x, y): (u32, u32)) -> [f64; 2] {
     [(f64::from(x) + 0.5) / f64::from(size.0), (f64::from(y) + 0.5) / f64::from(size.1)]
 }
 
+/// Returns level 0 on the grid of the finest texture.
 fn surface(truth: &Material) -> Option<Surface> {
-    let size = normals(truth)?.size(0);
-    let texels = (0..size.1).flat_map(|y| (0..size.0).map(move |x| (x, y)));
+    let (width, height) = truth.finest_size();
+    let texels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
     let (normals, base): (Vec<_>, Vec<_>) = texels
         .map(|texel| {
-            let point = truth.point(&|texture| texture.nearest(centre(size, texel)));
+            let point = truth.point(&|texture| texture.nearest(centre((width, height), texel)));
             let [uu, uv, vv] = point.squared_alpha.map(|a| a as f32);
             (point.normal, SquaredAlpha(Symmetric2 { uu, uv, vv }))
         })
         .unzip();
-    Surface::new(size.0, size.1, &normals, &base)
+    Surface::new(width, height, &normals, &base)
 }

@@ -5,9 +5,9 @@
 
 use rayon::prelude::*;
 
-use super::ours::{Ours, normals};
+use super::ours::Ours;
 use crate::lobe::Family;
-use crate::metric::{FootprintMoments, Peer, Surface};
+use crate::metric::{FootprintMoments, Peer, Surface, base_of_roughness, roughness_of_base};
 use crate::mip::{Level, build};
 use crate::render::{
     Advance, EnvironmentFilter, Filter, LostBumps, Material, Reflection, SceneName, Shader, Texel, Texture, filtered,
@@ -58,8 +58,7 @@ pub fn picture_errors(
         });
         errors.sum::<f64>() / count
     };
-    let size = normals(truth)?.size(0);
-    let (finest, tail) = moments(surface, (size.0.min(FINEST), size.1.min(FINEST)));
+    let (finest, tail) = moments(surface, (surface.width().min(FINEST), surface.height().min(FINEST)));
     let mut peer = Material { roughness: None, anisotropy: None, ..ours.first()?.material.clone() };
     let mut errors: Vec<f64> = ours.iter().map(|ours| error(&ours.material)).collect();
     for formula in Peer::ALL {
@@ -71,14 +70,16 @@ pub fn picture_errors(
     Some(PictureErrors { errors, noise })
 }
 
-/// Mean normal, mean slopes, E\[f_u^2\], E\[f_u f_v\], E\[f_v^2\], and the mean base lobe.
+/// Mean normal, mean slopes, E\[f_u^2\], E\[f_u f_v\], E\[f_v^2\], and the base lobe as [`roughness_of_base`] returns
+/// it.
 type Moments = [f32; 11];
 
 /// Returns the moments of `surface` for the texels of a level of `size` texels, and of all coarser levels.
 fn moments(surface: &Surface, size: (u32, u32)) -> (Level<Moments>, Vec<Level<Moments>>) {
     let moments = |x: u32, y: u32| -> Moments {
-        let FootprintMoments { mean_normal: [x, y, z], mean: [u, v], second: [uu, uv, vv], base: [a, b, c], .. } =
+        let FootprintMoments { mean_normal: [x, y, z], mean: [u, v], second: [uu, uv, vv], base, .. } =
             surface.footprint(size, (x, y)).moments();
+        let [a, b, c] = roughness_of_base(base);
         [x, y, z, u, v, uu, uv, vv, a, b, c].map(|m| m as f32)
     };
     let texels = (0..size.1).into_par_iter().flat_map_iter(|y| (0..size.0).map(move |x| moments(x, y))).collect();
@@ -96,7 +97,7 @@ fn lobes(level: &Level<Moments>, peer: Peer) -> Level<Texel> {
             mean: [u, v],
             second: [uu, uv, vv],
             covariance: [(uu - u * u).max(0.0), uv - u * v, (vv - v * v).max(0.0)],
-            base: [a, b, c],
+            base: base_of_roughness([a, b, c]),
         };
         let [uu, uv, vv] = peer.lobe(Family::Ggx, &moments).squared_alpha().map(|a| a as f32);
         [uu, uv, vv, 1.0]

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::labels::{LINE, stack};
 use super::verdict::verdict;
-use super::{Comparison, Cost, Entry, Kind, Ours, chart, csv, page};
+use super::{Comparison, Cost, Entry, Kind, OURS, Ours, chart, compare, csv, page};
 use crate::metric::Peer;
 use crate::mip::Level;
 use crate::render::{BaseAnisotropy, Bumps, LostBumps, Material, Texture};
@@ -157,5 +157,36 @@ fn every_measured_shader_has_its_cost() {
         let is_measured = !matches!(peer, Peer::LeanHalf | Peer::LeanFloat);
         assert_eq!((cost.operations.is_some(), cost.fetches.is_some()), (is_measured, is_measured), "{}", peer.name());
         assert!(cost.operations.is_none_or(|n| Some(n) >= plain.operations), "{}", peer.name());
+    }
+}
+
+/// The levels are those of the finest texture. Plain mips have the mean roughness, as engines' mips of it have.
+#[test]
+fn a_roughness_texture_may_be_finer_than_the_normals() {
+    let texture = |side: u32, texel: fn(u32) -> [f32; 4]| {
+        Texture::with_mips(Level { width: side, height: side, texels: (0..side * side).map(texel).collect() })
+    };
+    let material = Material {
+        bumps: Bumps::Normals { texture: texture(4, |_| [0.5, 0.5, 1.0, 1.0]), scale: 1.0, has_z: true },
+        roughness: Some(texture(32, |i| [0.0, if i / 64 % 2 == 0 { 0.2 } else { 0.6 }, 0.0, 1.0])),
+        roughness_factor: 1.0,
+        anisotropy: None,
+        lost: LostBumps::RoughenedTextures,
+    };
+    let ours = [(); OURS].map(|()| Ours {
+        name: String::new(),
+        material: material.clone(),
+        file_bytes: 1,
+        seconds: 1.0,
+        chosen: false,
+    });
+    let entries = compare("m", &material, ours, 16, 0, &|_| {}).unwrap().entries;
+    let plain = entries.iter().find(|entry| entry.name == "plain mips").unwrap();
+    assert_eq!(plain.level_errors.len(), 6);
+    // Stripes of two rows are lost at level 2.
+    assert!(plain.level_errors[..2].iter().all(|error| *error < 1e-6), "{:?}", plain.level_errors);
+    assert!(plain.level_errors[2..].iter().all(|error| *error > 0.2), "{:?}", plain.level_errors);
+    for (peer, own) in plain.level_errors.iter().zip(&entries[0].level_errors) {
+        assert!((peer - own).abs() < 1e-4, "{peer} {own}");
     }
 }

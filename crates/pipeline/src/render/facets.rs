@@ -91,10 +91,10 @@ impl Grid {
 
 /// Returns the size of the finest texture, if each texel of its grid lies within one texel of every other texture.
 fn common_size(material: &Material) -> Option<(u32, u32)> {
-    let sizes = || material.textures().map(|texture| texture.size(0));
-    let finest = sizes().fold((1, 1), |a, b| (a.0.max(b.0), a.1.max(b.1)));
+    let mut sizes = material.textures().map(|texture| texture.size(0));
+    let finest = material.finest_size();
     let nests = |(width, height): (u32, u32)| finest.0.is_multiple_of(width) && finest.1.is_multiple_of(height);
-    sizes().all(nests).then_some(finest)
+    sizes.all(nests).then_some(finest)
 }
 
 #[cfg(test)]

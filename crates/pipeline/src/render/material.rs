@@ -150,6 +150,11 @@ impl Material {
         [bumps, self.roughness.as_ref(), anisotropy, lost].into_iter().flatten()
     }
 
+    /// Returns the columns and rows of a grid as fine as the finest texture.
+    pub fn finest_size(&self) -> (u32, u32) {
+        self.textures().map(|texture| texture.size(0)).fold((1, 1), |a, b| (a.0.max(b.0), a.1.max(b.1)))
+    }
+
     fn base_lobe(&self, read: &impl Fn(&Texture) -> [f64; 4]) -> Symmetric2 {
         let roughness = self.roughness.as_ref().map_or(1.0, |t| read(t)[1]) * self.roughness_factor;
         let roughness = Roughness(roughness.clamp(0.0, 1.0) as f32);
