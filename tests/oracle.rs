@@ -77,7 +77,8 @@ fn magnified_slopes(normals: &Image, (x, y): (u32, u32)) -> [[f64; 2]; 4] {
 }
 
 /// Computes a texel directly from its level-0 texels, and at level 0 from the texel. Levels for which `is_base` holds
-/// have the base lobe. The sides of the map are powers of two.
+/// have the base lobe of the mean roughness; the others have the mean squared alphas, widened by the bumps. The
+/// sides of the map are powers of two.
 fn oracle(normals: &Image, base: &BaseRoughness, is_base: bool, level: u32, (x, y): (u32, u32)) -> Expected {
     let side = 1 << level;
     let texels: Vec<(u32, u32)> = (0..side * side).map(|i| (x * side + i % side, y * side + i / side)).collect();
@@ -90,11 +91,13 @@ fn oracle(normals: &Image, base: &BaseRoughness, is_base: bool, level: u32, (x, 
     let count = slopes.len() as f64;
     let mean = [0, 1].map(|i| slopes.iter().map(|s| s[i]).sum::<f64>() / count);
     let k = |i: usize, j: usize| slopes.iter().map(|s| (s[i] - mean[i]) * (s[j] - mean[j])).sum::<f64>() / count;
-    let base_of = |&(x, y): &(u32, u32)| {
+    let roughness_of = |&(x, y): &(u32, u32)| {
         let green = base.image.as_ref().map_or(1.0, |r| f64::from(r.sample(x, y, 1).unwrap()));
-        (f64::from(base.factor) * green).powi(4)
+        f64::from(base.factor) * green
     };
-    let base = texels.iter().map(base_of).sum::<f64>() / texels.len() as f64;
+    let mean_of =
+        |power: i32| texels.iter().map(|texel| roughness_of(texel).powi(power)).sum::<f64>() / texels.len() as f64;
+    let base = if is_base { mean_of(1).powi(4) } else { mean_of(4) };
     let covariance = Symmetric2::new(k(0, 0) as f32, k(0, 1) as f32, k(1, 1) as f32);
     let base_lobe = SquaredAlpha(Symmetric2::diagonal(base as f32, base as f32));
     let moments = ShapedMoments::normal(Moments { mean: Offset::default(), covariance });

@@ -7,8 +7,9 @@ use crate::material::reflectance::ReflectanceRows;
 use crate::math::symmetric::Symmetric2;
 use crate::mip::{LinearResampled, MipTail, TexelRows, Wrap, level_sizes};
 
-/// A texel of the base lobe: A (uu, uv, vv), then the red and blue channels of the roughness texture. Mips have
-/// their means. Where metalness and base colour both vary, the mean of blue, the metalness, is weighted by base colour.
+/// A texel of the base lobe: A (uu, uv, vv), then the red and blue channels of the roughness texture. Mips of isotropic
+/// lobes have the mean roughness, as mips of the material's own texture have it, and mips of anisotropic lobes the mean
+/// A. Where metalness and base colour both vary, the mean of blue, the metalness, is weighted by base colour.
 pub type BaseTexel = [f32; 5];
 
 /// Returns the base lobe of a texel.
@@ -124,6 +125,11 @@ impl BaseRows<'_> {
         SquaredAlpha::isotropic(self.roughness(green).into()).0.uu
     }
 
+    /// Returns whether the material has a roughness texture.
+    pub fn has_texture(&self) -> bool {
+        self.roughness.is_some()
+    }
+
     /// Returns whether a texture varies the roughness, or a metalness that counts by base colour.
     pub fn has_varying_texture(&self) -> bool {
         let varies = |rows: &LinearResampled<Rgba<'_>>| rows.source().common_green().is_none();
@@ -157,7 +163,7 @@ impl TexelRows for BaseRows<'_> {
         self.texture_row(y, &mut texels);
         if !self.is_anisotropic() {
             for (texel, [red, green, blue, _]) in out.iter_mut().zip(texels) {
-                *texel = base_texel([self.squared_alpha(green), red, blue]);
+                *texel = base_texel([self.roughness(green).0, red, blue]);
             }
             return;
         }
@@ -178,12 +184,13 @@ impl TexelRows for BaseRows<'_> {
     }
 }
 
-/// A texel of an isotropic base lobe: squared alpha, red and blue.
+/// A texel of an isotropic base lobe: roughness, red and blue.
 type IsotropicTexel = [f32; 3];
 
 /// Returns an isotropic texel as a [`BaseTexel`].
-fn base_texel([squared_alpha, red, blue]: IsotropicTexel) -> BaseTexel {
-    [squared_alpha, 0.0, squared_alpha, red, blue]
+fn base_texel([roughness, red, blue]: IsotropicTexel) -> BaseTexel {
+    let SquaredAlpha(a) = SquaredAlpha::isotropic(Roughness(roughness).into());
+    [a.uu, 0.0, a.vv, red, blue]
 }
 
 /// Level 0 of isotropic base lobes.
@@ -204,15 +211,15 @@ impl TexelRows for IsotropicRows<'_, '_> {
         let mut texels = vec![[0.0; 4]; out.len()];
         self.0.texture_row(y, &mut texels);
         for (texel, [red, green, blue, _]) in out.iter_mut().zip(texels) {
-            *texel = [self.0.squared_alpha(green), red, blue];
+            *texel = [self.0.roughness(green).0, red, blue];
         }
     }
 }
 
-/// Level 0 of isotropic base lobes without red and blue: squared alphas alone.
-struct SquaredAlphaRows<'r, 'a>(&'r BaseRows<'a>);
+/// Level 0 of isotropic base lobes without red and blue: roughness alone.
+struct RoughnessRows<'r, 'a>(&'r BaseRows<'a>);
 
-impl TexelRows for SquaredAlphaRows<'_, '_> {
+impl TexelRows for RoughnessRows<'_, '_> {
     type Texel = [f32; 1];
 
     fn width(&self) -> u32 {
@@ -225,7 +232,7 @@ impl TexelRows for SquaredAlphaRows<'_, '_> {
 
     fn row(&self, y: u32, out: &mut [[f32; 1]]) {
         self.0.green_row(y, out.as_flattened_mut());
-        out.iter_mut().for_each(|[texel]| *texel = self.0.squared_alpha(*texel));
+        out.iter_mut().for_each(|[texel]| *texel = self.0.roughness(*texel).0);
     }
 }
 
@@ -250,7 +257,7 @@ enum TexelLevels {
     Uniform,
     /// Isotropic lobes, where red and blue of the roughness texture are constant.
     ConstantRedBlue {
-        /// Squared alphas.
+        /// Roughness.
         tail: MipTail<[f32; 1]>,
         /// Red and blue.
         red_blue: [f32; 2],
@@ -268,7 +275,7 @@ impl TexelLevels {
         } else if rows.is_anisotropic() {
             Self::Anisotropic(MipTail::new(rows))
         } else if let Some(red_blue) = rows.constant_red_blue() {
-            Self::ConstantRedBlue { tail: MipTail::new(&SquaredAlphaRows(rows)), red_blue }
+            Self::ConstantRedBlue { tail: MipTail::new(&RoughnessRows(rows)), red_blue }
         } else {
             Self::Isotropic(MipTail::new(&IsotropicRows(rows)))
         }
@@ -318,8 +325,10 @@ impl<'a> Base<'a> {
             TexelLevels::Uniform => self.rows.row(0, out),
             TexelLevels::ConstantRedBlue { .. } | TexelLevels::Isotropic(_) if level == 0 => self.rows.row(y, out),
             TexelLevels::ConstantRedBlue { tail, red_blue: [red, blue] } => {
-                tail.with_row(&SquaredAlphaRows(&self.rows), level, y, |row| {
-                    out.iter_mut().zip(row).for_each(|(texel, [alpha])| *texel = base_texel([*alpha, *red, *blue]));
+                tail.with_row(&RoughnessRows(&self.rows), level, y, |row| {
+                    out.iter_mut()
+                        .zip(row)
+                        .for_each(|(texel, [roughness])| *texel = base_texel([*roughness, *red, *blue]));
                 });
             }
             TexelLevels::Isotropic(tail) => {

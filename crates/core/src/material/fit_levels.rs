@@ -4,30 +4,47 @@
 //! A fit begins at level 0 again and goes by the lobe error. `cargo run --release -p studies --bin levels` prints the
 //! errors of both qualities, level by level.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+mod evenness;
+mod footprint_row;
+
+use std::sync::OnceLock;
 
 use crate::codec::uastc::Effort;
-use crate::lobe::{Family, LobeTexel, OrientedLobe};
-use crate::math::vector::dot;
-use crate::metric::{DRAWN, DrawnFootprint, FitEffort, Search, fit};
-use crate::mip::{FinerRows, MipTail, TexelRows, level_sizes};
+use crate::lobe::{Family, LobeTexel};
+use crate::metric::{DRAWN, FitEffort, Search, fit, fit_width};
+use crate::mip::{MipTail, TexelRows, level_sizes};
+
+use evenness::{Evenness, mark_row};
+use footprint_row::{FootprintRow, Parts};
 
 /// Which texels of a level are fitted, and how.
 struct LevelFit {
-    /// The level whose texels are the parts of uneven texels: those whose finer texels [`differ`], at this level or
-    /// below.
+    /// The level whose texels are the parts of uneven texels.
     uneven_parts: usize,
-    /// The level whose texels are the parts of all other texels; `None` if these keep their merged lobes.
+    /// The level whose texels are the parts of all other texels. If it is `None`, even texels keep their merged lobes,
+    /// and texels of unequal widths get another width.
     even_parts: Option<usize>,
     /// Strata of these texels along each axis of a footprint.
     strata: u32,
     effort: FitEffort,
 }
 
-/// Ratio of the alphas of finer texels from which their merged lobe can be far from the best lobe.
-const UNEVEN: f32 = 4.0;
-/// This ratio, where a normal is further from that of the narrowest lobe than half the alpha of this lobe.
-const UNEVEN_APART: f32 = 2.0;
+impl LevelFit {
+    /// Returns the level of the parts to which texels of this evenness are fitted, if they are.
+    fn parts_of(&self, evenness: Evenness) -> Option<usize> {
+        match evenness {
+            Evenness::Uneven => Some(self.uneven_parts),
+            // Level 1 is in memory, and level 0 would hardly change the width.
+            Evenness::UnequalWidths => self.even_parts.or(Some(self.uneven_parts.max(1))),
+            Evenness::Even => self.even_parts,
+        }
+    }
+
+    /// Returns whether texels of this evenness keep all of their merged lobe but its width.
+    fn fits_width(&self, evenness: Evenness) -> bool {
+        evenness == Evenness::UnequalWidths && self.even_parts.is_none()
+    }
+}
 
 /// Fits of levels 2, 3, 4 and so on; the last one holds for all coarser levels. Coarser levels have fewer texels, which
 /// can have more half-vectors in the same time. A merge is good enough for most texels of levels 2 to 4: on real maps
@@ -85,98 +102,36 @@ pub fn fit_levels<R: TexelRows<Texel: LobeTexel>>(
     };
     let needs_marks = fits.iter().any(|fit| fit.even_parts.is_none());
     let sizes = level_sizes(level_0.width(), level_0.height());
-    let (mut finer_uneven, first_kept) = (Vec::new(), tail.first_kept());
+    let (mut finer_marks, first_kept) = (Vec::new(), tail.first_kept());
     for level in FIRST..sizes.len() {
-        let fit = &fits[(level - FIRST).min(fits.len() - 1)];
+        let level_fit = &fits[(level - FIRST).min(fits.len() - 1)];
+        let LevelFit { strata, effort, .. } = *level_fit;
         let (size, finer_size) = (sizes[level], sizes[level - 1]);
-        let is_uneven: Vec<AtomicBool> = (0..size.0 * size.1).map(|_| AtomicBool::default()).collect();
+        let marked: Vec<OnceLock<Vec<Evenness>>> = (0..size.1).map(|_| OnceLock::new()).collect();
         tail.update_level(level_0, level, |y, finer, out| {
-            let is_uneven = &is_uneven[(y * size.0) as usize..][..out.len()];
+            let mut marks = vec![Evenness::default(); out.len()];
             if needs_marks {
                 let rows = |first: u32, out: &mut [_]| finer(level - 1, first, out);
-                mark_uneven(&rows, finer_size, &finer_uneven, y, is_uneven);
+                mark_row(&rows, finer_size, &finer_marks, y, &mut marks);
             }
-            let is_uneven: Vec<bool> = is_uneven.iter().map(|flag| flag.load(Ordering::Relaxed)).collect();
-            for (uneven, parts) in [(true, Some(fit.uneven_parts)), (false, fit.even_parts)] {
-                let Some(parts) = parts.filter(|_| is_uneven.contains(&uneven)) else { continue };
-                let parts = if parts == 0 { 0 } else { parts.max(first_kept.min(level - 2)) };
-                let is_fitted = |x: u32| is_uneven[x as usize] == uneven;
-                fit_row(finer, (parts, sizes[parts]), (y, size), family, fit, is_fitted, out);
+            let wanted = |x: u32| level_fit.parts_of(marks[x as usize]);
+            let fitted = |x: u32, parts: &Parts, lobe| {
+                if level_fit.fits_width(marks[x as usize]) {
+                    return fit_width(parts, lobe);
+                }
+                fit(family, parts, lobe, effort, (y * size.0 + x) as usize * effort.half_vectors)
+            };
+            let mut part_levels: Vec<usize> = (0..size.0).filter_map(wanted).collect();
+            part_levels.sort_unstable();
+            part_levels.dedup();
+            for part_level in part_levels {
+                let kept = if part_level == 0 { 0 } else { part_level.max(first_kept.min(level - 2)) };
+                let footprints = FootprintRow { level: kept, whole: sizes[kept], y, size, strata };
+                footprints.refit(finer, |x| wanted(x) == Some(part_level), fitted, out);
             }
+            _ = marked[y as usize].set(marks);
         });
-        finer_uneven = is_uneven.into_iter().map(AtomicBool::into_inner).collect();
-    }
-}
-
-/// Marks those texels of row `y` of a level whose four finer texels [`differ`], or of which one is marked in
-/// `finer_marks`. `finer` writes adjacent rows of the finer level, which has `size` texels.
-fn mark_uneven<T: LobeTexel>(
-    finer: &dyn Fn(u32, &mut [T]),
-    size: (u32, u32),
-    finer_marks: &[bool],
-    y: u32,
-    marks: &[AtomicBool],
-) {
-    let rows = [2 * y, (2 * y + 1).min(size.1 - 1)];
-    let mut texels = vec![T::default(); size.0 as usize * (1 + (rows[1] - rows[0]) as usize)];
-    finer(rows[0], &mut texels);
-    for (x, mark) in (0..).zip(marks) {
-        let columns = [2 * x, (2 * x + 1).min(size.0 - 1)];
-        let places = [0, 1, 2, 3].map(|i| (columns[i % 2], rows[i / 2]));
-        let lobe = |(x, y): (u32, u32)| *texels[((y - rows[0]) * size.0 + x) as usize].lobe();
-        let is_marked = |(x, y): (u32, u32)| finer_marks.get((y * size.0 + x) as usize) == Some(&true);
-        mark.store(differ(&places.map(lobe)) || places.into_iter().any(is_marked), Ordering::Relaxed);
-    }
-}
-
-/// Returns whether the merged lobe of `lobes` can be far from their best lobe. Lobes with nearly the same normal merge
-/// well up to a larger ratio of alphas.
-fn differ(lobes: &[OrientedLobe; 4]) -> bool {
-    // The determinant of squared alphas is the fourth power of alpha. The least alpha is 0.001.
-    let widths = lobes.map(|lobe| lobe.squared_alpha.0.determinant().max(1e-12));
-    let narrowest = (0..4).fold(0, |least, i| if widths[i] < widths[least] { i } else { least });
-    let least = widths[narrowest];
-    let ratio = widths.into_iter().fold(0.0, f32::max) / least;
-    let is_apart = |lobe: &OrientedLobe| {
-        let between = [0, 1, 2].map(|i| lobe.normal[i] - lobes[narrowest].normal[i]);
-        dot(between, between) > 0.25 * least.sqrt()
-    };
-    ratio > UNEVEN.powi(4) || (ratio > UNEVEN_APART.powi(4) && lobes.iter().any(is_apart))
-}
-
-/// Fits texels of row `y` of a level of `size`, from the lobes in `out`. The parts are texels of the level
-/// `part_level`, which has the size `whole`; `finer` writes its rows.
-fn fit_row<T: LobeTexel>(
-    finer: &FinerRows<'_, T>,
-    (part_level, whole): (usize, (u32, u32)),
-    (y, size): (u32, (u32, u32)),
-    family: Family,
-    LevelFit { strata, effort, .. }: &LevelFit,
-    is_fitted: impl Fn(u32) -> bool,
-    out: &mut [T],
-) {
-    let footprint = |x| DrawnFootprint { whole, size, texel: (x, y), strata: *strata };
-    let rows = footprint(0).rows();
-    let mut texels = vec![T::default(); whole.0 as usize * rows.len()];
-    let mut unread = texels.as_mut_slice();
-    for adjacent in rows.chunk_by(|above, below| above.0 + 1 == below.0) {
-        let (band, rest) = unread.split_at_mut(whole.0 as usize * adjacent.len());
-        finer(part_level, adjacent[0].0, band);
-        unread = rest;
-    }
-    let mut parts = Vec::new();
-    for (x, texel) in (0..).zip(out).filter(|(x, _)| is_fitted(*x)) {
-        parts.clear();
-        for ((row, share), texels) in rows.iter().zip(texels.chunks_exact(whole.0 as usize)) {
-            parts.extend(footprint(x).columns(*row).into_iter().map(|(column, weight)| {
-                let part = &texels[column as usize];
-                (weight * share * part.reflectance(), *part.lobe())
-            }));
-        }
-        let total: f32 = parts.iter().map(|part| part.0).sum();
-        parts.iter_mut().for_each(|part| part.0 /= total);
-        let first = (y * size.0 + x) as usize * effort.half_vectors;
-        texel.set_lobe(fit(family, &parts, *texel.lobe(), *effort, first));
+        finer_marks = marked.into_iter().flat_map(|row| row.into_inner().unwrap_or_default()).collect();
     }
 }
 

@@ -44,6 +44,11 @@ impl CandidateSet<'_, '_> {
         [Model::None, Model::Isotropic, Model::Anisotropic].into_iter().filter(|model| self.offers(*model))
     }
 
+    /// Returns whether the roughness texture of an isotropic candidate takes the place of a texture of the material.
+    pub(super) fn replaces_texture(&self) -> bool {
+        self.pyramid.is_none() && self.roughening.base().level_0().has_texture()
+    }
+
     fn offers(&self, model: Model) -> bool {
         match model {
             // An anisotropic base lobe stays anisotropic unless the isotropic model is requested.

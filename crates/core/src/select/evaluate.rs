@@ -7,7 +7,7 @@ use crate::metric::{Precision, Site, sample_bytes, sample_sites};
 use crate::report::{Candidate, Choice};
 use crate::select::candidate_set::CandidateSet;
 use crate::select::misses::{misses, rounded};
-use crate::select::rule::choose;
+use crate::select::rule::{choose, is_closer};
 use crate::select::shown::{Errors, Shown};
 use crate::settings::Model;
 
@@ -139,10 +139,22 @@ impl CandidateSet<'_, '_> {
         Ok(errors)
     }
 
+    /// Returns the rank of a candidate by rising cost; candidates of one rank are in the order of [`Self::models`].
+    /// `none` is the candidate of the base lobe, for which the material keeps its textures. A roughness texture that
+    /// replaces one of them costs nothing, but is not worth it if it hardly changes the picture.
+    fn cost_rank(&self, candidate: &Candidate, none: &Candidate) -> u8 {
+        match candidate.model {
+            Model::Isotropic if self.replaces_texture() && is_closer(&candidate.errors, &none.errors) => 0,
+            Model::None => 1,
+            _ => 2,
+        }
+    }
+
     fn index_of_choice(&self, evaluated: &[Evaluated]) -> usize {
         let chosen = match self.settings.model {
             Model::Auto => {
-                let kept: Vec<usize> = (0..evaluated.len()).filter(|i| !evaluated[*i].is_worse_than_base).collect();
+                let mut kept: Vec<usize> = (0..evaluated.len()).filter(|i| !evaluated[*i].is_worse_than_base).collect();
+                kept.sort_by_key(|i| self.cost_rank(&evaluated[*i].candidate, &evaluated[0].candidate));
                 let errors: Vec<Vec<f32>> = kept.iter().map(|i| evaluated[*i].candidate.errors.clone()).collect();
                 choose(&errors, self.settings.max_error).map(|chosen| kept[chosen])
             }

@@ -26,6 +26,11 @@ pub fn choose(errors: &[Vec<f32>], max_error: f32) -> Option<usize> {
     })
 }
 
+/// Returns whether the mean error over the screen of one candidate is less than that of `other` by enough to be seen.
+pub fn is_closer(errors: &[f32], other: &[f32]) -> bool {
+    mean(other, |_, e| e) - mean(errors, |_, e| e) >= NEGLIGIBLE
+}
+
 /// Returns the mean of `of(level, error)` over the screen. A plane that reaches to the horizon shows each level on half
 /// as much of the screen as the next finer level.
 fn mean(errors: &[f32], of: impl Fn(usize, f32) -> f32) -> f64 {

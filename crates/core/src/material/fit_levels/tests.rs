@@ -1,7 +1,8 @@
-use std::sync::atomic::AtomicUsize;
+use std::ops::Range;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::*;
-use crate::lobe::SquaredAlpha;
+use crate::lobe::{OrientedLobe, SquaredAlpha};
 use crate::math::symmetric::Symmetric2;
 use crate::metric::{Lobe, Precision, sample_sites};
 use crate::mip::Level;
@@ -24,10 +25,10 @@ fn mirrors_beside_rough_texels() -> Level<OrientedLobe> {
     Level { width: SIDE, height: SIDE, texels: texels.collect() }
 }
 
-/// Returns the mean lobe error of levels 4 and 5.
-fn error(level_0: &Level<OrientedLobe>, tail: &MipTail<OrientedLobe>) -> f64 {
+/// Returns the mean lobe error of `levels`.
+fn error(level_0: &Level<OrientedLobe>, tail: &MipTail<OrientedLobe>, levels: Range<usize>) -> f64 {
     let rows = |first, out: &mut [OrientedLobe]| level_0.rows(first, out);
-    let sites = sample_sites(&level_sizes(SIDE, SIDE), 4..6, Family::Ggx, Precision::QUICK, &rows);
+    let sites = sample_sites(&level_sizes(SIDE, SIDE), levels, Family::Ggx, Precision::QUICK, &rows);
     let errors = sites.iter().map(|site| {
         let mut row = vec![OrientedLobe::default(); (SIDE >> site.level) as usize];
         tail.row(level_0, site.level, site.texel.1, &mut row);
@@ -43,10 +44,10 @@ fn the_first_kept_level_stands_for_level_1() {
     // Level 1 has 32 x 32 texels, so that it is kept in one tail only.
     let tails = [SIDE * SIDE, 16 * 16].map(|most| MipTail::with_max_kept(&level_0, u64::from(most)));
     assert_eq!(tails.each_ref().map(MipTail::first_kept), [1, 2]);
-    let merged = error(&level_0, &tails[0]);
+    let merged = error(&level_0, &tails[0], 4..6);
     let [kept, unkept] = tails.map(|mut tail| {
         fit_levels(&level_0, &mut tail, Family::Ggx, Effort::Fast);
-        error(&level_0, &tail)
+        error(&level_0, &tail, 4..6)
     });
     assert!(unkept < kept + 0.01 && unkept < merged + 0.01, "{unkept} {kept} {merged}");
 }
@@ -74,7 +75,8 @@ impl TexelRows for Counted<'_> {
     }
 }
 
-/// Level 1 is computed to mark uneven texels of level 2 and to fit level 3. Besides, level 2 is fitted to level 0.
+/// Level 1 is computed to mark texels of level 2, to fit their widths, and to fit level 3. Besides, level 2 is fitted
+/// to level 0.
 #[test]
 fn coarse_levels_do_not_compute_level_1_again() {
     let level_0 = mirrors_beside_rough_texels();
@@ -82,20 +84,35 @@ fn coarse_levels_do_not_compute_level_1_again() {
     let mut tail = MipTail::with_max_kept(&counted, 16 * 16);
     counted.rows.store(0, Ordering::Relaxed);
     fit_levels(&counted, &mut tail, Family::Ggx, Effort::Fast);
-    assert_eq!(counted.rows.into_inner(), 3 * SIDE as usize);
+    assert_eq!(counted.rows.into_inner(), 4 * SIDE as usize);
 }
 
-/// Between 2 and 4 times the least alpha, the distance of the normals counts: half of the least alpha, which is 0.1.
+/// Lobes that differ in width alone get the best width, although their merges drift.
 #[test]
-fn lobes_of_one_direction_differ_from_a_larger_ratio_on() {
-    let differ_with = |ratio: f32, distance: f32| {
-        let lobe = |alpha: f32, x: f32| OrientedLobe {
-            normal: [x, 0.0, (1.0 - x * x).sqrt()],
-            squared_alpha: SquaredAlpha(Symmetric2::diagonal(alpha * alpha, alpha * alpha)),
-        };
-        let narrow = lobe(0.1, 0.0);
-        differ(&[narrow, narrow, lobe(0.1 * ratio, distance), narrow])
+fn widths_of_a_flat_surface_are_fitted() {
+    let mut state = 7_u32;
+    let mut random = || {
+        state = state.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
+        (state >> 16) as f32 / 65536.0
     };
-    assert_eq!([1.9, 2.1, 3.9, 4.1].map(|ratio| differ_with(ratio, 0.04)), [false, false, false, true]);
-    assert_eq!([1.9, 2.1, 3.9, 4.1].map(|ratio| differ_with(ratio, 0.06)), [false, true, true, true]);
+    // Squares of 2 x 2 texels are alike, since `fast` fits to texels of level 1.
+    let squares: Vec<f32> = (0..SIDE * SIDE / 4).map(|_| if random() < 0.7 { 0.1 } else { 0.35 }).collect();
+    let square = |x: u32, y: u32| squares[(y / 2 * (SIDE / 2) + x / 2) as usize];
+    let texels = (0..SIDE * SIDE).map(|i| lobe(square(i % SIDE, i / SIDE), 0.0)).collect();
+    let level_0 = Level { width: SIDE, height: SIDE, texels };
+    let merged = MipTail::new(&level_0);
+    let [fast, best] = [Effort::Fast, Effort::Best].map(|quality| {
+        let mut tail = MipTail::new(&level_0);
+        fit_levels(&level_0, &mut tail, Family::Ggx, quality);
+        error(&level_0, &tail, 2..5)
+    });
+    let merged = error(&level_0, &merged, 2..5);
+    assert!(fast < 1.05 * best && fast < 0.9 * merged, "{fast} {best} {merged}");
+}
+
+fn lobe(alpha: f32, x: f32) -> OrientedLobe {
+    OrientedLobe {
+        normal: [x, 0.0, (1.0 - x * x).sqrt()],
+        squared_alpha: SquaredAlpha(Symmetric2::diagonal(alpha * alpha, alpha * alpha)),
+    }
 }

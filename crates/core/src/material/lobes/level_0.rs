@@ -4,13 +4,13 @@ use rayon::prelude::*;
 
 use crate::bump::{Moments, Offset, Shaped, ShapedMoments, normal_from_offset};
 use crate::lobe::{Distribution, OrientedLobe, ReflectingLobe, SquaredAlpha};
-use crate::material::base::{Base, BaseRows, BaseTexel, base_lobe};
+use crate::material::base::{BaseRows, BaseTexel, base_lobe};
 use crate::material::bump_map::BumpMap;
 use crate::material::bumps::Bumps;
 use crate::material::magnified::Magnified;
 use crate::material::magnified_bumps::MagnifiedBumps;
 use crate::math::symmetric::Symmetric2;
-use crate::mip::{AreaResampled, Level, Magnification, Pyramid, Sampler, TexelRows};
+use crate::mip::{AreaResampled, Level, Magnification, MipTail, Pyramid, Sampler, TexelRows};
 use crate::settings::Settings;
 use crate::simd::map_row;
 
@@ -68,21 +68,15 @@ impl<'a> Level0<'a> {
         );
     }
 
-    /// Returns levels 1 and coarser as A + 2 c K.
-    pub fn roughened(
-        &self,
-        base: &Base<'_>,
-        bumps: &Bumps<'_>,
-        sampler: Sampler,
-        settings: &Settings,
-    ) -> Vec<Level<OrientedLobe>> {
-        let rows = MagnifiedBumps::of(bumps.rows, sampler);
+    /// Returns levels 1 and coarser as A + 2 c K, where A is the mean of the base lobes.
+    pub fn roughened(&self, bumps: &Bumps<'_>, sampler: Sampler, settings: &Settings) -> Vec<Level<OrientedLobe>> {
+        let (rows, base) = (MagnifiedBumps::of(bumps.rows, sampler), MipTail::new(&self.base));
         let levels = bumps.sizes().into_iter().enumerate().skip(1);
         match settings.distribution {
             Distribution::Auto => {
                 let moments = Pyramid::new(Shaped(rows));
                 let row = |level, y, out: &mut [ShapedMoments]| moments.row(level, y, out);
-                levels.map(|(level, size)| self.roughened_level(level, size, base, row, settings)).collect()
+                levels.map(|(level, size)| self.roughened_level(level, size, &base, row, settings)).collect()
             }
             Distribution::Normal | Distribution::Uniform => {
                 let moments = Pyramid::new(rows);
@@ -91,7 +85,7 @@ impl<'a> Level0<'a> {
                     moments.row(level, y, &mut plain);
                     out.iter_mut().zip(plain).for_each(|(shaped, m)| *shaped = ShapedMoments::normal(m));
                 };
-                levels.map(|(level, size)| self.roughened_level(level, size, base, row, settings)).collect()
+                levels.map(|(level, size)| self.roughened_level(level, size, &base, row, settings)).collect()
             }
         }
     }
@@ -100,7 +94,7 @@ impl<'a> Level0<'a> {
         &self,
         level: usize,
         (width, height): (u32, u32),
-        base: &Base<'_>,
+        base: &MipTail<BaseTexel>,
         bumps: impl Fn(usize, u32, &mut [ShapedMoments]) + Sync,
         settings: &Settings,
     ) -> Level<OrientedLobe> {
@@ -109,7 +103,7 @@ impl<'a> Level0<'a> {
         texels.par_chunks_mut(width as usize).enumerate().for_each(|(y, out)| {
             let (mut texels, mut row) =
                 (vec![BaseTexel::default(); out.len()], vec![ShapedMoments::default(); out.len()]);
-            base.row(level, y as u32, &mut texels);
+            base.row(&self.base, level, y as u32, &mut texels);
             bumps(level, y as u32, &mut row);
             for ((lobe, texel), m) in out.iter_mut().zip(&texels).zip(&row) {
                 // The correction depends on the ratio of the lobe's width to the bumps. It is cheaper to divide the

@@ -5,7 +5,7 @@ use crate::image::{Image, Samples};
 use crate::ktx2::Ktx2;
 use crate::lobe::{Alpha, Family, Roughness, SquaredAlpha};
 use crate::material::{Base, BaseRows, BumpMap, Bumps, Normals, Roughening};
-use crate::metric::{Decoded, Surface, mean_errors, sample_texels};
+use crate::metric::{Decoded, Lobe, Reference, SAMPLES, Surface, mean_errors, sample_texels};
 use crate::mip::{Sampler, Wrap};
 use crate::report::{Candidate, Content, Miss, Reason};
 use crate::select::evaluate::*;
@@ -223,7 +223,7 @@ fn tiles(side: u32, gap: u32, steep: f32) -> (Image, BaseRoughness) {
 /// Finer levels are magnified from the first level of a smaller texture, so that this level keeps its lobes.
 #[test]
 fn the_first_level_of_a_smaller_texture_keeps_its_lobes() {
-    let (image, base) = tiles(64, 2, 1.0);
+    let (image, base) = tiles(64, 8, 0.5);
     let choice = bake_with(&image, base, &Settings { profile: Profile::Pyramid, ..settings(0.1) }).choice.unwrap();
     let keeps = |model, first, level: usize| {
         let candidate = choice.candidates.iter().find(|c| (c.model, c.first) == (model, first)).unwrap();
@@ -240,7 +240,7 @@ fn the_first_level_of_a_smaller_texture_keeps_its_lobes() {
 /// K is 0 at a level that the base lobe shows better.
 #[test]
 fn levels_of_the_pyramid_are_no_worse_than_the_base_lobe() {
-    let (image, base) = tiles(128, 5, 0.5);
+    let (image, base) = tiles(128, 8, 0.5);
     let settings = Settings { profile: Profile::Pyramid, model: Model::Anisotropic, ..settings(0.1) };
     let baked = bake_with(&image, base, &settings);
     let choice = baked.choice.as_ref().unwrap();
@@ -358,4 +358,60 @@ fn levels_that_cannot_be_sampled_do_not_count() {
     // A quarter of the size lacks nothing that is sampled.
     assert_eq!(taken(&coarse).1, 2);
     assert_eq!(choice(99).finest, 6, "there is always one level");
+}
+
+/// A texture that takes the place of the material's own costs nothing, so that it is preferred to no model. It is not
+/// where it hardly changes the picture: a flat surface needs no other roughness than the mean.
+#[test]
+fn a_roughness_texture_that_replaces_another_costs_nothing() {
+    let roughness = |channel: fn(u32) -> u32| {
+        let samples = Samples::U8((0..64 * 64).flat_map(|i| [0, channel(i) as u8, 255]).collect());
+        BaseRoughness { image: Some(Image { width: 64, height: 64, channels: 3, samples }), factor: 1.0 }
+    };
+    let bumpy = normals(64, |x, y| [0.3 * noise(x, y, 1), 0.3 * noise(x, y, 2)]);
+    let flat = normals(64, |_, _| [0.0; 2]);
+    let chosen = |image: &Image, base: BaseRoughness, profile| {
+        let choice = bake_with(image, base, &Settings { profile, ..settings(0.3) }).choice.unwrap();
+        let none = &choice.candidates[0];
+        assert!(none.errors.iter().all(|error| *error <= 0.3), "{choice:#?}");
+        choice.taken().unwrap().model
+    };
+    let constant = |factor| BaseRoughness { image: None, factor };
+    assert_eq!(chosen(&bumpy, roughness(|_| 120), Profile::Portable), Model::Isotropic);
+    assert_eq!(chosen(&bumpy, roughness(|_| 120), Profile::Pyramid), Model::None, "D would be one more texture");
+    assert_eq!(chosen(&bumpy, constant(120.0 / 255.0), Profile::Portable), Model::None);
+    assert_eq!(chosen(&flat, roughness(|i| 150 + i % 3), Profile::Portable), Model::None);
+}
+
+/// Without a model, engines show mips of the material's own roughness texture: the mean roughness, and not the mean of
+/// squared alphas, which is further from the truth on a flat surface.
+#[test]
+fn the_base_lobe_has_the_mean_roughness() {
+    const SIDE: u32 = 64;
+    let channel = |i: u32| if noise(i % SIDE / 8, i / SIDE / 8, 9) < 0.0 { 60 } else { 150_u8 };
+    let samples = Samples::U8((0..SIDE * SIDE).flat_map(|i| [0, channel(i), 255]).collect());
+    let image = Image { width: SIDE, height: SIDE, channels: 3, samples };
+    let base = BaseRoughness { image: Some(image), factor: 1.0 };
+    let settings = Settings { target: Target::Float, ..settings(0.5) };
+    let choice = bake_with(&normals(SIDE, |_, _| [0.0; 2]), base, &settings).choice.unwrap();
+    let squared_alpha = |i: u32| SquaredAlpha::isotropic(Roughness(f32::from(channel(i)) / 255.0).into());
+    let lobes: Vec<SquaredAlpha> = (0..SIDE * SIDE).map(squared_alpha).collect();
+    let surface = Surface::new(SIDE, SIDE, &vec![[0.0, 0.0, 1.0]; lobes.len()], &lobes).unwrap();
+    let truth = surface.magnified();
+    for level in 4..=6 {
+        let size = (SIDE >> level, SIDE >> level);
+        let texels = (0..size.1).flat_map(|y| (0..size.0).map(move |x| (x, y)));
+        let errors = texels.map(|texel| {
+            let footprint = surface.footprint(size, texel);
+            let mean = |of: fn(f64) -> f64| footprint.parts().iter().map(|p| p.weight * of(p.base[0])).sum::<f64>();
+            let reference = Reference::new(Family::Ggx, &truth.footprint(size, texel), SAMPLES);
+            let lobe = |a: f64| Lobe::new(Family::Ggx, [0.0, 0.0, 1.0], [a, 0.0, a]);
+            [mean(|a| a.sqrt().sqrt()).powi(4), mean(|a| a)].map(|a| reference.error(&lobe(a)))
+        });
+        let errors: Vec<[f64; 2]> = errors.collect();
+        let [of_roughness, of_squares] = [0, 1].map(|i| errors.iter().map(|e| e[i]).sum::<f64>() / errors.len() as f64);
+        let shown = f64::from(choice.candidates[0].errors[level]);
+        assert!((shown - of_roughness).abs() < 0.01, "level {level}: {shown} {of_roughness}");
+        assert!(of_squares > of_roughness + 0.02, "level {level}: {of_squares} {of_roughness}");
+    }
 }

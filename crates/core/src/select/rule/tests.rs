@@ -41,3 +41,15 @@ fn coarse_levels_keep_to_the_bound_as_well() {
     assert_eq!(choose(&[coarse(0.3), coarse(0.08)], 0.1), Some(1));
     assert_eq!(choose(&[coarse(0.105), coarse(0.08)], 0.1), Some(0), "samples cannot tell this from the bound");
 }
+
+/// A gain counts by the share of the screen that shows the level.
+#[test]
+fn a_closer_candidate_gains_where_it_is_seen() {
+    let none = [0.05; 8];
+    let with = |level: usize, gain: f32| {
+        let mut errors = none;
+        errors[level] -= gain;
+        errors
+    };
+    assert!(is_closer(&with(1, 0.004), &none) && !is_closer(&with(7, 0.04), &none) && !is_closer(&none, &none));
+}
