@@ -124,7 +124,7 @@ impl LayerReport {
 pub struct Choice {
     /// The finest level that can be sampled. The first error of each candidate belongs to this level.
     pub finest: usize,
-    /// The candidates in order of rising cost: shader work first, then bytes.
+    /// The candidates by model, from none to anisotropic, and then by bytes.
     pub candidates: Vec<Candidate>,
     /// Index of the chosen candidate.
     pub chosen: usize,

@@ -125,9 +125,14 @@ impl BaseRows<'_> {
         SquaredAlpha::isotropic(self.roughness(green).into()).0.uu
     }
 
-    /// Returns whether the material has a roughness texture.
-    pub fn has_texture(&self) -> bool {
-        self.roughness.is_some()
+    /// Returns columns and rows of the material's own roughness texture.
+    pub fn texture_size(&self) -> Option<(u32, u32)> {
+        self.roughness.as_ref().map(|rows| (rows.source().width(), rows.source().height()))
+    }
+
+    /// Returns whether all texels are equal.
+    pub fn is_uniform(&self) -> bool {
+        self.roughness.is_none() && self.direction.is_none()
     }
 
     /// Returns whether a texture varies the roughness, or a metalness that counts by base colour.
@@ -270,7 +275,7 @@ enum TexelLevels {
 
 impl TexelLevels {
     fn new(rows: &BaseRows<'_>) -> Self {
-        if rows.roughness.is_none() && rows.direction.is_none() {
+        if rows.is_uniform() {
             Self::Uniform
         } else if rows.is_anisotropic() {
             Self::Anisotropic(MipTail::new(rows))
@@ -360,7 +365,7 @@ impl<'a> Base<'a> {
         }
     }
 
-    /// Returns the average of all texels.
+    /// Returns the texel of the coarsest level.
     pub fn coarsest(&self) -> BaseTexel {
         let mut texel = [BaseTexel::default()];
         self.row(self.sizes().len() - 1, 0, &mut texel);

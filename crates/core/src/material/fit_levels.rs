@@ -116,7 +116,7 @@ pub fn fit_levels<R: TexelRows<Texel: LobeTexel>>(
             }
             let wanted = |x: u32| level_fit.parts_of(marks[x as usize]);
             let fitted = |x: u32, parts: &Parts, lobe| {
-                if level_fit.fits_width(marks[x as usize]) {
+                if family == Family::Ggx && level_fit.fits_width(marks[x as usize]) {
                     return fit_width(parts, lobe);
                 }
                 fit(family, parts, lobe, effort, (y * size.0 + x) as usize * effort.half_vectors)

@@ -91,8 +91,8 @@ impl<'a> Roughening<'a> {
     }
 
     /// Returns the lobes that the pyramid profile adds K to, in row `y` of `level`. `roughened` are the roughened lobes
-    /// of that row. They can be narrower than the mean of the base lobes, since texels count by reflectance. K cannot
-    /// be negative, so that the base lobe then has the smaller squared alpha of the roughened lobe.
+    /// of that row. They can be narrower than the base lobe of the mean roughness, since texels count by reflectance. K
+    /// cannot be negative, so that the base lobe then has the smaller squared alpha of the roughened lobe.
     pub fn pyramid_base_row(&self, level: usize, y: u32, roughened: &[SquaredAlpha]) -> Vec<SquaredAlpha> {
         let base = self.base_row(level, y, roughened.len());
         if level == 0 || !self.needs_base_texture() {

@@ -31,7 +31,7 @@ pub struct Search {
 
 /// Returns the lobe with the least error for the mixture of `parts` (weights that sum to 1, lobes) that a search
 /// finds. The search compares lobes at half-vectors whose sequence begins at `first`. At these the result is no worse
-/// than `start` and than a plain mip, which has the mean normal and the mean squared alphas.
+/// than `start` and than the lobe with the mean normal and the mean squared alphas.
 ///
 /// The search descends from the best of several starts. Besides these two there are the likeliest lobe of the
 /// half-vectors, and a narrow lobe where the density is highest: in a footprint of two populations, such as mirror
@@ -47,7 +47,7 @@ pub fn fit(
     let given = Candidate::of(&start);
     let steps = effort.likelihood_steps;
     let likeliest = (steps > 0).then(|| target.likeliest(given, steps));
-    let starts = [Some(given), plain_mip(parts), likeliest, target.peak()].into_iter().flatten();
+    let starts = [Some(given), mean_lobe(parts), likeliest, target.peak()].into_iter().flatten();
     let mut starts: Vec<(f32, Candidate)> = starts.map(|lobe| (target.error(&lobe), lobe)).collect();
     starts.sort_by(|a, b| a.0.total_cmp(&b.0));
     let Search { descents, rounds } = effort.search;
@@ -57,7 +57,7 @@ pub fn fit(
 }
 
 /// Returns the mean normal with the mean squared alphas; `None` if the mean normal is not above the surface.
-fn plain_mip(parts: &[(f32, OrientedLobe)]) -> Option<Candidate> {
+fn mean_lobe(parts: &[(f32, OrientedLobe)]) -> Option<Candidate> {
     let (mut normal, mut a) = ([0.0; 3], Symmetric2::ZERO);
     for (weight, lobe) in parts {
         normal.iter_mut().zip(lobe.normal).for_each(|(sum, c)| *sum += weight * c);

@@ -7,40 +7,40 @@
 use crate::lobe::{OrientedLobe, SquaredAlpha};
 use crate::simd::dispatch;
 
-/// Places of t at which densities are compared: from 1/64 of the least squared alpha on, sqrt 2 apart.
-const PLACES: usize = 40;
-/// The first place, divided by the least squared alpha of a binade.
+/// Places of t at which densities are compared, [`PLACE_STEP`] apart: from 1/64 of the least squared alpha up to 64
+/// times the largest.
+const PLACES: usize = 64;
+/// Ratio of the first place to the least squared alpha.
 const FIRST_PLACE: f32 = 1.0 / 64.0;
-/// Ratio of neighbouring places: sqrt 2.
+/// Ratio of neighbouring places.
 const PLACE_STEP: f32 = std::f32::consts::SQRT_2;
-/// Ratio of neighbouring widths that are tried, in squared alphas: the fourth root of 2.
-const WIDTH_STEP: f32 = 1.189_207_1;
-/// The most widths that are tried: squared alphas up to 256 times the least.
-const WIDTHS: usize = 33;
+/// The least squared alpha.
+const LEAST: f32 = 1e-6;
+/// Ratios of the squared alphas that are tried beside the best one, one after the other: 2^(1/2), 2^(1/4), 2^(1/8) and
+/// 2^(1/16).
+const FINER_STEPS: [f32; 4] = [std::f32::consts::SQRT_2, 1.189_207_1, 1.090_507_7, 1.044_273_8];
 
 /// Returns `start` with the width that has the least error for GGX lobes `parts` (weights that sum to 1, lobes), whose
-/// normals are nearly that of `start`. The ratio of the alphas stays. The error is compared at a few widths between
-/// those of the narrowest and of the widest part, and interpolated between them.
+/// normals are nearly that of `start`. The ratio of the alphas stays, and they are at most 1 in the mean. Widths
+/// between those of the narrowest and of the widest part are tried: first by factors of 2, then by smaller ones about
+/// the best.
 pub fn fit_width(parts: &[(f32, OrientedLobe)], start: OrientedLobe) -> OrientedLobe {
-    let squared = |lobe: &OrientedLobe| lobe.squared_alpha.0.determinant().max(0.0).sqrt();
+    let squared = |lobe: &OrientedLobe| lobe.squared_alpha.0.determinant().max(0.0).sqrt().clamp(LEAST, 1.0);
     // A lobe beside the normal is as far from it as a wider lobe about it.
     let away = |lobe: &OrientedLobe| {
         let between = [0, 1, 2].map(|i| lobe.normal[i] - start.normal[i]);
         between[0] * between[0] + between[1] * between[1] + between[2] * between[2]
     };
-    let parts: Vec<(f32, f32)> = parts.iter().map(|(weight, lobe)| (*weight, squared(lobe) + away(lobe))).collect();
-    let (least, most) = parts.iter().fold((f32::MAX, 0.0_f32), |(least, most), (_, a)| (least.min(*a), most.max(*a)));
-    let own = squared(&start);
-    if !(least > f32::MIN_POSITIVE && own > 0.0) {
-        return start;
-    }
-    let wanted = dispatch!(fearless_simd::Level::new(), _simd => best_width(&parts, least, most));
-    OrientedLobe { squared_alpha: SquaredAlpha((wanted / own) * start.squared_alpha.0), ..start }
+    let width = |lobe: &OrientedLobe| (squared(lobe) + away(lobe)).min(1.0);
+    let parts: Vec<(f32, f32)> = parts.iter().map(|(weight, lobe)| (*weight, width(lobe))).collect();
+    let wanted = dispatch!(fearless_simd::Level::new(), _simd => best_width(&parts));
+    OrientedLobe { squared_alpha: SquaredAlpha((wanted / squared(&start)) * start.squared_alpha.0), ..start }
 }
 
-/// Returns the squared alpha with the least error, from `least` to `most`.
+/// Returns the squared alpha with the least error.
 #[inline(always)]
-fn best_width(parts: &[(f32, f32)], least: f32, most: f32) -> f32 {
+fn best_width(parts: &[(f32, f32)]) -> f32 {
+    let (least, most) = parts.iter().fold((1.0_f32, LEAST), |(least, most), (_, a)| (least.min(*a), most.max(*a)));
     let mut places = [least * FIRST_PLACE; PLACES];
     for i in 1..PLACES {
         places[i] = places[i - 1] * PLACE_STEP;
@@ -51,28 +51,25 @@ fn best_width(parts: &[(f32, f32)], least: f32, most: f32) -> f32 {
             *sum += weight * density;
         }
     }
-    let (mut errors, mut widths) = ([f32::MAX; WIDTHS], [least; WIDTHS]);
-    let (mut best, mut width) = (0, least);
-    for i in 0..WIDTHS {
-        (widths[i], errors[i]) = (width, distance(&densities(width, &places), &wanted));
-        if errors[i] < errors[best] {
-            best = i;
+    let error = |a: f32| distance(&densities(a, &places), &wanted);
+    let mut best = (error(most), most);
+    let attempt = |a: f32, best: &mut (f32, f32)| {
+        let error = error(a);
+        if error < best.0 {
+            *best = (error, a);
         }
-        if width >= most {
-            break;
-        }
-        width = (width * WIDTH_STEP).min(most);
+    };
+    let mut coarse = least;
+    while coarse < most {
+        attempt(coarse, &mut best);
+        coarse *= 2.0;
     }
-    // The least value of the parabola through three errors.
-    let around = best.checked_sub(1).and_then(|below| Some((errors[below], *errors.get(best + 1)?)));
-    match around {
-        Some((below, above)) if above < f32::MAX => {
-            let bend = below - 2.0 * errors[best] + above;
-            let moved = if bend > 0.0 { 0.5 * (below - above) / bend } else { 0.0 };
-            widths[best] * (1.0 + moved * (WIDTH_STEP - 1.0))
-        }
-        _ => widths[best],
+    for step in FINER_STEPS {
+        let (_, middle) = best;
+        attempt((middle * step).min(most), &mut best);
+        attempt((middle / step).max(least), &mut best);
     }
+    best.1
 }
 
 /// Returns the density over ln t of a lobe of squared alpha `a` at each place.
@@ -119,6 +116,8 @@ mod tests {
             let [u, v] = [fitted.squared_alpha.0.uu, fitted.squared_alpha.0.vv].map(f32::sqrt);
             assert!((u / alpha - 1.0).abs() < 1e-4 && (v / alpha - 1.0).abs() < 1e-4, "{u} {v} {alpha}");
         }
+        let mirror = fit_width(&[(0.25, lobe(0.0, 0.0)); 4], lobe(0.0, 0.0)).squared_alpha.0;
+        assert!(mirror.uu >= 0.0 && mirror.uu <= 1e-6 && mirror.vv <= 1e-6, "{mirror:?}");
     }
 
     #[test]
@@ -141,6 +140,9 @@ mod tests {
             (0.03, 0.1, 0.75, 0.0),
             (0.1, 0.3, 0.25, 0.04),
             (0.02, 0.3, 0.6, 0.0),
+            (0.001, 0.7, 0.03, 0.0),
+            (0.005, 0.5, 0.06, 0.0),
+            (0.01, 0.5, 0.95, 0.0),
         ] {
             let parts = [(share, lobe(narrow, apart)), (1.0 - share, lobe(wide, 0.0))];
             let part = |(weight, lobe): &(f32, OrientedLobe)| {

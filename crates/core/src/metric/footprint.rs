@@ -2,7 +2,7 @@
 
 use crate::bump::NormalMap;
 use crate::lobe::{OrientedLobe, SquaredAlpha};
-use crate::math::symmetric::{Symmetric2, determinant};
+use crate::math::symmetric::Symmetric2;
 use crate::math::vector::{Vector, dot, normalised};
 
 /// Level 0 of a bumpy surface: the normals that an engine decodes, each with the material's base lobe.
@@ -59,18 +59,18 @@ pub struct FootprintMoments {
     pub base: [f64; 3],
 }
 
-/// Returns a lobe's squared alphas multiplied so that means of the result, and not of `base`, are means of roughness.
-pub fn roughness_of_base(base: [f64; 3]) -> [f64; 3] {
-    // The determinant is the eighth power of the roughness.
-    let roughness = determinant(base).max(0.0).sqrt().sqrt().sqrt();
+/// Returns a lobe's squared alphas, scaled so that they are linear in the roughness: a mean of them belongs to the mean
+/// roughness. That of an anisotropic lobe is the fourth root of its mean squared alpha.
+pub fn roughness_of_base([uu, uv, vv]: [f64; 3]) -> [f64; 3] {
+    let roughness = (0.5 * (uu + vv)).max(0.0).sqrt().sqrt();
     let cube = roughness * roughness * roughness;
-    if cube > 0.0 { base.map(|a| a / cube) } else { [0.0; 3] }
+    if cube > 0.0 { [uu, uv, vv].map(|a| a / cube) } else { [0.0; 3] }
 }
 
 /// Returns the squared alphas of which [`roughness_of_base`] returns `scaled`.
-pub fn base_of_roughness(scaled: [f64; 3]) -> [f64; 3] {
-    let roughness = determinant(scaled).max(0.0).sqrt();
-    scaled.map(|a| a * roughness * roughness * roughness)
+pub fn base_of_roughness([uu, uv, vv]: [f64; 3]) -> [f64; 3] {
+    let roughness = 0.5 * (uu + vv);
+    [uu, uv, vv].map(|a| a * roughness * roughness * roughness)
 }
 
 impl Surface {

@@ -338,3 +338,14 @@ fn sampled_texels_are_spread_and_inside_the_level() {
     assert!(many.iter().all(|(x, y)| *x < 100 && *y < 7));
     assert!((0..10).all(|tenth| many.iter().any(|(x, _)| x / 10 == tenth)));
 }
+
+/// Anisotropic lobes, of which one alpha may be 0, keep their shape.
+#[test]
+fn a_base_lobe_survives_the_way_to_roughness_and_back() {
+    for base in [[0.04, 0.0, 0.04], [1.0, 0.0, 0.0], [0.3, 0.1, 0.05], [0.0; 3]] {
+        let back = base_of_roughness(roughness_of_base(base));
+        assert!(back.iter().zip(base).all(|(a, b)| (a - b).abs() < 1e-12), "{back:?} {base:?}");
+    }
+    let mean = [0.04_f64, 0.36].map(|a| roughness_of_base([a, 0.0, a])[0]).iter().sum::<f64>() / 2.0;
+    assert!((mean - 0.5 * (0.04_f64.powf(0.25) + 0.36_f64.powf(0.25))).abs() < 1e-12);
+}

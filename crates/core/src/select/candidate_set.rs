@@ -2,7 +2,7 @@
 
 use crate::codec::PayloadFormat;
 use crate::material::{Encoding, Normals, PyramidLevels, Roughening};
-use crate::mip::Wrap;
+use crate::mip::{Wrap, level_sizes};
 use crate::settings::{Model, Settings};
 
 /// A layer whose model is to be chosen, and what limits the choice.
@@ -44,9 +44,12 @@ impl CandidateSet<'_, '_> {
         [Model::None, Model::Isotropic, Model::Anisotropic].into_iter().filter(|model| self.offers(*model))
     }
 
-    /// Returns whether the roughness texture of an isotropic candidate takes the place of a texture of the material.
-    pub(super) fn replaces_texture(&self) -> bool {
-        self.pyramid.is_none() && self.roughening.base().level_0().has_texture()
+    /// Returns whether an isotropic roughness texture of `bytes` takes the place of one of the material that takes as
+    /// much memory on the GPU, as RGBA with 8 bits and mips.
+    pub(super) fn replaces_texture(&self, bytes: u64) -> bool {
+        let texture = self.roughening.base().level_0().texture_size();
+        let replaced = texture.map_or(0, |(width, height)| 4 * mip_texels(width, height));
+        self.pyramid.is_none() && bytes <= replaced
     }
 
     fn offers(&self, model: Model) -> bool {
@@ -94,4 +97,9 @@ impl CandidateSet<'_, '_> {
         };
         u64::from(self.normals.is_some()) * portable + pyramid
     }
+}
+
+/// Returns the texels of all levels of a texture.
+fn mip_texels(width: u32, height: u32) -> u64 {
+    level_sizes(width, height).into_iter().map(|(width, height)| u64::from(width) * u64::from(height)).sum()
 }

@@ -141,10 +141,11 @@ impl CandidateSet<'_, '_> {
 
     /// Returns the rank of a candidate by rising cost; candidates of one rank are in the order of [`Self::models`].
     /// `none` is the candidate of the base lobe, for which the material keeps its textures. A roughness texture that
-    /// replaces one of them costs nothing, but is not worth it if it hardly changes the picture.
+    /// replaces one of them costs nothing, but is not preferred if it hardly lowers the error.
     fn cost_rank(&self, candidate: &Candidate, none: &Candidate) -> u8 {
-        match candidate.model {
-            Model::Isotropic if self.replaces_texture() && is_closer(&candidate.errors, &none.errors) => 0,
+        let Candidate { model, bytes, errors, .. } = candidate;
+        match model {
+            Model::Isotropic if self.replaces_texture(*bytes) && is_closer(errors, &none.errors) => 0,
             Model::None => 1,
             _ => 2,
         }

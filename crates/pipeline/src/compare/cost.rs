@@ -117,20 +117,22 @@ impl Cost {
         }
     }
 
-    /// Returns the cost of a peer whose maps are as large as `grid`; `plain` is the cost of plain mips. Bakes of other
-    /// tools are not timed, and their files are not written.
-    pub fn of_peer(peer: Peer, grid: &Texture, has_roughness: bool, plain: &Self) -> Self {
-        let base_roughness = u32::from(has_roughness);
-        let encoded = |n: u32| u64::from(n) * BLOCK * blocks(grid);
+    /// Returns the cost of a peer: its maps of bumps are as large as `normals`, and its roughness texture is as large
+    /// as `finest`. `plain` is the cost of plain mips. Bakes of other tools are not timed, and their files are not
+    /// written.
+    pub fn of_peer(peer: Peer, normals: &Texture, finest: &Texture, has_roughness: bool, plain: &Self) -> Self {
+        let bumps = BLOCK * blocks(normals);
+        let roughness = BLOCK * blocks(finest);
+        let base_roughness = if has_roughness { roughness } else { 0 };
         let (gpu_bytes, shading) = match peer {
             Peer::PlainMips => return Self { file_bytes: None, bake_seconds: None, ..plain.clone() },
             // Offsets, lambda_1 or D, and the roughness of the base lobe.
-            Peer::Lambda1 => (encoded(2 + base_roughness), shading("lambda1")),
-            Peer::D => (encoded(2 + base_roughness), shading("factor")),
+            Peer::Lambda1 => (2 * bumps + base_roughness, shading("lambda1")),
+            Peer::D => (2 * bumps + base_roughness, shading("factor")),
             // Five moments in two textures of four channels (LEAN mapping, section 4). Its shader was not measured.
-            Peer::LeanHalf => (encoded(base_roughness) + texels(grid) * 16, None),
-            Peer::LeanFloat => (encoded(base_roughness) + texels(grid) * 32, None),
-            _ => (encoded(2), shading("isotropic")),
+            Peer::LeanHalf => (base_roughness + texels(normals) * 16, None),
+            Peer::LeanFloat => (base_roughness + texels(normals) * 32, None),
+            _ => (bumps + roughness, shading("isotropic")),
         };
         Self {
             gpu_bytes: Some(gpu_bytes),

@@ -65,7 +65,6 @@ pub fn compare(
     advance: Advance<'_>,
 ) -> Option<Comparison> {
     let surface = surface(truth)?;
-    let grid = normals(&ours[0].material)?;
     // Block encoding may have resampled the bumps to multiples of 4.
     let (width, height) = ours[0].material.finest_size();
     let mut sizes = level_sizes(width, height);
@@ -92,9 +91,11 @@ pub fn compare(
     let drawn = |share: f32| advance(SCORING + (1.0 - SCORING) * share);
     let pictures = if picture_width > 0 { picture_errors(truth, &surface, &ours, picture_width, &drawn) } else { None };
     let plain = Cost::of_bake(&ours[0]);
+    let grid = normals(&ours[0].material)?;
+    let finest = ours[0].material.textures().max_by_key(|texture| texture.size(0)).unwrap_or(grid);
     let ours = ours.iter().map(|o| (o.name.clone(), Kind::Ours, o.chosen, Cost::of_bake(o)));
     let peers = Peer::ALL.iter().map(|peer| {
-        let cost = Cost::of_peer(*peer, grid, truth.roughness.is_some(), &plain);
+        let cost = Cost::of_peer(*peer, grid, finest, truth.roughness.is_some(), &plain);
         (peer.name().to_owned(), Kind::Peer, false, cost)
     });
     let best = ("oracle".to_owned(), Kind::Oracle, false, Cost::default());
@@ -111,7 +112,7 @@ pub fn compare(
 }
 
 fn lobe(material: &Material, size: (u32, u32), texel: (u32, u32)) -> Lobe {
-    let point = material.point(&|texture| texture.nearest_of_size(size, centre(size, texel)));
+    let point = material.point(&|texture| texture.linear_of_size(size, centre(size, texel)));
     Lobe::new(Family::Ggx, point.normal, point.squared_alpha)
 }
 
@@ -119,13 +120,13 @@ fn centre(size: (u32, u32), (x, y): (u32, u32)) -> [f64; 2] {
     [(f64::from(x) + 0.5) / f64::from(size.0), (f64::from(y) + 0.5) / f64::from(size.1)]
 }
 
-/// Returns level 0 on the grid of the finest texture.
+/// Returns level 0 on the grid of the finest texture, on which samplers magnify the others.
 fn surface(truth: &Material) -> Option<Surface> {
     let (width, height) = truth.finest_size();
     let texels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
     let (normals, base): (Vec<_>, Vec<_>) = texels
         .map(|texel| {
-            let point = truth.point(&|texture| texture.nearest(centre((width, height), texel)));
+            let point = truth.point(&|texture| texture.linear_of_size((width, height), centre((width, height), texel)));
             let [uu, uv, vv] = point.squared_alpha.map(|a| a as f32);
             (point.normal, SquaredAlpha(Symmetric2 { uu, uv, vv }))
         })

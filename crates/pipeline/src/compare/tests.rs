@@ -153,7 +153,7 @@ fn every_measured_shader_has_its_cost() {
     let [plain, anisotropic] = [None, Some(anisotropy)].map(|anisotropy| Cost::of_bake(&ours(anisotropy)));
     assert!(plain.operations < anisotropic.operations && plain.fetches < anisotropic.fetches);
     for peer in Peer::ALL {
-        let cost = Cost::of_peer(peer, &texture(), true, &plain);
+        let cost = Cost::of_peer(peer, &texture(), &texture(), true, &plain);
         let is_measured = !matches!(peer, Peer::LeanHalf | Peer::LeanFloat);
         assert_eq!((cost.operations.is_some(), cost.fetches.is_some()), (is_measured, is_measured), "{}", peer.name());
         assert!(cost.operations.is_none_or(|n| Some(n) >= plain.operations), "{}", peer.name());
@@ -173,14 +173,16 @@ fn a_roughness_texture_may_be_finer_than_the_normals() {
         anisotropy: None,
         lost: LostBumps::RoughenedTextures,
     };
-    let ours = [(); OURS].map(|()| Ours {
-        name: String::new(),
-        material: material.clone(),
-        file_bytes: 1,
-        seconds: 1.0,
-        chosen: false,
-    });
-    let entries = compare("m", &material, ours, 16, 0, &|_| {}).unwrap().entries;
+    let ours = |material: &Material| {
+        [(); OURS].map(|()| Ours {
+            name: String::new(),
+            material: material.clone(),
+            file_bytes: 1,
+            seconds: 1.0,
+            chosen: false,
+        })
+    };
+    let entries = compare("m", &material, ours(&material), 16, 0, &|_| {}).unwrap().entries;
     let plain = entries.iter().find(|entry| entry.name == "plain mips").unwrap();
     assert_eq!(plain.level_errors.len(), 6);
     // Stripes of two rows are lost at level 2.
@@ -189,4 +191,10 @@ fn a_roughness_texture_may_be_finer_than_the_normals() {
     for (peer, own) in plain.level_errors.iter().zip(&entries[0].level_errors) {
         assert!((peer - own).abs() < 1e-4, "{peer} {own}");
     }
+    // Bumps are interpolated as samplers do it, in the truth as in the bakes.
+    let bumps = texture(4, |i| [0.3 + 0.1 * (i % 5) as f32, 0.7 - 0.1 * (i % 3) as f32, 1.0, 1.0]);
+    let bumpy = Material { bumps: Bumps::Normals { texture: bumps, scale: 1.0, has_z: true }, ..material };
+    let entries = compare("m", &bumpy, ours(&bumpy), 1024, 0, &|_| {}).unwrap().entries;
+    assert!(entries[0].level_errors[0] < 1e-6, "{:?}", entries[0].level_errors);
+    assert!(entries[0].level_errors[1] < 0.1, "{:?}", entries[0].level_errors);
 }

@@ -70,12 +70,12 @@ impl Texture {
         (level.width, level.height)
     }
 
-    /// Returns the texel at `uv` of the finest level that is no larger than the given size.
-    pub fn nearest_of_size(&self, (width, height): (u32, u32), uv: [f64; 2]) -> [f64; 4] {
+    /// Returns the value at `uv`, interpolated from the finest level that is no larger than the given size. At the
+    /// centre of a texel of a level of this size, it is this texel.
+    pub fn linear_of_size(&self, (width, height): (u32, u32), uv: [f64; 2]) -> [f64; 4] {
         let fits = |l: &&Level<Texel>| l.width <= width && l.height <= height;
         let level = self.levels.iter().find(fits).unwrap_or(&self.levels[self.levels.len() - 1]);
-        let point = [uv[0] * f64::from(level.width), uv[1] * f64::from(level.height)];
-        texel(level, point[0].floor(), point[1].floor()).map(f64::from)
+        bilinear(level, uv)
     }
 
     /// Returns the mean over `footprint` about `uv`.

@@ -18,7 +18,7 @@ pub enum Evenness {
 /// Ratio of the alphas of finer texels from which they are uneven, if a normal is further from that of the narrowest
 /// lobe than half the alpha of this lobe.
 const UNEVEN: f32 = 2.0;
-/// Ratio of the alphas of finer texels from which they have unequal widths, if no normal is.
+/// Ratio of the alphas of finer texels from which they have unequal widths, if all normals are nearer than that.
 const UNEQUAL: f32 = 1.6;
 
 /// Writes the [`Evenness`] of each texel of row `y` of a level to `marks`. `finer` writes adjacent rows of the finer

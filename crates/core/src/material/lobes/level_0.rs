@@ -70,13 +70,14 @@ impl<'a> Level0<'a> {
 
     /// Returns levels 1 and coarser as A + 2 c K, where A is the mean of the base lobes.
     pub fn roughened(&self, bumps: &Bumps<'_>, sampler: Sampler, settings: &Settings) -> Vec<Level<OrientedLobe>> {
-        let (rows, base) = (MagnifiedBumps::of(bumps.rows, sampler), MipTail::new(&self.base));
+        let rows = MagnifiedBumps::of(bumps.rows, sampler);
+        let base = (!self.base.is_uniform()).then(|| MipTail::new(&self.base));
         let levels = bumps.sizes().into_iter().enumerate().skip(1);
         match settings.distribution {
             Distribution::Auto => {
                 let moments = Pyramid::new(Shaped(rows));
                 let row = |level, y, out: &mut [ShapedMoments]| moments.row(level, y, out);
-                levels.map(|(level, size)| self.roughened_level(level, size, &base, row, settings)).collect()
+                levels.map(|(level, size)| self.roughened_level(level, size, base.as_ref(), row, settings)).collect()
             }
             Distribution::Normal | Distribution::Uniform => {
                 let moments = Pyramid::new(rows);
@@ -85,7 +86,7 @@ impl<'a> Level0<'a> {
                     moments.row(level, y, &mut plain);
                     out.iter_mut().zip(plain).for_each(|(shaped, m)| *shaped = ShapedMoments::normal(m));
                 };
-                levels.map(|(level, size)| self.roughened_level(level, size, &base, row, settings)).collect()
+                levels.map(|(level, size)| self.roughened_level(level, size, base.as_ref(), row, settings)).collect()
             }
         }
     }
@@ -94,7 +95,7 @@ impl<'a> Level0<'a> {
         &self,
         level: usize,
         (width, height): (u32, u32),
-        base: &MipTail<BaseTexel>,
+        base: Option<&MipTail<BaseTexel>>,
         bumps: impl Fn(usize, u32, &mut [ShapedMoments]) + Sync,
         settings: &Settings,
     ) -> Level<OrientedLobe> {
@@ -103,7 +104,10 @@ impl<'a> Level0<'a> {
         texels.par_chunks_mut(width as usize).enumerate().for_each(|(y, out)| {
             let (mut texels, mut row) =
                 (vec![BaseTexel::default(); out.len()], vec![ShapedMoments::default(); out.len()]);
-            base.row(&self.base, level, y as u32, &mut texels);
+            match base {
+                Some(tail) => tail.row(&self.base, level, y as u32, &mut texels),
+                None => self.base.row(0, &mut texels),
+            }
             bumps(level, y as u32, &mut row);
             for ((lobe, texel), m) in out.iter_mut().zip(&texels).zip(&row) {
                 // The correction depends on the ratio of the lobe's width to the bumps. It is cheaper to divide the

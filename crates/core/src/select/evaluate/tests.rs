@@ -381,6 +381,9 @@ fn a_roughness_texture_that_replaces_another_costs_nothing() {
     assert_eq!(chosen(&bumpy, roughness(|_| 120), Profile::Pyramid), Model::None, "D would be one more texture");
     assert_eq!(chosen(&bumpy, constant(120.0 / 255.0), Profile::Portable), Model::None);
     assert_eq!(chosen(&flat, roughness(|i| 150 + i % 3), Profile::Portable), Model::None);
+    let samples = Samples::U8([0, 120, 255].repeat(4 * 4));
+    let small = BaseRoughness { image: Some(Image { width: 4, height: 4, channels: 3, samples }), factor: 1.0 };
+    assert_eq!(chosen(&bumpy, small, Profile::Portable), Model::None, "the texture would be larger");
 }
 
 /// Without a model, engines show mips of the material's own roughness texture: the mean roughness, and not the mean of
