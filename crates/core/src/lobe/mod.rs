@@ -18,6 +18,8 @@ mod reflecting;
 mod region;
 mod shape;
 mod table;
+#[cfg(test)]
+pub mod test_lobes;
 
 pub use anisotropy::Anisotropy;
 pub use correction::{Corrected, Distribution};

@@ -99,15 +99,9 @@ fn distance(a: &[f32; PLACES], b: &[f32; PLACES]) -> f32 {
 mod tests {
     use super::*;
     use crate::lobe::Family;
+    use crate::lobe::test_lobes::isotropic_lobe as lobe;
     use crate::math::symmetric::Symmetric2;
     use crate::metric::{Footprint, Lobe, Part, Reference, oracle};
-
-    fn lobe(alpha: f32, x: f32) -> OrientedLobe {
-        OrientedLobe {
-            normal: [x, 0.0, (1.0 - x * x).sqrt()],
-            squared_alpha: SquaredAlpha(Symmetric2::diagonal(alpha * alpha, alpha * alpha)),
-        }
-    }
 
     #[test]
     fn equal_parts_have_their_own_width() {

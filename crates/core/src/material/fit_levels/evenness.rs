@@ -66,22 +66,14 @@ fn evenness(lobes: &[OrientedLobe; 4], finer: Evenness) -> Evenness {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lobe::SquaredAlpha;
-    use crate::math::symmetric::Symmetric2;
-
-    fn lobe(alpha: f32, x: f32) -> OrientedLobe {
-        OrientedLobe {
-            normal: [x, 0.0, (1.0 - x * x).sqrt()],
-            squared_alpha: SquaredAlpha(Symmetric2::diagonal(alpha * alpha, alpha * alpha)),
-        }
-    }
+    use crate::lobe::test_lobes::isotropic_lobe;
 
     /// The distance of normals counts in alphas of the narrowest lobe: half of it is 0.05.
     #[test]
     fn directions_decide_whether_a_width_is_enough() {
         let evenness_with = |ratio: f32, distance: f32, finer: Evenness| {
-            let narrow = lobe(0.1, 0.0);
-            evenness(&[narrow, narrow, lobe(0.1 * ratio, distance), narrow], finer)
+            let narrow = isotropic_lobe(0.1, 0.0);
+            evenness(&[narrow, narrow, isotropic_lobe(0.1 * ratio, distance), narrow], finer)
         };
         use Evenness::{Even, UnequalWidths, Uneven};
         assert_eq!([1.5, 1.7, 9.0].map(|ratio| evenness_with(ratio, 0.04, Even)), [Even, UnequalWidths, UnequalWidths]);

@@ -2,6 +2,7 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::*;
+use crate::lobe::test_lobes::isotropic_lobe;
 use crate::lobe::{OrientedLobe, SquaredAlpha};
 use crate::math::symmetric::Symmetric2;
 use crate::metric::{Lobe, Precision, sample_sites};
@@ -98,7 +99,7 @@ fn widths_of_a_flat_surface_are_fitted() {
     // Squares of 2 x 2 texels are alike, since `fast` fits to texels of level 1.
     let squares: Vec<f32> = (0..SIDE * SIDE / 4).map(|_| if random() < 0.7 { 0.1 } else { 0.35 }).collect();
     let square = |x: u32, y: u32| squares[(y / 2 * (SIDE / 2) + x / 2) as usize];
-    let texels = (0..SIDE * SIDE).map(|i| lobe(square(i % SIDE, i / SIDE), 0.0)).collect();
+    let texels = (0..SIDE * SIDE).map(|i| isotropic_lobe(square(i % SIDE, i / SIDE), 0.0)).collect();
     let level_0 = Level { width: SIDE, height: SIDE, texels };
     let merged = MipTail::new(&level_0);
     let [fast, best] = [Effort::Fast, Effort::Best].map(|quality| {
@@ -108,11 +109,4 @@ fn widths_of_a_flat_surface_are_fitted() {
     });
     let merged = error(&level_0, &merged, 2..5);
     assert!(fast < 1.05 * best && fast < 0.9 * merged, "{fast} {best} {merged}");
-}
-
-fn lobe(alpha: f32, x: f32) -> OrientedLobe {
-    OrientedLobe {
-        normal: [x, 0.0, (1.0 - x * x).sqrt()],
-        squared_alpha: SquaredAlpha(Symmetric2::diagonal(alpha * alpha, alpha * alpha)),
-    }
 }
