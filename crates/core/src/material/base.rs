@@ -130,11 +130,6 @@ impl BaseRows<'_> {
         self.roughness.as_ref().map(|rows| (rows.source().width(), rows.source().height()))
     }
 
-    /// Returns whether all texels are equal.
-    pub fn is_uniform(&self) -> bool {
-        self.roughness.is_none() && self.direction.is_none()
-    }
-
     /// Returns whether a texture varies the roughness, or a metalness that counts by base colour.
     pub fn has_varying_texture(&self) -> bool {
         let varies = |rows: &LinearResampled<Rgba<'_>>| rows.source().common_green().is_none();
@@ -275,7 +270,7 @@ enum TexelLevels {
 
 impl TexelLevels {
     fn new(rows: &BaseRows<'_>) -> Self {
-        if rows.is_uniform() {
+        if rows.roughness.is_none() && rows.direction.is_none() {
             Self::Uniform
         } else if rows.is_anisotropic() {
             Self::Anisotropic(MipTail::new(rows))
@@ -317,6 +312,11 @@ impl<'a> Base<'a> {
             TexelLevels::Isotropic(_) => false,
             TexelLevels::Anisotropic(_) => self.rows.constant_red_blue().is_some(),
         }
+    }
+
+    /// Returns whether mips have the mean A, and not the mean roughness.
+    pub fn has_mean_squared_alphas(&self) -> bool {
+        matches!(self.levels.texels, TexelLevels::Uniform | TexelLevels::Anisotropic(_))
     }
 
     /// Returns the sizes of all levels, level 0 first.

@@ -1,8 +1,8 @@
 //! Fits the lobes of coarse levels to the level-0 texels of their footprints.
 //!
-//! Lobes that are merged from level to level drift, most where two populations meet: mirror tiles beside rough grout.
-//! A fit begins at level 0 again and goes by the lobe error. `cargo run --release -p studies --bin levels` prints the
-//! errors of both qualities, level by level.
+//! Lobes that are merged from level to level drift, most where two populations meet: mirror tiles beside rough grout. A
+//! fit begins at level 0 again and goes by the lobe error. Where merged lobes have the wrong width only, this alone is
+//! fitted. `cargo run --release -p studies --bin levels` prints the errors of both qualities, level by level.
 
 mod evenness;
 mod footprint_row;
@@ -34,7 +34,7 @@ impl LevelFit {
     fn parts_of(&self, evenness: Evenness) -> Option<usize> {
         match evenness {
             Evenness::Uneven => Some(self.uneven_parts),
-            // Level 1 is in memory, and level 0 would hardly change the width.
+            // The four texels of level 1 under a texel of level 2 are enough for a width.
             Evenness::UnequalWidths => self.even_parts.or(Some(self.uneven_parts.max(1))),
             Evenness::Even => self.even_parts,
         }
@@ -116,8 +116,8 @@ pub fn fit_levels<R: TexelRows<Texel: LobeTexel>>(
             }
             let wanted = |x: u32| level_fit.parts_of(marks[x as usize]);
             let fitted = |x: u32, parts: &Parts, lobe| {
-                if family == Family::Ggx && level_fit.fits_width(marks[x as usize]) {
-                    return fit_width(parts, lobe);
+                if level_fit.fits_width(marks[x as usize]) {
+                    return fit_width(family, parts, lobe);
                 }
                 fit(family, parts, lobe, effort, (y * size.0 + x) as usize * effort.half_vectors)
             };

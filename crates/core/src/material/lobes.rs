@@ -44,7 +44,7 @@ impl<'a> Lobes<'a> {
     ) -> Self {
         let level_0 = Level0 { base: base.level_0().clone(), bumps: bumps.rows, slope_scale };
         let points = MagnifiedLobes { level_0: &level_0, sampler };
-        let roughened = || level_0.roughened(bumps, sampler, settings).into();
+        let roughened = || level_0.roughened(base, bumps, sampler, settings).into();
         let family = settings.lobe;
         let tail = match (settings.distribution, settings.quality) {
             (Distribution::Normal | Distribution::Uniform, _) => Tail::ByArea(roughened()),

@@ -108,7 +108,7 @@ pub fn beckmann(peak: f32, squared: f32, z: f32) -> f32 {
 /// Returns exp(-x) for x >= 0, with a relative error below 1e-6, and 0 beyond x = 87. The compiler vectorises this
 /// function, and its bits depend on no library.
 #[inline(always)]
-fn exp_of_minus(x: f32) -> f32 {
+pub fn exp_of_minus(x: f32) -> f32 {
     let scaled = -x.min(87.0) * std::f32::consts::LOG2_E;
     let whole = scaled.floor();
     let part = (scaled - whole) * std::f32::consts::LN_2;

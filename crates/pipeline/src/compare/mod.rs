@@ -64,6 +64,7 @@ pub fn compare(
     picture_width: u32,
     advance: Advance<'_>,
 ) -> Option<Comparison> {
+    let grid = normals(&ours[0].material)?;
     let surface = surface(truth)?;
     // Block encoding may have resampled the bumps to multiples of 4.
     let (width, height) = ours[0].material.finest_size();
@@ -91,7 +92,6 @@ pub fn compare(
     let drawn = |share: f32| advance(SCORING + (1.0 - SCORING) * share);
     let pictures = if picture_width > 0 { picture_errors(truth, &surface, &ours, picture_width, &drawn) } else { None };
     let plain = Cost::of_bake(&ours[0]);
-    let grid = normals(&ours[0].material)?;
     let finest = ours[0].material.textures().max_by_key(|texture| texture.size(0)).unwrap_or(grid);
     let ours = ours.iter().map(|o| (o.name.clone(), Kind::Ours, o.chosen, Cost::of_bake(o)));
     let peers = Peer::ALL.iter().map(|peer| {

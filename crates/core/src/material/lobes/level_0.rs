@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use crate::bump::{Moments, Offset, Shaped, ShapedMoments, normal_from_offset};
 use crate::lobe::{Distribution, OrientedLobe, ReflectingLobe, SquaredAlpha};
-use crate::material::base::{BaseRows, BaseTexel, base_lobe};
+use crate::material::base::{Base, BaseRows, BaseTexel, base_lobe};
 use crate::material::bump_map::BumpMap;
 use crate::material::bumps::Bumps;
 use crate::material::magnified::Magnified;
@@ -69,15 +69,25 @@ impl<'a> Level0<'a> {
     }
 
     /// Returns levels 1 and coarser as A + 2 c K, where A is the mean of the base lobes.
-    pub fn roughened(&self, bumps: &Bumps<'_>, sampler: Sampler, settings: &Settings) -> Vec<Level<OrientedLobe>> {
+    pub fn roughened(
+        &self,
+        base: &Base<'_>,
+        bumps: &Bumps<'_>,
+        sampler: Sampler,
+        settings: &Settings,
+    ) -> Vec<Level<OrientedLobe>> {
         let rows = MagnifiedBumps::of(bumps.rows, sampler);
-        let base = (!self.base.is_uniform()).then(|| MipTail::new(&self.base));
+        let means = (!base.has_mean_squared_alphas()).then(|| MipTail::new(&self.base));
+        let base_row = |level: usize, y: u32, out: &mut [BaseTexel]| match &means {
+            Some(tail) => tail.row(&self.base, level, y, out),
+            None => base.row(level, y, out),
+        };
         let levels = bumps.sizes().into_iter().enumerate().skip(1);
         match settings.distribution {
             Distribution::Auto => {
                 let moments = Pyramid::new(Shaped(rows));
                 let row = |level, y, out: &mut [ShapedMoments]| moments.row(level, y, out);
-                levels.map(|(level, size)| self.roughened_level(level, size, base.as_ref(), row, settings)).collect()
+                levels.map(|(level, size)| self.roughened_level(level, size, base_row, row, settings)).collect()
             }
             Distribution::Normal | Distribution::Uniform => {
                 let moments = Pyramid::new(rows);
@@ -86,7 +96,7 @@ impl<'a> Level0<'a> {
                     moments.row(level, y, &mut plain);
                     out.iter_mut().zip(plain).for_each(|(shaped, m)| *shaped = ShapedMoments::normal(m));
                 };
-                levels.map(|(level, size)| self.roughened_level(level, size, base.as_ref(), row, settings)).collect()
+                levels.map(|(level, size)| self.roughened_level(level, size, base_row, row, settings)).collect()
             }
         }
     }
@@ -95,7 +105,7 @@ impl<'a> Level0<'a> {
         &self,
         level: usize,
         (width, height): (u32, u32),
-        base: Option<&MipTail<BaseTexel>>,
+        base: impl Fn(usize, u32, &mut [BaseTexel]) + Sync,
         bumps: impl Fn(usize, u32, &mut [ShapedMoments]) + Sync,
         settings: &Settings,
     ) -> Level<OrientedLobe> {
@@ -104,10 +114,7 @@ impl<'a> Level0<'a> {
         texels.par_chunks_mut(width as usize).enumerate().for_each(|(y, out)| {
             let (mut texels, mut row) =
                 (vec![BaseTexel::default(); out.len()], vec![ShapedMoments::default(); out.len()]);
-            match base {
-                Some(tail) => tail.row(&self.base, level, y as u32, &mut texels),
-                None => self.base.row(0, &mut texels),
-            }
+            base(level, y as u32, &mut texels);
             bumps(level, y as u32, &mut row);
             for ((lobe, texel), m) in out.iter_mut().zip(&texels).zip(&row) {
                 // The correction depends on the ratio of the lobe's width to the bumps. It is cheaper to divide the
