@@ -28,7 +28,7 @@ const ALPHAS: [f32; 2] = [0.05, 0.2];
 const LEVELS: std::ops::RangeInclusive<u32> = 1..=5;
 
 /// Where the errors of codes of D begin: after those of offsets.
-const FACTORS: usize = 1 + 23;
+const FACTORS: usize = 1 + 24;
 /// Where the errors of isotropic lobes begin.
 const ISOTROPIC: usize = FACTORS + 7;
 const COLUMNS: usize = ISOTROPIC + 2;
@@ -56,6 +56,14 @@ fn quantile(values: impl Iterator<Item = f64>, share: f64) -> f64 {
     let mut values: Vec<f64> = values.collect();
     values.sort_by(f64::total_cmp);
     values.get((share * (values.len().max(1) - 1) as f64) as usize).copied().unwrap_or(1.0).max(1e-6)
+}
+
+/// Returns the scale next to `scale` with which bytes of flat normals stay bytes. The bake takes it for maps with flat
+/// areas.
+fn keeping_bytes(scale: f64) -> f64 {
+    let ratio = |odd: &f64| (scale * odd).ln().abs();
+    let nearest = (0..500).map(|i| f64::from(2 * i + 1)).min_by(|a, b| ratio(a).total_cmp(&ratio(b)));
+    if scale > 3.0_f64.sqrt() { scale } else { 1.0 / nearest.unwrap_or(1.0) }
 }
 
 fn offset_codes(offsets: &[[f64; 2]]) -> Vec<Code<2>> {
@@ -124,6 +132,8 @@ fn offset_codes(offsets: &[[f64; 2]]) -> Vec<Code<2>> {
         codes.push(radial(format!("f / (s + \\|f\\|), s = {name}"), s));
         codes.push(per_axis(format!("f / (s + \\|f\\|) by axis, s = {name}"), s));
     }
+    let kept = keeping_bytes(2.0 * best);
+    codes.push(normal("xyz by direction, s = 1, 1/3, ... next to 2 best".to_owned(), kept, Metric::Direction, true));
     codes
 }
 

@@ -26,7 +26,7 @@ impl<'l> OffsetTexture<'l> {
     /// Chooses the scale for the levels that `encoding` writes. Floats need no scale, unless a PNG holds level 0, too.
     pub fn new(levels: &'l dyn PyramidLevels, encoding: Encoding) -> Self {
         let is_exact = !encoding.format.is_normalised() && !encoding.fallback;
-        let scale = if is_exact { 1.0 } else { best_scale(levels, encoding.first(&levels.sizes())) };
+        let scale = if is_exact { 1.0 } else { steepness(levels, encoding.first(&levels.sizes())).scale() };
         Self { levels, scale }
     }
 }
@@ -54,8 +54,8 @@ pub fn slopes_of_texel(texel: [f64; 3]) -> [f64; 2] {
     [-x / z, -y / z]
 }
 
-/// Returns the scale for the offsets of all levels from `first` on.
-fn best_scale(levels: &dyn PyramidLevels, first: usize) -> f32 {
+/// Returns how steep the offsets of all levels from `first` on are.
+fn steepness(levels: &dyn PyramidLevels, first: usize) -> Steepness {
     let mut steepness = Steepness::default();
     for (level, (width, height)) in levels.sizes().into_iter().enumerate().skip(first) {
         let of_row = |texels: &mut Vec<PyramidTexel>, y| {
@@ -71,7 +71,7 @@ fn best_scale(levels: &dyn PyramidLevels, first: usize) -> f32 {
         rows.into_iter().for_each(|row| level.merge(row));
         steepness.merge(level);
     }
-    steepness.scale()
+    steepness
 }
 
 #[cfg(test)]

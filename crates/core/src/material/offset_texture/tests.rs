@@ -52,7 +52,7 @@ proptest! {
         }
     }
 
-    /// Half the scale is the least of the mean error s a + b / s, found by steps in double precision.
+    /// The best scale is the least of the mean error s a + b / s, found by steps in double precision.
     #[test]
     fn the_scale_has_the_least_mean_error(
         offsets in prop::collection::vec(prop::array::uniform2(-3.0..3.0f32), 1..20), factor in 0.01..1.0f32,
@@ -60,7 +60,7 @@ proptest! {
         let offsets: Vec<_> = offsets.into_iter().map(|o| o.map(|f| f * factor)).collect();
         let of_texels: Vec<f64> = rows(&levels(&offsets));
         let error = |s: f64| of_texels.iter().map(|f| (s + f * f / s) / (1.0 + f * f)).sum::<f64>();
-        let scale = 0.5 * f64::from(best_scale(&levels(&offsets), 0));
+        let scale = f64::from(steepness(&levels(&offsets), 0).best_scale());
         for step in [0.9, 0.99, 1.01, 1.1] {
             prop_assert!(error(scale) <= error(scale * step) * (1.0 + 1e-6), "{scale} x {step}");
         }
@@ -83,7 +83,7 @@ fn rows(levels: &Pyramid<Level<Moments>>) -> Vec<f64> {
 #[test]
 fn one_percent_of_steep_texels_leave_the_precision_of_the_others() {
     let offsets: Vec<[f32; 2]> = (0..400).map(|i| if i % 100 == 7 { [16.0, 0.0] } else { [0.1, -0.05] }).collect();
-    let scale = best_scale(&levels(&offsets), 0);
+    let scale = steepness(&levels(&offsets), 0).scale();
     assert!(scale > 0.1 && scale < 0.8, "{scale}");
     let bytes = stored(&offsets, scale)[0].map(|c| (255.0 * c).round() / 255.0);
     let found = slopes_of_texel(bytes).map(|g| g * f64::from(scale));
@@ -93,7 +93,7 @@ fn one_percent_of_steep_texels_leave_the_precision_of_the_others() {
 
 #[test]
 fn only_maps_with_bumps_in_bytes_are_scaled() {
-    assert_eq!(best_scale(&levels(&[[0.0; 2]; 8]), 0), 2.0);
+    assert_eq!(steepness(&levels(&[[0.0; 2]; 8]), 0).scale(), 2.0);
     let encoding = |target| Encoding {
         fallback: false,
         effort: Effort::Fast,
