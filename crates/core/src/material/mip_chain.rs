@@ -26,6 +26,9 @@ pub struct MipChain {
     pub fallback: Option<Vec<u8>>,
 }
 
+/// The first level whose blocks are searched thoroughly under each effort. It has 1/256 of the texels of level 0.
+pub(crate) const THOROUGH_LEVEL: usize = 4;
+
 /// How to encode a mip chain.
 #[derive(Clone, Copy)]
 pub struct Encoding {
@@ -77,6 +80,12 @@ impl Encoding {
     /// Leaves out levels finer than `finest`.
     pub fn starting_at(self, finest: usize) -> Self {
         Self { finest, ..self }
+    }
+
+    /// Returns the encoding of `level`. Far levels take little time even if the search is thorough, and their blocks
+    /// hold many parts of a material.
+    pub fn at(self, level: usize) -> Self {
+        Self { effort: if level < THOROUGH_LEVEL { self.effort } else { Effort::Best }, ..self }
     }
 
     /// Returns which of the levels of `sizes` becomes level 0.
@@ -221,7 +230,8 @@ fn encode_levels(
             let lobes = rows.lobes.map(|row| move |y: u32, out: &mut [Lobe]| row(finest + level, first + y, out));
             let lobes = lobes.as_ref().map(|row| row as &(dyn Fn(u32, &mut [Lobe]) + Sync));
             let texels = Texels { width, height: band_rows.min(height - first), row: &values, lobes };
-            let (band, last) = rayon::join(|| encode_band(&texels, encoding), || compressed(encoded.take()));
+            let (band, last) =
+                rayon::join(|| encode_band(&texels, encoding.at(finest + level)), || compressed(encoded.take()));
             let storing = match last? {
                 Some(storing) if first > 0 => storing,
                 finished => {

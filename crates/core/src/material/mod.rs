@@ -41,7 +41,7 @@ pub use bump_map::{BumpMap, FrameTransforms, Framed};
 pub use bumps::Bumps;
 pub use diffuse_light::{DiffuseLight, DiffuseSource};
 pub use filter_loss::filter_loss;
-pub(crate) use mip_chain::EDGE;
+pub(crate) use mip_chain::{EDGE, THOROUGH_LEVEL};
 pub use mip_chain::{
     Encoding, GridError, LevelRow, LevelRows, LobeRow, MipChain, encode_mip_chain, first_within, grid, kept_bytes,
 };

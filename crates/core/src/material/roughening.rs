@@ -1,11 +1,13 @@
 //! The base lobe together with the lobes that its bumps roughen it to, texel by texel. `lobes.rs` does the roughening.
 
+use crate::bump::Moments;
 use crate::lobe::SquaredAlpha;
 use crate::material::base::{Base, BaseTexel, base_lobe};
+use crate::material::bump_map::BumpMap;
 use crate::material::bumps::Bumps;
 use crate::material::lobes::Lobes;
 use crate::math::symmetric::Symmetric2;
-use crate::mip::Sampler;
+use crate::mip::{AreaResampled, MipTail, Sampler};
 use crate::settings::Settings;
 
 /// A base lobe and the lobes that its bumps roughen it to.
@@ -14,8 +16,8 @@ pub struct Roughening<'a> {
     lobes: Lobes<'a>,
     /// Levels at which [`Self::roughened_row`] returns the base lobes.
     base_levels: Vec<usize>,
-    /// See [`Self::needs_base_texture`].
-    needs_base_texture: bool,
+    /// Moments of the bumps, if the pyramid profile needs a texture of the base lobe ([`Self::needs_base_texture`]).
+    moments: Option<(AreaResampled<&'a BumpMap>, MipTail<Moments>)>,
 }
 
 impl<'a> Roughening<'a> {
@@ -31,7 +33,8 @@ impl<'a> Roughening<'a> {
         let lobes = Lobes::new(&base, bumps, slope_scale, sampler, settings);
         let is_isotropic = !base.level_0().is_anisotropic();
         let needs_base_texture = settings.profile.has_pyramid() && is_isotropic && base.level_0().has_varying_texture();
-        Self { base, lobes, base_levels: Vec::new(), needs_base_texture }
+        let moments = needs_base_texture.then(|| (bumps.rows, MipTail::new(&bumps.rows)));
+        Self { base, lobes, base_levels: Vec::new(), moments }
     }
 
     /// Keeps the base lobe at `levels`.
@@ -87,22 +90,30 @@ impl<'a> Roughening<'a> {
     /// Returns whether the pyramid profile needs a texture of the base lobe: its mips then are not those of the
     /// material's own texture. An anisotropic base lobe keeps its textures.
     pub fn needs_base_texture(&self) -> bool {
-        self.needs_base_texture
+        self.moments.is_some()
     }
 
     /// Returns the lobes that the pyramid profile adds K to, in row `y` of `level`. `roughened` are the roughened lobes
-    /// of that row. They can be narrower than the base lobe of the mean roughness, since texels count by reflectance. K
-    /// cannot be negative, so that the base lobe then has the smaller squared alpha of the roughened lobe.
+    /// of that row.
+    ///
+    /// They can be narrower than the base lobe of the mean roughness, since texels count by reflectance, and since one
+    /// of two parts of a footprint can decide the lobe. K cannot be negative, so that the base lobe then has the
+    /// smaller squared alpha of the roughened lobe. They can also be wider than the bumps make them. K has no more than
+    /// the variance of the bumps, and the base lobe has what is left: plugins take K for facets of the base lobe.
     pub fn pyramid_base_row(&self, level: usize, y: u32, roughened: &[SquaredAlpha]) -> Vec<SquaredAlpha> {
         let base = self.base_row(level, y, roughened.len());
-        if level == 0 || !self.needs_base_texture() {
-            return base;
-        }
-        let narrower = |(SquaredAlpha(base), SquaredAlpha(roughened)): (SquaredAlpha, &SquaredAlpha)| {
-            let squared = base.uu.min(roughened.eigen().minor.max(0.0));
-            SquaredAlpha(Symmetric2::diagonal(squared, squared))
-        };
-        base.into_iter().zip(roughened).map(narrower).collect()
+        let Some((level_0, tail)) = self.moments.as_ref().filter(|_| level > 0) else { return base };
+        let mut bumps = vec![Moments::default(); roughened.len()];
+        tail.row(level_0, level, y, &mut bumps);
+        let scale = self.lobes.slope_scale() * self.lobes.slope_scale();
+        let isotropic =
+            |((SquaredAlpha(base), SquaredAlpha(roughened)), bumps): ((SquaredAlpha, &SquaredAlpha), Moments)| {
+                let smaller = roughened.eigen().minor.clamp(0.0, 1.0);
+                let without_bumps = smaller - 2.0 * scale * bumps.covariance.eigen().major;
+                let squared = base.uu.min(smaller).max(without_bumps);
+                SquaredAlpha(Symmetric2::diagonal(squared, squared))
+            };
+        base.into_iter().zip(roughened).zip(bumps).map(isotropic).collect()
     }
 
     /// Returns the base lobes of row `y` of `level`, which has `width` texels.

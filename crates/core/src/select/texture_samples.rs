@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use crate::codec::uastc::Lobe;
 use crate::codec::{EncodeError, Texels, encode};
 use crate::ktx2::decode_payload;
-use crate::material::{EDGE, Encoding, LevelRows};
+use crate::material::{EDGE, Encoding, LevelRows, THOROUGH_LEVEL};
 use crate::mip::{Wrap, neighbours};
 
 /// A texel of a level.
@@ -100,7 +100,11 @@ impl TextureSampler<'_> {
                 let lobes: Vec<Vec<[Lobe; 16]>> = rows.par_iter().map(of_row).collect();
                 lobes.concat()
             });
-            encode_and_decode(encoding, &mut values, lobes.as_deref())?;
+            let near = blocks.iter().take_while(|(level, ..)| *level < THOROUGH_LEVEL).count();
+            let lobes = lobes.as_deref().map(|lobes| lobes.split_at(near));
+            let (near, far) = values.split_at_mut(near);
+            encode_and_decode(encoding, near, lobes.map(|(near, _)| near))?;
+            encode_and_decode(encoding.at(THOROUGH_LEVEL), far, lobes.map(|(_, far)| far))?;
         }
         Ok(blocks.iter().copied().zip(values).collect())
     }

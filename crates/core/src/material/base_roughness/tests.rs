@@ -1,4 +1,5 @@
 use super::*;
+use crate::bump::Moments;
 use crate::material::bumps::Bumps;
 use crate::material::pyramid_levels::{LobeLevels, PyramidLevels, PyramidTexel};
 use crate::material::rust_and_steel::{RustAndSteel, SIDE};
@@ -44,6 +45,33 @@ fn the_texture_with_k_is_the_roughened_lobe_even_where_that_is_narrow() {
         }
     }
     assert!(narrower > 0, "the mean of base lobes is wider somewhere");
+}
+
+/// Plugins take K for facets of the base lobe, so that K has no more than the variance of the bumps.
+#[test]
+fn the_texture_has_the_width_that_comes_from_other_roughness() {
+    let material = RustAndSteel::new();
+    let bumps = Bumps::new(&material.bump_map, (SIDE, SIDE));
+    let roughening = roughening(&material, &bumps, Profile::Pyramid);
+    let levels = LobeLevels::new(&bumps, &roughening);
+    let mut wider = 0;
+    for level in 1..=6 {
+        for y in 0..SIDE >> level {
+            let width = (SIDE >> level) as usize;
+            let (mut texels, mut moments) = (vec![PyramidTexel::default(); width], vec![Moments::default(); width]);
+            levels.row(level, y, &mut texels);
+            bumps.moments().row(level, y, &mut moments);
+            let mean = roughening.base_row(level, y, width);
+            for (x, [_, roughness, ..]) in row(&roughening, level, y).into_iter().enumerate() {
+                let smaller = texels[x].covariance.eigen().minor;
+                let most = moments[x].covariance.eigen().major;
+                let is_mean = roughness.powi(4) <= mean[x].0.uu + 1e-5;
+                assert!(is_mean || smaller <= most + 1e-5, "level {level}: K of {smaller} for bumps of {most}");
+                wider += usize::from(!is_mean);
+            }
+        }
+    }
+    assert!(wider > 0, "the base lobe is wider than the mean somewhere");
 }
 
 /// The mean metalness is a half; steel has most of the colour.
