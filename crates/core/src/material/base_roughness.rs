@@ -21,9 +21,9 @@ impl Product for BaseRoughnessTexture<'_, '_> {
         let mut red_blue = vec![[0.0; 2]; out.len()];
         base.red_blue(level, y, &mut red_blue);
         let lobes = self.0.pyramid_base_row(level, y, &self.0.roughened_row(level, y, out.len()));
-        for ((texel, [red, blue]), lobe) in out.iter_mut().zip(red_blue).zip(lobes) {
+        for ((texel, [red, blue]), base) in out.iter_mut().zip(red_blue).zip(lobes) {
             // These lobes are isotropic.
-            let Roughness(green) = lobe.closest_isotropic().into();
+            let Roughness(green) = base.lobe.closest_isotropic().into();
             *texel = [red, green.min(1.0), blue, 1.0];
         }
     }

@@ -7,7 +7,7 @@ use crate::bump::{FrameTransform, Moments, Offset};
 use crate::lobe::{SquaredAlpha, lambda_1};
 use crate::material::bump_map::BumpMap;
 use crate::material::bumps::Bumps;
-use crate::material::roughening::Roughening;
+use crate::material::roughening::{PyramidBase, Roughening};
 use crate::math::symmetric::{MohrCircle, Symmetric2};
 use crate::mip::{AreaResampled, Level, Pyramid, TexelRows, level_sizes};
 
@@ -110,10 +110,15 @@ fn roughening_row(roughening: &Roughening<'_>, level: usize, y: u32, out: &mut [
     let roughened = roughening.roughened_row(level, y, out.len());
     let base = roughening.pyramid_base_row(level, y, &roughened);
     for (((texel, [u, v]), roughened), base) in out.iter_mut().zip(offsets).zip(roughened).zip(base) {
+        let PyramidBase { lobe, most_variance } = base;
+        let covariance = added_covariance(lobe, roughened);
+        let trace = covariance.trace();
+        let share = if trace > most_variance { most_variance / trace } else { 1.0 };
+        let isotropic = added_isotropic_variance(lobe, roughened).min(0.5 * most_variance);
         *texel = PyramidTexel {
             offset: Offset { u, v },
-            covariance: inverse * added_covariance(base, roughened),
-            isotropic: inverse * added_isotropic_variance(base, roughened),
+            covariance: inverse * share * covariance,
+            isotropic: inverse * isotropic,
         };
     }
 }

@@ -10,6 +10,18 @@ use crate::math::symmetric::Symmetric2;
 use crate::mip::{AreaResampled, MipTail, Sampler};
 use crate::settings::Settings;
 
+/// The largest ratio of the trace of K to the variance of the bumps, where the base lobe varies. Around one base lobe,
+/// bumps do not widen a lobe more. Parts with other roughness may.
+const MOST_VARIANCE: f32 = 1.5;
+
+/// A lobe that the pyramid profile adds K to.
+pub struct PyramidBase {
+    /// The lobe.
+    pub lobe: SquaredAlpha,
+    /// The most that the trace of K may be; infinite where the material's own texture has the lobe.
+    pub most_variance: f32,
+}
+
 /// A base lobe and the lobes that its bumps roughen it to.
 pub struct Roughening<'a> {
     base: Base<'a>,
@@ -98,22 +110,27 @@ impl<'a> Roughening<'a> {
     ///
     /// They can be narrower than the base lobe of the mean roughness, since texels count by reflectance, and since one
     /// of two parts of a footprint can decide the lobe. K cannot be negative, so that the base lobe then has the
-    /// smaller squared alpha of the roughened lobe. They can also be wider than the bumps make them. K has no more than
-    /// the variance of the bumps, and the base lobe has what is left: plugins take K for facets of the base lobe.
-    pub fn pyramid_base_row(&self, level: usize, y: u32, roughened: &[SquaredAlpha]) -> Vec<SquaredAlpha> {
+    /// smaller squared alpha of the roughened lobe. They can also be wider than the bumps make them. The base lobe then
+    /// has what is left: plugins take K for facets of the base lobe.
+    pub fn pyramid_base_row(&self, level: usize, y: u32, roughened: &[SquaredAlpha]) -> Vec<PyramidBase> {
         let base = self.base_row(level, y, roughened.len());
-        let Some((level_0, tail)) = self.moments.as_ref().filter(|_| level > 0) else { return base };
+        let Some((level_0, tail)) = self.moments.as_ref().filter(|_| level > 0) else {
+            return base.into_iter().map(|lobe| PyramidBase { lobe, most_variance: f32::INFINITY }).collect();
+        };
         let mut bumps = vec![Moments::default(); roughened.len()];
         tail.row(level_0, level, y, &mut bumps);
         let scale = self.lobes.slope_scale() * self.lobes.slope_scale();
-        let isotropic =
+        let of_texel =
             |((SquaredAlpha(base), SquaredAlpha(roughened)), bumps): ((SquaredAlpha, &SquaredAlpha), Moments)| {
                 let smaller = roughened.eigen().minor.clamp(0.0, 1.0);
-                let without_bumps = smaller - 2.0 * scale * bumps.covariance.eigen().major;
+                // The squared alpha of the closest isotropic lobe, without what bumps can add to it.
+                let isotropic = roughened.determinant().max(0.0).sqrt().min(1.0);
+                let without_bumps = isotropic - 2.0 * scale * bumps.covariance.eigen().major;
                 let squared = base.uu.min(smaller).max(without_bumps);
-                SquaredAlpha(Symmetric2::diagonal(squared, squared))
+                let lobe = SquaredAlpha(Symmetric2::diagonal(squared, squared));
+                PyramidBase { lobe, most_variance: MOST_VARIANCE * scale * bumps.covariance.trace() }
             };
-        base.into_iter().zip(roughened).zip(bumps).map(isotropic).collect()
+        base.into_iter().zip(roughened).zip(bumps).map(of_texel).collect()
     }
 
     /// Returns the base lobes of row `y` of `level`, which has `width` texels.
