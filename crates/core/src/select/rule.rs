@@ -6,6 +6,9 @@ const NOISE: f32 = 0.01;
 /// The mean error over the screen that may be lost for a cheaper candidate.
 const NEGLIGIBLE: f64 = 0.001;
 
+/// The mean error over the screen that another texture of no more memory has to gain.
+const SEEN: f64 = 0.0005;
+
 /// Returns the index of the candidate to take; `None` if there is no candidate. `errors` holds, in the order of rising
 /// cost, the error of each candidate at every level that can be sampled.
 ///
@@ -28,7 +31,7 @@ pub fn choose(errors: &[Vec<f32>], max_error: f32) -> Option<usize> {
 
 /// Returns whether the mean error over the screen of one candidate is less than that of `other` by enough to be seen.
 pub fn is_closer(errors: &[f32], other: &[f32]) -> bool {
-    mean(other, |_, e| e) - mean(errors, |_, e| e) >= NEGLIGIBLE
+    mean(other, |_, e| e) - mean(errors, |_, e| e) >= SEEN
 }
 
 /// Returns the mean of `of(level, error)` over the screen. A plane that reaches to the horizon shows each level on half
