@@ -1,10 +1,10 @@
-"""Writes the materials of a game, on which nobody tuned Roughcast: FOLDER/<name>/<name>.gltf, with images beside it.
+"""Writes whole materials of a game: FOLDER/<name>/<name>.gltf, with images beside it.
 
 python3 benches/appearance/game.py DATA FOLDER
 
 DATA is the folder usr/share/games/supertuxkart/data of the unpacked Debian package supertuxkart-data 1.4. Materials are
 all its normal maps with a map of gloss and metalness beside them, for karts, props and roads. They are mostly glossy
-paint with few bumps, many parts in one texture, at 128 to 1024 texels.
+paint with few bumps, many parts in one texture, at 128 to 1024 texels. Of materials with one name, the last one counts.
 """
 
 import argparse
@@ -44,8 +44,10 @@ def write_material(path, images, options):
         key: next(filter(None, (images.get(stem + end + kind) for end in ends for kind in (".png", ".jpg"))), None)
         for key, ends in {"gloss": GLOSS, "colour": COLOUR}.items()
     }
+    if not found["gloss"]:
+        return False
     normals = Image.open(path).convert("RGB")
-    if not found["gloss"] or min(normals.size) < LEAST or below(normals) > MOST_BELOW:
+    if min(normals.size) < LEAST or below(normals) > MOST_BELOW:
         return False
     size = tuple(min(MOST, 1 << (side.bit_length() - 1)) for side in normals.size)
     name = re.sub("[^A-Za-z0-9]", "_", match[1])[:32]

@@ -14,7 +14,7 @@ use roughcast::decode::decode;
 use roughcast::image::{DecodeOptions, Image, Samples};
 use roughcast::ktx2::{Ktx2, Ktx2Writer, StoredLevel};
 use roughcast::lobe::{Alpha, Factor, Family, Roughness, SquaredAlpha};
-use roughcast::material::BumpMap;
+use roughcast::material::{BumpMap, byte_scale};
 use roughcast::math::symmetric::Symmetric2;
 use roughcast::metric::{Decoded, Lobe, Surface, mean_errors, sample_texels};
 use roughcast::report::Content;
@@ -56,14 +56,6 @@ fn quantile(values: impl Iterator<Item = f64>, share: f64) -> f64 {
     let mut values: Vec<f64> = values.collect();
     values.sort_by(f64::total_cmp);
     values.get((share * (values.len().max(1) - 1) as f64) as usize).copied().unwrap_or(1.0).max(1e-6)
-}
-
-/// Returns the scale next to `scale` with which bytes of flat normals stay bytes. The bake takes it for maps with flat
-/// areas.
-fn keeping_bytes(scale: f64) -> f64 {
-    let ratio = |odd: &f64| (scale * odd).ln().abs();
-    let nearest = (0..500).map(|i| f64::from(2 * i + 1)).min_by(|a, b| ratio(a).total_cmp(&ratio(b)));
-    if scale > 3.0_f64.sqrt() { scale } else { 1.0 / nearest.unwrap_or(1.0) }
 }
 
 fn offset_codes(offsets: &[[f64; 2]]) -> Vec<Code<2>> {
@@ -132,7 +124,7 @@ fn offset_codes(offsets: &[[f64; 2]]) -> Vec<Code<2>> {
         codes.push(radial(format!("f / (s + \\|f\\|), s = {name}"), s));
         codes.push(per_axis(format!("f / (s + \\|f\\|) by axis, s = {name}"), s));
     }
-    let kept = keeping_bytes(2.0 * best);
+    let kept = f64::from(byte_scale(2.0 * best as f32));
     codes.push(normal("xyz by direction, s = 1, 1/3, ... next to 2 best".to_owned(), kept, Metric::Direction, true));
     codes
 }

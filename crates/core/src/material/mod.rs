@@ -57,4 +57,4 @@ pub use range::Range;
 pub use reflectance::{Factored, Metalness, ReflectanceRows, ReflectanceSource};
 pub use roughening::Roughening;
 pub use roughness::RoughnessTexture;
-pub use stored_slopes::normal_scale;
+pub use stored_slopes::{byte_scale, normal_scale};

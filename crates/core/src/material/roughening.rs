@@ -10,8 +10,9 @@ use crate::math::symmetric::Symmetric2;
 use crate::mip::{AreaResampled, MipTail, Sampler};
 use crate::settings::Settings;
 
-/// The largest ratio of the trace of K to the variance of the bumps, where the base lobe varies. Around one base lobe,
-/// bumps do not widen a lobe more. Parts with other roughness may.
+/// The largest ratio of the trace of K to the variance of the bumps, where the base lobe varies. If all parts of a
+/// footprint have one base lobe, bumps do not widen a lobe more (`crates/pipeline/src/check/pyramid_levels.rs` has the
+/// proof). Parts with different roughness may.
 const MOST_VARIANCE: f32 = 1.5;
 
 /// A lobe that the pyramid profile adds K to.

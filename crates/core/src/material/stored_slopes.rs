@@ -77,7 +77,7 @@ impl Steepness {
 /// slope (i - 127.5) / 127.5 where z is 1, and k times this slope is a byte again if k is odd. With other scales, whole
 /// areas of a mirror have one wrong direction: the facade of docs/engines.md has a lobe error of 0.66 at level 0 with a
 /// scale of 0.42, and of 0.29 with 1/3. Without flat areas, such a scale only is further from the best one.
-fn byte_scale(scale: f32) -> f32 {
+pub fn byte_scale(scale: f32) -> f32 {
     let smaller_odd = 2.0 * (0.5 * (1.0 / scale - 1.0)).floor().max(0.0) + 1.0;
     let larger_odd = smaller_odd + 2.0;
     let odd = if scale * scale * smaller_odd * larger_odd > 1.0 { smaller_odd } else { larger_odd };

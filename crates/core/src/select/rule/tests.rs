@@ -51,5 +51,6 @@ fn a_closer_candidate_gains_where_it_is_seen() {
         errors[level] -= gain;
         errors
     };
-    assert!(is_closer(&with(1, 0.004), &none) && !is_closer(&with(7, 0.04), &none) && !is_closer(&none, &none));
+    assert!(is_closer(&with(1, 0.0025), &none), "a quarter of the screen shows level 1");
+    assert!(!is_closer(&with(1, 0.0015), &none) && !is_closer(&with(7, 0.04), &none) && !is_closer(&none, &none));
 }
