@@ -36,6 +36,8 @@ pub enum NoteKind {
     SmallDepth,
     /// Normals point along the surface or below it.
     NormalsBelowSurface,
+    /// Texels of a normal map with black parts hold no normal.
+    UnusedTexels,
     /// Slopes are beyond the clamp.
     SteepSlopes,
     /// The map has another size than its textures.
@@ -102,6 +104,7 @@ impl NoteKind {
             Self::NoBumpMap
             | Self::MissedBound
             | Self::NormalsBelowSurface
+            | Self::UnusedTexels
             | Self::SteepSlopes
             | Self::Resampled
             | Self::AlphaAboveOne
@@ -166,6 +169,15 @@ pub fn normals_below_surface(count: u64, texels: u64) -> Note {
          and roughen what is around them; remove them from the source"
     );
     Note { asks_for_action: count.saturating_mul(1000) >= texels, ..note(NoteKind::NormalsBelowSurface, text) }
+}
+
+/// Returns the note on a normal map of `texels` texels with black parts, where `count` texels hold no normal.
+pub fn unused_texels(count: u64, texels: u64) -> Note {
+    let text = format!(
+        "{count} of {texels} texels are black, which is no normal, or point below the surface in a map with black \
+         parts: they get normals of the texels around them"
+    );
+    note(NoteKind::UnusedTexels, text)
 }
 
 /// Returns the note on a bump map of `texels` texels, `count` of which have slopes beyond the clamp.
@@ -447,6 +459,7 @@ mod tests {
         let explaining = [
             no_bump_map(),
             normals_below_surface(1, 1001),
+            unused_texels(1, 4),
             steep_slopes(1, 4),
             resampled((61, 47), (64, 48)),
             alpha_above_one(3),

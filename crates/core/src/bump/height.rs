@@ -49,7 +49,7 @@ impl<'a> HeightOffsets<'a> {
                 },
             )
             .sum();
-        Outliers { steep, below: 0 }
+        Outliers { steep, ..Outliers::default() }
     }
 
     /// Computes slopes across and up in f64, because differences of extreme heights overflow f32.

@@ -41,11 +41,13 @@ pub struct Outliers {
     pub steep: u64,
     /// Texels whose normals point along the surface or below it.
     pub below: u64,
+    /// Texels without a normal, which got those of the texels around them.
+    pub unused: u64,
 }
 
 impl Outliers {
     fn plus(self, other: Self) -> Self {
-        Self { steep: self.steep + other.steep, below: self.below + other.below }
+        Self { steep: self.steep + other.steep, below: self.below + other.below, unused: self.unused + other.unused }
     }
 }
 

@@ -63,9 +63,9 @@ impl<'a> NormalOffsets<'a> {
         Symmetric2::diagonal(variance, variance)
     }
 
-    /// Counts the texels that are steeper than [`MAX_SLOPE`] or point below the surface.
+    /// Counts the texels that are steeper than [`MAX_SLOPE`], point below the surface, or hold no normal.
     pub fn outliers(&self) -> Outliers {
-        (0..self.map.height())
+        let outliers = (0..self.map.height())
             .into_par_iter()
             .map_init(
                 || vec![[0.0; 3]; self.map.width() as usize],
@@ -79,10 +79,11 @@ impl<'a> NormalOffsets<'a> {
                     }
                     let below = normals.iter().filter(|normal| normal[2] <= 0.0).count() as u64;
                     let steep = normals.iter().filter(|normal| is_steep(**normal)).count() as u64;
-                    Outliers { steep: steep - below, below }
+                    Outliers { steep: steep - below, below, unused: 0 }
                 },
             )
-            .reduce(Outliers::default, Outliers::plus)
+            .reduce(Outliers::default, Outliers::plus);
+        Outliers { unused: self.map.unused(), ..outliers }
     }
 
     /// Writes f_u and f_v of row `y` to `out`.

@@ -1,9 +1,12 @@
 //! Normal maps: tangent-space normals in two or three channels of an image.
 
+mod unused;
+
 use rayon::prelude::*;
 
 use crate::image::{Image, MapError, Samples, each};
 use crate::simd::dispatch;
+use unused::fill;
 
 /// Which channels of an image hold the normal.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
@@ -28,11 +31,16 @@ pub enum NormalLayout {
 ///
 /// Integers encode [-1, 1] as 2v - 1, as glTF engines decode them. Floats are components if any x or y is negative, and
 /// otherwise encode components as 2v - 1. Further channels (alpha) are ignored.
+///
+/// Black texels beside others hold no normal, since every component would be -1: they are the parts of an atlas that no
+/// triangle shows. They get normals of the texels around them, so that they add no roughness at the edges of other
+/// parts. So do normals below the surface in such a map, which are mostly blends with black.
 pub struct NormalMap {
     image: Image,
     has_z: bool,
     signed: bool,
     green_down: bool,
+    unused: u64,
 }
 
 /// Bounds on the magnitude of the largest component of a normal. Squares of both bounds, and 256 times these squares,
@@ -65,8 +73,9 @@ impl NormalMap {
             NormalLayout::Auto => image.channels > 2 && !image.is_zero(2),
         };
         let signed = image.has_negative(2);
-        let mut map = Self { image, has_z, signed, green_down };
+        let mut map = Self { image, has_z, signed, green_down, unused: 0 };
         map.shorten();
+        map.fill_unused();
         Ok(map)
     }
 
@@ -89,6 +98,18 @@ impl NormalMap {
         });
     }
 
+    /// Gives normals to texels that hold none.
+    fn fill_unused(&mut self) {
+        let (width, channels, has_z) = (self.image.width as usize, self.image.channels as usize, self.has_z);
+        let stored = |component: f32, most: f32| (most * (0.5 * component + 0.5)).round();
+        self.unused = match &mut self.image.samples {
+            Samples::U8(all) => fill(all, width, channels, has_z, of_byte, |c| stored(c, 255.0) as u8),
+            Samples::U16(all) => fill(all, width, channels, has_z, of_word, |c| stored(c, 65535.0) as u16),
+            Samples::F32(_) if self.signed => 0,
+            Samples::F32(all) => fill(all, width, channels, has_z, of_biased, |c| 0.5 * c + 0.5),
+        };
+    }
+
     /// Returns the number of columns.
     pub fn width(&self) -> u32 {
         self.image.width
@@ -97,6 +118,11 @@ impl NormalMap {
     /// Returns the number of rows.
     pub fn height(&self) -> u32 {
         self.image.height
+    }
+
+    /// Returns the number of texels that have got normals of the texels around them.
+    pub fn unused(&self) -> u64 {
+        self.unused
     }
 
     /// Returns whether z is stored; otherwise z is rebuilt from x and y.
@@ -115,12 +141,10 @@ impl NormalMap {
         let start = y as usize * out.len() * channels;
         let samples = start..start + out.len() * channels;
         match &self.image.samples {
-            Samples::U8(all) => self.decode(&all[samples], out, |v| f32::from(v) * (2.0 / 255.0) - 1.0),
-            Samples::U16(all) => {
-                self.decode(&all[samples], out, |v| f32::from(v) * (2.0 / 65535.0) - 1.0);
-            }
+            Samples::U8(all) => self.decode(&all[samples], out, of_byte),
+            Samples::U16(all) => self.decode(&all[samples], out, of_word),
             Samples::F32(all) if self.signed => self.decode(&all[samples], out, |v| v),
-            Samples::F32(all) => self.decode(&all[samples], out, |v| 2.0 * v - 1.0),
+            Samples::F32(all) => self.decode(&all[samples], out, of_biased),
         }
     }
 
@@ -139,6 +163,21 @@ impl NormalMap {
             out.iter_mut().for_each(|[x, y, z]| *z = (1.0 - *x * *x - *y * *y).max(0.0).sqrt());
         }
     }
+}
+
+#[inline(always)]
+fn of_byte(v: u8) -> f32 {
+    f32::from(v) * (2.0 / 255.0) - 1.0
+}
+
+#[inline(always)]
+fn of_word(v: u16) -> f32 {
+    f32::from(v) * (2.0 / 65535.0) - 1.0
+}
+
+#[inline(always)]
+fn of_biased(v: f32) -> f32 {
+    2.0 * v - 1.0
 }
 
 impl Image {

@@ -28,12 +28,15 @@ pub fn of_bump_map(bump_map: &BumpMap, grid: (u32, u32)) -> Vec<Note> {
     let mut notes = Vec::new();
     let (width, height) = (bump_map.width(), bump_map.height());
     let texels = u64::from(width) * u64::from(height);
-    let Outliers { steep, below } = bump_map.outliers();
+    let Outliers { steep, below, unused } = bump_map.outliers();
     if steep > 0 {
         notes.push(note::steep_slopes(steep, texels));
     }
     if below > 0 {
         notes.push(note::normals_below_surface(below, texels));
+    }
+    if unused > 0 {
+        notes.push(note::unused_texels(unused, texels));
     }
     if grid != (width, height) {
         notes.push(note::resampled((width, height), grid));

@@ -50,7 +50,7 @@ fn outliers_are_counted() {
     let normals = [[0.0, -0.1, 1.0], [1.0, 0.0, 0.05], [0.6, 0.0, -0.8], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0625]];
     let image = Image { width: 5, height: 1, channels: 3, samples: Samples::F32(normals.concat()) };
     let map = NormalMap::new(image, NormalLayout::Xyz, false).unwrap();
-    assert_eq!(NormalOffsets::new(&map).outliers(), Outliers { steep: 1, below: 2 });
+    assert_eq!(NormalOffsets::new(&map).outliers(), Outliers { steep: 1, below: 2, unused: 0 });
 }
 
 /// A dome whose slopes cross many steps, in 8 bits: what it differs by from the exact one.

@@ -70,6 +70,17 @@ fn normals_below_the_surface_are_counted() {
     );
 }
 
+/// The black half of an atlas adds no roughness, at its edge either.
+#[test]
+fn black_texels_are_counted_and_roughen_nothing() {
+    let row = [[128, 128, 255].repeat(3), [0, 0, 0].repeat(5)].concat();
+    let bump_map = normals(8, 8, Samples::U8(row.repeat(8)));
+    assert_one(&notes(&bump_map, 0.4, anisotropic()), NoteKind::UnusedTexels, "40 of 64 texels are black");
+    let mut offsets = vec![[1.0; 2]; 8];
+    bump_map.offsets(3, &mut offsets);
+    assert!(offsets.iter().flatten().all(|slope| slope.abs() < 0.01), "{offsets:?}");
+}
+
 #[test]
 fn alphas_above_one_are_counted() {
     let bump_map = of_slopes(N, N, |x, _| [if x.is_multiple_of(2) { 3.0 } else { -3.0 }, 0.0]);
