@@ -20,13 +20,14 @@ fn is_below([x, y, z]: [f64; 3], has_z: bool) -> bool {
     if has_z { z <= 0.0 } else { x * x + y * y >= 1.0 }
 }
 
-/// Gives each unused texel of a map of `width` columns the mean of the normals in the smallest rectangle about it that
-/// has any, and returns how many texels got one. `channels` are interleaved, and `decode` returns components x, y and,
-/// if `has_z` is set, z, of which `encode` makes samples. Unused are black texels, and in a map that has some, all that
-/// point along the surface or below it.
+/// Gives each unused texel the mean normal of the used texels in the finest mip texel around it that has any, so that
+/// mips have the bumps of used texels. Returns how many texels got a normal: none if no texel is used.
 ///
-/// The rectangles are those of the texels of mips: the means of coarser texels stay about the same, and their bumps are
-/// those of used texels.
+/// A texel is unused if it is black. In a map with black texels it is also unused if it points along the surface or
+/// below it.
+///
+/// The map has `width` columns of `channels` samples. The first samples of a texel are x, y and, if `has_z` is set, z.
+/// `decode` returns the component of a sample, and `encode` the sample of a component.
 pub fn fill<T: Copy + Sync>(
     samples: &mut [T],
     width: usize,
@@ -36,7 +37,7 @@ pub fn fill<T: Copy + Sync>(
     encode: impl Fn(f32) -> T,
 ) -> u64 {
     let components = if has_z { 3 } else { 2 };
-    // Most maps have no such texel, which vector code finds out quickly.
+    // Most maps have no black texel, and need no more than this.
     let has_black = |row: &[T]| {
         let texels = row.chunks_exact(channels).map(|texel| is_black(texel[..components].iter().map(|v| decode(*v))));
         texels.fold(false, |any, is_black| any | is_black)
@@ -129,12 +130,12 @@ fn split(range: Range<usize>, length: usize) -> [Range<usize>; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bump::normal_map::of_byte;
 
     fn filled(width: usize, channels: usize, samples: &mut [u8]) -> u64 {
         let has_z = channels > 2;
-        let decode = |v: u8| f32::from(v) * (2.0 / 255.0) - 1.0;
         let encode = |v: f32| ((0.5 * v + 0.5) * 255.0).round() as u8;
-        fill(samples, width, channels, has_z, decode, encode)
+        fill(samples, width, channels, has_z, of_byte, encode)
     }
 
     #[test]
