@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use crate::project::{NamedServer, is_harmless};
+use crate::project::{NamedServer, RemoteValues};
 use crate::remote::{Header, Options, Tls};
 
 /// The variable with headers, one in each line.
@@ -22,7 +22,7 @@ const MOST_JOBS: u32 = 4096;
 pub struct RemoteOptions {
     /// Bake on workers of this server of the Remote Execution API v2: grpc://HOST:PORT, or grpcs:// with TLS. Jobs that
     /// --cache has are not sent. [default: `url` of [remote] in the roughcast.toml of the first input, which may set
-    /// the other options, too]
+    /// the other options, too. It must be in the working folder or named by --config]
     #[arg(long, value_name = "URL")]
     remote: Option<String>,
     /// Bake on this machine, even if roughcast.toml names a server.
@@ -100,31 +100,17 @@ pub enum RemoteOptionError {
         /// The system's error.
         error: std::io::Error,
     },
-    /// Headers for a server that a configuration beside the assets names.
+    /// A server that a configuration beside the assets names. The assets may be of strangers.
     #[error(
-        "{}: expected no server beside {HEADERS}, found url = {url:?}; the headers go only to a server that --remote, \
-         --config or the roughcast.toml of the working folder names",
+        "{}: expected no [remote] in a roughcast.toml that came with assets, found url = {url:?}; name this file with \
+         --config if you trust the server, or bake on this machine with --no-remote",
         config.display()
     )]
-    HeaderForAssets {
+    ServerOfAssets {
         /// The configuration that came with the assets.
         config: PathBuf,
         /// The server.
         url: String,
-    },
-    /// A file that a configuration beside the assets may not name, since the file would be sent to the server.
-    #[error(
-        "{}: expected {key} of [remote] below the working folder and in no hidden folder, found {}; if it is meant, name \
-         the configuration with --config",
-        config.display(), path.display()
-    )]
-    FileElsewhere {
-        /// The configuration that came with the assets.
-        config: PathBuf,
-        /// The key.
-        key: &'static str,
-        /// The file.
-        path: PathBuf,
     },
     /// The running tool cannot be found.
     #[error("--remote: expected to find the running tool, found: {0}; name one with --remote-tool")]
@@ -137,20 +123,12 @@ impl RemoteOptions {
     /// # Errors
     /// [`RemoteOptionError`].
     pub fn options(&self, named: Option<&NamedServer>) -> Result<Option<Options>, RemoteOptionError> {
-        let file = named.map(|named| named.values.clone()).unwrap_or_default();
-        let Some(url) = self.remote.clone().or(file.url).filter(|_| !self.no_remote) else { return Ok(None) };
-        let headers = self.headers()?;
-        if let Some(NamedServer { values, config, is_trusted: false }) = named {
-            if self.remote.is_none() && !headers.is_empty() {
-                return Err(RemoteOptionError::HeaderForAssets { config: config.clone(), url });
-            }
-            let files =
-                [("ca", &values.ca), ("cert", &values.cert), ("key", &values.key), ("tool", &values.tool)].into_iter();
-            let mut files = files.filter_map(|(key, path)| Some((key, path.as_ref()?)));
-            if let Some((key, path)) = files.find(|(_, path)| !is_harmless(path)) {
-                return Err(RemoteOptionError::FileElsewhere { config: config.clone(), key, path: path.clone() });
-            }
+        if self.no_remote {
+            return Ok(None);
         }
+        let file = self.trusted(named)?;
+        let Some(url) = self.remote.clone().or(file.url) else { return Ok(None) };
+        let headers = self.headers()?;
         let tool = match self.remote_tool.clone().or(file.tool) {
             Some(tool) => tool,
             None => env::current_exe().map_err(RemoteOptionError::Tool)?,
@@ -172,6 +150,17 @@ impl RemoteOptions {
             retries: self.remote_retries.or(file.retries).unwrap_or(8),
             tool,
         }))
+    }
+
+    /// Returns what a configuration sets for the server: nothing if the user did not choose the configuration.
+    fn trusted(&self, named: Option<&NamedServer>) -> Result<RemoteValues, RemoteOptionError> {
+        match named {
+            Some(NamedServer { values, is_trusted: true, .. }) => Ok(values.clone()),
+            Some(NamedServer { values: RemoteValues { url: Some(url), .. }, config, .. }) if self.remote.is_none() => {
+                Err(RemoteOptionError::ServerOfAssets { config: config.clone(), url: url.clone() })
+            }
+            _ => Ok(RemoteValues::default()),
+        }
     }
 
     /// Returns the headers of the variable, the file and the flags. If a name occurs again, the last header holds.

@@ -26,4 +26,4 @@ pub use record::{GLB_MAGIC, is_baked, recorded};
 pub use remote::RemoteValues;
 pub use resolve::{ConfigSource, Resolved, resolve};
 pub use selection::{ConfigChoice, Selected, Selection, SelectionError};
-pub use trust::{NamedServer, is_harmless};
+pub use trust::NamedServer;

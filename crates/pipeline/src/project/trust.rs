@@ -1,9 +1,8 @@
 //! Which configurations the user trusts.
 //!
 //! A `roughcast.toml` is trusted if `--config` names it or if it lies in the working folder. Any other configuration
-//! was found beside the assets and may have come with them, from strangers. The folders and files that such a
-//! configuration names must lie below the working folder, outside of hidden folders. The server that such a
-//! configuration names gets no headers.
+//! was found beside the assets and may have come with them, from strangers. The output folder that such a configuration
+//! names must lie below the working folder, outside of hidden folders. Its server is not used.
 
 use std::path::{Component, Path, PathBuf};
 

@@ -1,7 +1,7 @@
 //! A `roughcast.toml` that was delivered with assets has fewer rights than one of the user.
 
 use super::*;
-use crate::process::{roughcast_in, roughcast_with};
+use crate::process::roughcast_in;
 
 /// Writes `home/.profile`, and a pack in `away` with `config`, whose buffer refers to that file.
 fn pack(config: &str) -> TempDir {
@@ -66,29 +66,24 @@ fn a_file_of_the_user_may_name_any_folder() {
     assert_eq!(hashes(&folder.join("baked")), named, "below the working folder");
 }
 
+/// A server would get the assets, decide what the pictures are, and run the file that `tool` names.
 #[test]
-fn the_server_of_a_pack_gets_no_headers_and_no_other_files() {
-    let header = [("ROUGHCAST_REMOTE_HEADER", "authorization=secret")];
-    let remote = |rest: &str| format!("[remote]\nurl = 'grpc://localhost:1'\nretries = 0\n{rest}");
-    let scene = pack(&remote(""));
-    let folder = scene.path().join("away");
+fn the_server_of_a_pack_is_not_used() {
     let words = |line: &'static str| line.split(' ');
-    let run = roughcast_with(&header, &folder, words("bake pack -o O -q"));
+    let scene = pack("[remote]\nurl = 'grpc://localhost:1'\nretries = 0\ntool = 'missing'\n");
+    let folder = scene.path().join("away");
+    let run = roughcast_in(&folder, words("bake pack -o O -q"));
     assert_eq!(run.code, 2, "{}", run.err);
-    assert!(run.err.contains("pack/roughcast.toml: expected no server beside ROUGHCAST_REMOTE_HEADER"), "{}", run.err);
-    assert!(!run.err.contains("secret"), "{}", run.err);
-    // These settings are of the user, and go on until the server is asked.
+    assert!(run.err.contains("pack/roughcast.toml: expected no [remote]"), "{}", run.err);
+    done(&folder, "bake pack -o O -q --no-remote");
+    // The server of the user does not get the tool of the pack.
+    let run = roughcast_in(&folder, words("bake pack -o O -q --remote grpc://localhost:1 --remote-retries 0"));
+    assert!(run.code != 0 && run.err.contains("localhost:1") && !run.err.contains("missing"), "{}", run.err);
+    // These settings are of the user, and the tool is looked for.
     for (line, working_folder) in
         [("bake . -o ../O -q", "pack"), ("bake pack -o O -q --config pack/roughcast.toml", ".")]
     {
-        let run = roughcast_with(&header, &folder.join(working_folder), words(line));
-        assert!(run.code != 0 && !run.err.contains("expected no server"), "{}", run.err);
-    }
-    for key in ["tool", "ca", "cert", "key"] {
-        fs::write(folder.join("pack/roughcast.toml"), remote(&format!("{key} = '../../home/.profile'\n")))
-            .expect("a file");
-        let run = roughcast_in(&folder, words("bake pack -o O -q"));
-        let says = format!("pack/roughcast.toml: expected {key} of [remote] below the working folder");
-        assert!(run.code == 2 && run.err.contains(&says), "{}", run.err);
+        let run = roughcast_in(&folder.join(working_folder), words(line));
+        assert!(run.code != 0 && run.err.contains("missing"), "{line}: {}", run.err);
     }
 }
