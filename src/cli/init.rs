@@ -8,7 +8,7 @@ use crate::output::Guard;
 use crate::project::{FILE_NAME, TEMPLATE};
 use crate::text::printable;
 
-/// Write a commented roughcast.toml: every setting with its default.
+/// Write a roughcast.toml with every setting as a comment.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example:\n  roughcast init assets")]
 pub struct Args {
