@@ -16,17 +16,16 @@ from pathlib import Path
 
 from PIL import Image
 
-import gltf
+import game_maps
 
-NORMALS = re.compile(r"(.*?)_(norm|nm|normals|local|normal)\.(png|jpg|tga)", re.IGNORECASE)
+NORMALS = re.compile("(.*?)_(norm|nm|normals|local|normal)", re.IGNORECASE)
 DIELECTRIC = re.compile("stone|rock|brick|wall|wood|bark|ground|sand|dirt|plaster", re.IGNORECASE)
 GLOSS = ("_gloss", "_s", "_spec", "_g")
 COLOUR = ("", "_d", "_c", "_diffuse", "_df")
-LEAST, MOST = 128, 1024
 # More of these normals are no bumps of a surface: black parts of an atlas.
 MOST_BELOW = 0.02
 SERIES = 5
-# Without a map of gloss.
+# Of materials without a map of gloss, by the game.
 ROUGHNESS = {"nx": 0.4, "c2": 0.35}
 
 
@@ -35,48 +34,35 @@ def main():
     for name in ("nexuiz", "cube2", "folder"):
         parser.add_argument(name, type=Path, metavar=name.upper())
     options = parser.parse_args()
-    names, series = set(), Counter()
-    for prefix, data in (("nx", options.nexuiz), ("c2", options.cube2)):
-        paths = [path for path in sorted(data.rglob("*")) if NORMALS.fullmatch(path.name)]
-        if not paths:
+    for game, data in (("nx", options.nexuiz), ("c2", options.cube2)):
+        images = game_maps.images_of(data, (".png", ".jpg", ".tga"))
+        stems = {stem: match[1] for stem in sorted(images) if (match := NORMALS.fullmatch(stem))}
+        if not stems:
             parser.error(f"{data}: expected normal maps below this folder, found none")
-        for path in paths:
-            name = prefix + "_" + re.sub("[^A-Za-z0-9]", "_", NORMALS.fullmatch(path.name)[1])[:32]
+        names, series = set(), Counter()
+        for normals, stem in stems.items():
+            name = game + "_" + re.sub("[^A-Za-z0-9]", "_", images[normals].stem[: len(Path(stem).name)])[:32]
             kind = re.sub("[0-9]+", "", name)
-            if name not in names and series[kind] < SERIES and write_material(path, name, prefix, options.folder):
+            if name in names or series[kind] == SERIES:
+                continue
+            if write_material(images, normals, stem, game, options.folder / name):
                 names.add(name)
                 series[kind] += 1
 
 
-def write_material(path, name, prefix, folder):
-    """Writes the material of a normal map. Returns whether the map can be used."""
-    normals = Image.open(path).convert("RGB")
-    below = normals.getchannel("B").histogram()[:128]
-    if min(normals.size) < LEAST or sum(below) > MOST_BELOW * normals.width * normals.height:
-        return False
-    size = tuple(min(MOST, 1 << (side.bit_length() - 1)) for side in normals.size)
-    target = folder / name
-    target.mkdir(parents=True, exist_ok=True)
-    files = {"normal": "normal.png"}
-    normals.resize(size, Image.Resampling.BOX).save(target / files["normal"])
-    if gloss := beside(path, GLOSS):
-        files["orm"] = "orm.png"
-        roughness = Image.open(gloss).convert("L").resize(size).point(lambda level: 255 - int(level * 0.8))
-        white = Image.new("L", size, 255)
-        Image.merge("RGB", (white, roughness, white)).save(target / files["orm"])
-    if colour := beside(path, COLOUR):
-        files["colour"] = "colour.png"
-        Image.open(colour).convert("RGB").resize(size).save(target / files["colour"])
-    metalness = 0.0 if prefix == "c2" and DIELECTRIC.search(str(path.relative_to(path.parents[2]))) else 1.0
-    gltf.write_plane(target, name, files, roughness=1.0 if gloss else ROUGHNESS[prefix], metalness=metalness)
-    return True
+def write_material(images, normals, stem, game, target):
+    """Writes the material of a normal map, whose other maps have names that begin with `stem`. Returns whether the map
+    can be used."""
+    gloss, colour = (game_maps.beside(images, stem, ends) for ends in (GLOSS, COLOUR))
+    metalness = 0.0 if game == "c2" and DIELECTRIC.search(stem) else 1.0
+    factors = {"roughness": 1.0 if gloss else ROUGHNESS[game], "metalness": metalness}
+    return game_maps.write_material(target, images[normals], MOST_BELOW, gloss, orm_of, colour, **factors)
 
 
-def beside(path, ends):
-    """Returns the first file beside a normal map whose name has one of these ends instead."""
-    stem = NORMALS.fullmatch(path.name)[1]
-    names = (path.with_name(stem + end + kind) for end in ends for kind in (".png", ".jpg", ".tga"))
-    return next((name for name in names if name.exists()), None)
+def orm_of(image):
+    """Returns the roughness texture of a map of gloss."""
+    white = Image.new("L", image.size, 255)
+    return Image.merge("RGB", (white, image.convert("L").point(lambda level: 255 - int(level * 0.8)), white))
 
 
 if __name__ == "__main__":

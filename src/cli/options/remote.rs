@@ -21,8 +21,8 @@ const MOST_JOBS: u32 = 4096;
 #[command(next_help_heading = "Remote options")]
 pub struct RemoteOptions {
     /// Bake on workers of this server of the Remote Execution API v2: grpc://HOST:PORT, or grpcs:// with TLS. Jobs that
-    /// --cache has are not sent. [default: `url` of [remote] in the roughcast.toml of the first input, which may set
-    /// the other options, too. It must be in the working folder or named by --config]
+    /// --cache has are not sent. [default: `url` of [remote] in the roughcast.toml of the first input, if this file is
+    /// in the working folder or --config names it. The file may set the other options, too]
     #[arg(long, value_name = "URL")]
     remote: Option<String>,
     /// Bake on this machine, even if roughcast.toml names a server.
