@@ -59,7 +59,7 @@ impl LevelFit {
 const FAST: [LevelFit; 7] = [
     level_fit((0, None), DRAWN, 64, SHORT, 0),
     level_fit((1, None), DRAWN, 64, SHORT, 0),
-    level_fit((1, None), DRAWN, 64, Search { rounds: 4, ..SHORT }, 0),
+    level_fit((1, None), DRAWN, 128, Search { rounds: 4, ..SHORT }, 0),
     level_fit((1, Some(2)), DRAWN, 64, Search { descents: 1, ..LONG }, 0),
     level_fit((1, Some(2)), DRAWN, 128, Search { descents: 1, ..LONG }, 0),
     level_fit((1, Some(3)), DRAWN, 256, LONG, 4),

@@ -17,7 +17,7 @@ pub enum Evenness {
 
 /// Ratio of the alphas of finer texels from which they are uneven, if a normal is further from that of the narrowest
 /// lobe than half the alpha of this lobe.
-const UNEVEN: f32 = 2.0;
+const UNEVEN: f32 = 1.8;
 /// Ratio of the alphas of finer texels from which they have unequal widths, if all normals are nearer than that.
 const UNEQUAL: f32 = 1.6;
 
@@ -77,7 +77,7 @@ mod tests {
         };
         use Evenness::{Even, UnequalWidths, Uneven};
         assert_eq!([1.5, 1.7, 9.0].map(|ratio| evenness_with(ratio, 0.04, Even)), [Even, UnequalWidths, UnequalWidths]);
-        assert_eq!([1.7, 1.9, 2.1].map(|ratio| evenness_with(ratio, 0.06, Even)), [Even, Even, Uneven]);
+        assert_eq!([1.5, 1.7, 1.9].map(|ratio| evenness_with(ratio, 0.06, Even)), [Even, Even, Uneven]);
         // Unequal widths are lost where directions differ, and uneven texels stay uneven.
         assert_eq!([0.04, 0.06].map(|distance| evenness_with(1.0, distance, UnequalWidths)), [UnequalWidths, Even]);
         assert_eq!([0.04, 0.06].map(|distance| evenness_with(1.0, distance, Uneven)), [Uneven, Uneven]);
