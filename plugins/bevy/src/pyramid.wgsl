@@ -40,6 +40,61 @@ override fn bevy_pbr::lighting::specular_anisotropy(
 }
 #endif
 
+// The shares of the bumps in the squared alphas of the lobe, along T and B.
+var<private> shares: vec2<f32> = vec2(0.0);
+
+// Smith's term is that of facets that hide each other. Bumps of a map do not, so that each of them has the term of the
+// base lobe. l and v are in the frame of the lobe: T, B and N.
+fn visibility(whole: vec2<f32>, l: vec3<f32>, v: vec3<f32>) -> f32 {
+    // m stands for the normals of the bumps that reflect l to v.
+    let h = normalize(l + v);
+    let m = normalize(vec3(shares * shares * h.xy / max(h.z, 1e-4), 1.0));
+    let alphas = whole * sqrt(1.0 - shares);
+    let t = normalize(vec3(1.0, 0.0, 0.0) - m.x * m);
+    let b = cross(m, t);
+    let light = vec3(alphas * vec2(dot(t, l), dot(b, l)), saturate(dot(m, l)));
+    let eye = vec3(alphas * vec2(dot(t, v), dot(b, v)), saturate(dot(m, v)));
+    let sides = max(light.z * length(eye) + eye.z * length(light), 1e-6);
+    return 0.5 / sides * m.z * light.z / max(l.z, 1e-4);
+}
+
+#ifdef STANDARD_MATERIAL_ANISOTROPY
+override fn bevy_pbr::lighting::V_GGX_anisotropic(
+    at: f32,
+    ab: f32,
+    NdotL: f32,
+    NdotV: f32,
+    BdotV: f32,
+    TdotV: f32,
+    TdotL: f32,
+    BdotL: f32,
+) -> f32 {
+    return visibility(vec2(at, ab), vec3(TdotL, BdotL, NdotL), vec3(TdotV, BdotV, NdotV));
+}
+#else
+override fn bevy_pbr::lighting::specular(
+    input: ptr<function, lighting::LightingInput>,
+    derived_input: ptr<function, lighting::DerivedLightingInput>,
+    roughness: f32,
+    specular_intensity: f32,
+) -> vec3<f32> {
+    let n = (*input).layers[lighting::LAYER_BASE].N;
+    let h = (*derived_input).H;
+    // Any axes do, since the lobe is isotropic.
+    let t = normalize(cross(n, select(vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0), abs(n.y) < 0.7)));
+    let to_lobe = transpose(mat3x3(t, cross(n, t), n));
+    let v = to_lobe * (*input).V;
+    let l = to_lobe * (2.0 * dot((*input).V, h) * h - (*input).V);
+    let smith = lighting::V_SmithGGXCorrelated(
+        roughness,
+        (*input).layers[lighting::LAYER_BASE].NdotV,
+        (*derived_input).NdotL,
+    );
+    let light = lighting::specular(input, derived_input, roughness, specular_intensity);
+    return light * visibility(vec2(roughness), l, v) / max(smith, 1e-6);
+}
+#endif
+
 // The length of the mean of the unit normals of the bumps.
 var<private> mean_normal: f32 = 1.0;
 
@@ -145,11 +200,17 @@ fn roughen(input: ptr<function, PbrInput>, frame: Frame, k: vec3<f32>) {
     let t = e.x * frame.e1 + e.y * frame.e2;
     (*input).anisotropy_T = normalize(t - dot(t, (*input).N) * (*input).N);
     (*input).anisotropy_B = cross((*input).N, (*input).anisotropy_T);
+    // K along the axes of the lobe.
+    let kt = dot(k, vec3(e.x * e.x, 2.0 * e.x * e.y, e.y * e.y));
+    let bumps = 2.0 * pyramid.correction_factor * vec2(kt, k.x + k.z - kt);
+    shares = saturate(bumps / vec2(major, minor));
 #else
     // Different scales of u and v make the lobe anisotropic. This shader has isotropic lobes only, so it takes the
     // mean.
-    let squared = alpha * alpha + pyramid.correction_factor * (k.x + k.z);
-    (*input).material.perceptual_roughness = sqrt(sqrt(min(squared, 1.0)));
+    let bumps = pyramid.correction_factor * (k.x + k.z);
+    let squared = min(alpha * alpha + bumps, 1.0);
+    shares = vec2(saturate(bumps / squared));
+    (*input).material.perceptual_roughness = sqrt(sqrt(squared));
 #endif
 }
 

@@ -29,9 +29,11 @@ function point({ material, engine: { leastRoughness } }, surfaceThere, texel) {
   const lost = extension.roughnessTexture && texel(extension.roughnessTexture);
   const k = reader.scaledCovariance(frame, reader.covariance(extension, lost));
   const { roughness, lobe } = baseLobe(material, frame, surfaceThere, texel, leastRoughness);
-  const { alphas, axis } = reader.parameters(reader.roughened(extension, lobe, k), roughness ** 4);
-  const axes = reader.axes(frame, normal, axis);
-  return { normal, axes, alphas, baseRoughness: roughness, meanNormal: reader.meanNormal(extension, k) };
+  const parameters = reader.parameters(reader.roughened(extension, lobe, k), roughness ** 4);
+  const axes = reader.axes(frame, normal, parameters.axis);
+  const shares = reader.shares(extension, k, parameters);
+  const meanNormal = reader.meanNormal(extension, k);
+  return { normal, axes, alphas: parameters.alphas, shares, baseRoughness: roughness, meanNormal };
 }
 
 /** Returns the radiance of a lit point ("Lights"): RGB. */
@@ -44,7 +46,7 @@ function radiance(lit, { baseColorFactor, metallicFactor: metalness }, eye, { di
     const f0 = 0.04 + metalness * (colour - 0.04);
     const specular = fresnel(f0) * lobe * engine.betweenFacets(f0, lit.baseRoughness, towardsEye);
     const diffuse = ((1 - metalness) * (1 - fresnel(0.04)) * colour) / Math.PI;
-    return irradiance * towardsLight * (specular + lit.meanNormal * diffuse);
+    return irradiance * (specular + towardsLight * lit.meanNormal * diffuse);
   });
 }
 

@@ -113,15 +113,42 @@ export const lookUp = ({ normal, alphas: [alphaT, alphaB] }) => ({
   roughness: (alphaT * alphaB) ** 0.25,
 });
 
-/**
- * Returns D V, which is the specular lobe without Fresnel's factor ("Lights"), for the directions to the eye and to the
- * light.
- */
-export function specular({ normal: n, axes: [t, b], alphas: [alphaT, alphaB] }, eye, light) {
-  const h = normalised(sum([eye, 1], [light, 1]));
+/** Returns the shares of the bumps in the squared alphas ("Lights"), of K and of `parameters`. */
+export function shares({ correctionFactor }, [uu, uv, vv], { axis: [e1, e2], eigenvalues }) {
+  const along = uu * e1 * e1 + 2 * uv * e1 * e2 + vv * e2 * e2;
+  return [along, uu + vv - along].map((k, i) => Math.min((2 * correctionFactor * k) / eigenvalues[i], 1));
+}
+
+/** Returns m, the normal of the bumps that reflect light along the half-vector h ("Lights"). */
+function bump({ normal: n, axes, shares }, h) {
+  const slopes = axes.map((axis) => dot(axis, h) / dot(n, h));
+  return normalised(sum([n, 1], ...axes.map((axis, i) => [axis, shares[i] ** 2 * slopes[i]])));
+}
+
+/** Returns the distribution of a lobe at the half-vector h ("Lights"). */
+function distribution({ normal: n, axes: [t, b], alphas: [alphaT, alphaB] }, h) {
   const stretched = Math.hypot(dot(t, h) / alphaT, dot(b, h) / alphaB, dot(n, h));
-  const density = 1 / (Math.PI * alphaT * alphaB * stretched ** 4);
-  const [nv, nl] = [eye, light].map((direction) => Math.max(dot(n, direction), 0));
-  const length = (w, nw) => Math.hypot(alphaT * dot(t, w), alphaB * dot(b, w), nw);
-  return density / (2 * (nl * length(eye, nv) + nv * length(light, nl)));
+  return 1 / (Math.PI * alphaT * alphaB * stretched ** 4);
+}
+
+/** Returns the masking term times N_i (n' . m) ("Lights"), for the directions to the eye and to the light. */
+export function masking(lit, eye, light) {
+  const m = bump(lit, normalised(sum([eye, 1], [light, 1])));
+  const [baseT, baseB] = lit.alphas.map((alpha, i) => alpha * Math.sqrt(1 - lit.shares[i]));
+  const t = normalised(sum([lit.axes[0], 1], [m, -dot(lit.axes[0], m)]));
+  const b = cross(m, t);
+  const [towardsEye, towardsLight] = [eye, light].map((direction) => Math.max(dot(m, direction), 0));
+  if (towardsLight === 0) return 0;
+  const length = (w, cosine) => Math.hypot(baseT * dot(t, w), baseB * dot(b, w), cosine);
+  const sides = towardsLight * length(eye, towardsEye) + towardsEye * length(light, towardsLight);
+  return (towardsLight * dot(lit.normal, m)) / (2 * sides);
+}
+
+/**
+ * Returns the specular lobe without Fresnel's factor, times its cosine with the light ("Lights"), for the directions to
+ * the eye and to the light.
+ */
+export function specular(lit, eye, light) {
+  if (dot(lit.normal, light) <= 0) return 0;
+  return distribution(lit, normalised(sum([eye, 1], [light, 1]))) * masking(lit, eye, light);
 }

@@ -37,6 +37,15 @@ function lobe([uu, uv, vv]) {
   return { ...DARK, roughness: Math.sqrt(across), anisotropy, anisotropyRotation: 0.5 * Math.atan2(2 * uv, uu - vv) };
 }
 
+/** Returns a material with the lobe A = [uu, uv, vv], of which `bumps` = [uu, uv, vv] are bumps. */
+function bumpy(sum, bumps) {
+  const own = lobe(sum);
+  const [c, s] = [Math.cos(own.anisotropyRotation), Math.sin(own.anisotropyRotation)];
+  const along = ([uu, uv, vv]) => [uu * c * c + 2 * uv * c * s + vv * s * s, uu * s * s - 2 * uv * c * s + vv * c * c];
+  const wholes = along(sum);
+  return { own, shares: along(bumps).map((bump, i) => bump / wholes[i]) };
+}
+
 const normal = ([u, v]) => [-u, -v, 1].map((c) => c / Math.hypot(u, v, 1));
 
 async function assertAlike(pyramid, plain) {
@@ -58,12 +67,20 @@ const [D, K] = [
   [0.05, 0.01, 0.01],
 ];
 const C = 0.8;
+const bumps = (k) => k.map((value) => 2 * C * value);
 const roughened = ([uu, uv, vv]) => [ALPHA ** 2 + 2 * C * uu, 2 * C * uv, ALPHA ** 2 + 2 * C * vv];
+const rough = (k) => bumpy(roughened(k), bumps(k));
+/** Returns the base lobe with bumps of this standard deviation. */
+function isotropic(lambda1) {
+  const bump = 2 * C * lambda1 ** 2;
+  const squared = ALPHA ** 2 + bump;
+  return { own: { ...OWN, roughness: squared ** 0.25 }, shares: [bump / squared, bump / squared] };
+}
 const FLAT = { own: OWN, offset: [0, 0], lost: D, correctionFactor: C, frame: 'unit' };
 
 test('D gives the anisotropic lobe of a physical material', options, async () => {
   for (const type of ['MeshStandardMaterial', 'MeshPhysicalMaterial']) {
-    await assertAlike({ ...FLAT, type }, { own: lobe(roughened(K)), normal: [0, 0, 1] });
+    await assertAlike({ ...FLAT, type }, { ...rough(K), normal: [0, 0, 1] });
   }
 });
 
@@ -76,21 +93,20 @@ test('K = 0 leaves the base lobe', options, async () => {
 test('adds K to an anisotropic base lobe', options, async () => {
   const own = lobe([0.09, 0.02, 0.04]);
   const sum = [0.09 + 2 * C * K[0], 0.02 + 2 * C * K[1], 0.04 + 2 * C * K[2]];
-  await assertAlike({ ...FLAT, own }, { own: lobe(sum), normal: [0, 0, 1] });
+  await assertAlike({ ...FLAT, own }, { ...bumpy(sum, bumps(K)), normal: [0, 0, 1] });
 });
 
 test('lambda_1 roughens isotropic and anisotropic base lobes alike in all directions', options, async () => {
-  const squared = ALPHA ** 2 + 2 * C * 0.3 ** 2;
-  await assertAlike({ ...FLAT, lost: [0.3] }, { own: { ...OWN, roughness: squared ** 0.25 }, normal: [0, 0, 1] });
+  await assertAlike({ ...FLAT, lost: [0.3] }, { ...isotropic(0.3), normal: [0, 0, 1] });
   const sum = [0.09 + 2 * C * 0.04, 0.02, 0.04 + 2 * C * 0.04];
-  await assertAlike({ ...FLAT, own: lobe([0.09, 0.02, 0.04]), lost: [0.2] }, { own: lobe(sum), normal: [0, 0, 1] });
+  const whole = bumpy(sum, bumps([0.04, 0, 0.04]));
+  await assertAlike({ ...FLAT, own: lobe([0.09, 0.02, 0.04]), lost: [0.2] }, { ...whole, normal: [0, 0, 1] });
 });
 
 test('bumps lose no light to each other', options, async () => {
   const metal = { metalness: 1, color: 0xffffff };
   for (const lost of [D, [0.3]]) {
-    const squared = ALPHA ** 2 + 2 * C * 0.3 ** 2;
-    const whole = lost === D ? lobe(roughened(K)) : { ...OWN, roughness: squared ** 0.25 };
+    const { own: whole, shares } = lost === D ? rough(K) : isotropic(0.3);
     const drawn = await page.evaluate((o) => window.pyramid(o), {
       ...FLAT,
       plane: PLANE,
@@ -99,6 +115,7 @@ test('bumps lose no light to each other', options, async () => {
     });
     const three = await page.evaluate((o) => window.plain(o), {
       own: { ...whole, ...metal },
+      shares,
       normal: [0, 0, 1],
       plane: PLANE,
     });
@@ -139,7 +156,7 @@ test('diffuse light is the mean over the normals of the bumps', options, async (
 
 const SLOPE = [0.3, -0.2];
 const BUMPY = { ...FLAT, offset: SLOPE, lost: [0.2] };
-const ISOTROPIC = { own: { ...OWN, roughness: (ALPHA ** 2 + 2 * C * 0.04) ** 0.25 }, normal: normal(SLOPE) };
+const ISOTROPIC = { ...isotropic(0.2), normal: normal(SLOPE) };
 
 test('offsets tilt the normal, with and without tangents, from behind and in mirrored nodes', options, async () => {
   for (const change of [
@@ -167,7 +184,7 @@ test('natural offsets are heights per repeat', options, async () => {
     // D also is per repeat: its rows are divided by 2 and 4.
     const anisotropic = { ...FLAT, frame: 'natural', lost: [D[0], D[1], 2 * D[2]], plane: { ...plane, tangents } };
     await assertAlike(anisotropic, {
-      own: lobe(roughened(K.map((k) => k / 4))),
+      ...rough(K.map((k) => k / 4)),
       normal: [0, 0, 1],
       plane: { ...plane, tangents },
     });
@@ -183,6 +200,6 @@ test('a main direction needs no tangents', options, async () => {
   for (const change of [{}, { tangents: false }, { behind: true }, { mirrored: true, tangents: false }]) {
     const plane = { ...PLANE, ...change };
     await assertAlike({ ...main, plane }, { ...ISOTROPIC, plane });
-    await assertAlike({ ...rotated, plane }, { own: lobe(roughened([K[2], -K[1], K[0]])), normal: [0, 0, 1], plane });
+    await assertAlike({ ...rotated, plane }, { ...rough([K[2], -K[1], K[0]]), normal: [0, 0, 1], plane });
   }
 });

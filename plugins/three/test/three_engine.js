@@ -7,7 +7,7 @@ import { dot, normalised, sum } from './vectors.js';
 const { data, width, height } = getDFGLUT().image;
 const texels = Array.from({ length: width * height }, (_, i) => [...data.slice(2 * i, 2 * i + 2)].map(fromHalf));
 
-/** Returns the two numbers of three.js' table of albedos for a roughness. */
+/** Returns the two numbers of three.js' table of albedos for a roughness and the cosine of an angle. */
 const table = (roughness, cosine) => bilinear({ width, height, texels }, CLAMP_TO_EDGE, [roughness, cosine]);
 
 export const THREE_JS = {
@@ -18,9 +18,12 @@ export const THREE_JS = {
     const [scale, bias] = table(roughness, cosine);
     return 1 + f0 * (1 / (scale + bias) - 1);
   },
-  /** Returns how much of an environment a lobe reflects at once, and after light between microfacets. */
-  albedos(f0, roughness, cosine) {
-    const [scale, bias] = table(roughness, cosine);
+  table,
+  /**
+   * Returns how much of an environment a lobe reflects at once, and after light between microfacets, from numbers of
+   * the table.
+   */
+  albedos(f0, [scale, bias]) {
     const [once, lost, mean] = [f0 * scale + bias, 1 - scale - bias, f0 + (1 - f0) / 21];
     return [once, (once * mean * lost) / (1 - lost * mean)];
   },

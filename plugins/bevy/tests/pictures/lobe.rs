@@ -11,6 +11,8 @@ use crate::renderer::{LIGHT, Picture, SIZE};
 pub struct Lobe {
     /// Squared alphas.
     pub a: Mat2,
+    /// The part of the bumps in them. Bumps do not hide each other.
+    pub bumps: Mat2,
     /// Mean slope.
     pub slope: Vec2,
 }
@@ -18,7 +20,7 @@ pub struct Lobe {
 impl Lobe {
     /// Makes an isotropic lobe.
     pub fn isotropic(alpha: f32) -> Self {
-        Self { a: Mat2::from_diagonal(Vec2::splat(alpha * alpha)), slope: Vec2::ZERO }
+        Self { a: Mat2::from_diagonal(Vec2::splat(alpha * alpha)), bumps: Mat2::ZERO, slope: Vec2::ZERO }
     }
 
     /// Returns the radiance toward `view` of a metal that reflects everything, over the radiance of the light, times
@@ -35,9 +37,25 @@ impl Lobe {
         let slope = Vec2::new(h.x, h.y) / h.z;
         let q = 1.0 + slope.dot(self.a.inverse() * slope);
         let d = 1.0 / (PI * self.a.determinant().sqrt() * q * q * h.z.powi(4));
-        let length = |d: Vec3| (d.truncate().dot(self.a * d.truncate()) + d.z * d.z).sqrt();
-        let visibility = 0.5 / (l.z * length(v) + v.z * length(l));
-        PI * d * visibility * l.z / self.reflected_once(v.z)
+        PI * d * self.visibility(v, l, h) / self.reflected_once(v.z)
+    }
+
+    /// Returns the term of visibility times the cosine with the light, of directions in the frame of the normal: that
+    /// of the base lobe of one bump, which stands for all bumps that reflect `l` to `v` (docs/extension/README.md,
+    /// "Lights").
+    fn visibility(self, v: Vec3, l: Vec3, h: Vec3) -> f32 {
+        let (centre, radius) = self.mean_and_radius();
+        let axis = Vec2::from_angle(0.5 * (2.0 * self.a.x_axis.y).atan2(self.a.x_axis.x - self.a.y_axis.y));
+        let along = |d: Vec3| Vec3::new(axis.dot(d.truncate()), axis.perp_dot(d.truncate()), d.z);
+        let (v, l, h) = (along(v), along(l), along(h));
+        let bumps = Vec2::new(axis.dot(self.bumps * axis), axis.perp().dot(self.bumps * axis.perp()));
+        let squared = Vec2::new(centre + radius, centre - radius);
+        let shares = bumps / squared;
+        let m = (shares * shares * h.truncate() / h.z).extend(1.0).normalize();
+        let t = (Vec3::X - m.x * m).normalize();
+        let (v, l) = [v, l].map(|d| Vec3::new(t.dot(d), m.cross(t).dot(d), m.dot(d).max(0.0))).into();
+        let length = |d: Vec3| ((squared - bumps).dot(d.truncate() * d.truncate()) + d.z * d.z).sqrt();
+        0.5 * l.z * m.z / (l.z * length(v) + v.z * length(l))
     }
 
     /// Returns the sum of Bevy's F_AB, a polynomial of Unreal Engine 4. Multiple scattering adds what is missing to 1.

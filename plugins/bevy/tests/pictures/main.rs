@@ -86,7 +86,8 @@ fn a_pyramid_shades_with_the_lobe_of_the_extension() {
     assert!(slope.abs().max_element() < 0.015, "{slope}");
     let d = baked.roughness(asset.last_texel(&baked, "factor"));
     let k = Mat2::from_cols_array(&[d.x * d.x + d.y * d.y, d.y * d.z, d.y * d.z, d.z * d.z]);
-    let anisotropic = Lobe { a: base_lobe().a + 2.0 * baked.correction_factor() * k, slope };
+    let bumpy = |bumps: Mat2| Lobe { a: base_lobe().a + bumps, bumps, slope };
+    let anisotropic = bumpy(2.0 * baked.correction_factor() * k);
     let factor = renderer.draw(&baked.path);
     assert_close(&factor, &anisotropic.picture(), 0.005, "D");
     // One lobe cannot come closer. Without K the error is 0.9.
@@ -94,9 +95,9 @@ fn a_pyramid_shades_with_the_lobe_of_the_extension() {
 
     let baked = asset.bake("deviation", "--profile pyramid --model isotropic");
     let lambda_1 = baked.roughness(asset.last_texel(&baked, "lambda1")).x;
-    let isotropic = base_lobe().a + 2.0 * baked.correction_factor() * lambda_1 * lambda_1 * Mat2::IDENTITY;
+    let isotropic = bumpy(2.0 * baked.correction_factor() * lambda_1 * lambda_1 * Mat2::IDENTITY);
     let deviation = renderer.draw(&baked.path);
-    assert_close(&deviation, &Lobe { a: isotropic, slope }.picture(), 0.005, "lambda_1");
+    assert_close(&deviation, &isotropic.picture(), 0.005, "lambda_1");
     assert!(relative_l1(&deviation, &factor) > 0.1);
 
     // Other frames give the same picture. On the plane z = 0, m = x has e1 = -y and e2 = x.
@@ -116,7 +117,8 @@ fn axes_of_anisotropic_lobes_follow_the_normal_where_no_bumps_are_lost() {
     let baked = asset.bake("tilted", "--profile pyramid --model none");
     let across = ROUGHNESS * ROUGHNESS;
     let along = across + (1.0 - across) * strength * strength;
-    let lobe = Lobe { a: Mat2::from_diagonal(Vec2::new(along * along, across * across)), slope };
+    let a = Mat2::from_diagonal(Vec2::new(along * along, across * across));
+    let lobe = Lobe { a, slope, ..base_lobe() };
     assert_close(&Renderer::new(folder.path(), true).draw(&baked.path), &lobe.picture(), 0.02, "tilted lobe");
 }
 
@@ -172,7 +174,8 @@ fn bevy_squares_the_alphas_of_anisotropic_lobes_once_more() {
     let picture = Renderer::new(folder.path(), false).draw(&asset.anisotropic(roughness, strength));
     let expected = |across: f32| {
         let along = across + (1.0 - across) * strength * strength;
-        Lobe { a: Mat2::from_diagonal(Vec2::new(along * along, across * across)), slope: Vec2::ZERO }.picture()
+        let a = Mat2::from_diagonal(Vec2::new(along * along, across * across));
+        Lobe { a, ..base_lobe() }.picture()
     };
     // Pictures are normalised, since multiple scattering depends on the roughness of the material.
     let shape = |picture: Picture| -> Picture {

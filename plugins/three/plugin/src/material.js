@@ -44,7 +44,8 @@ export function applyPyramid(material, pyramid) {
     const lights = replaced(ShaderChunk.lights_fragment_begin, shader.LOST_LIGHT, shader.baseLostLight);
     const tilted = replaced(program.fragmentShader, ANCHORS.normal, shader.normal);
     const roughened = after(replaced(tilted, ANCHORS.lights, lights), ANCHORS.lobe, shader.roughen);
-    const lit = after(withReflections(roughened), ANCHORS.maps, shader.diffuse);
+    const reflecting = after(withReflections(roughened), ANCHORS.maps, shader.diffuse);
+    const lit = replaced(reflecting, ANCHORS.functions, withVisibility(ShaderChunk.lights_physical_pars_fragment));
     program.fragmentShader = shader.declarations(variant) + lit;
   };
   return patch(material, `roughcast ${variant.model} ${variant.frame} ${variant.channels}`, edit, (copy) => {
@@ -81,6 +82,12 @@ function patch(material, name, edit, patchClone) {
   };
   material.needsUpdate = true;
   return material;
+}
+
+/** Returns the functions of three.js with the term of visibility of bumps that do not hide each other. */
+export function withVisibility(functions) {
+  const lobe = 'vec3 BRDF_GGX( ';
+  return replaced(functions, lobe, shader.visibility + lobe);
 }
 
 function withReflections(fragment) {

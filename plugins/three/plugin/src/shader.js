@@ -87,14 +87,62 @@ export const normal = /* glsl */ `
   }
 `;
 
+/**
+ * Goes before `BRDF_GGX` in `lights_physical_pars_fragment`: the term of visibility of the lobe. Smith's term is that
+ * of facets that hide each other. Bumps of a map do not, so that each of them has the term of the base lobe.
+ */
+export const visibility = /* glsl */ `
+// The shares of the bumps in the squared alphas of the lobe, along T and B.
+vec2 roughcastShares = vec2( 0.0 );
+float roughcastVisibility( vec3 l, vec3 v, vec3 n, vec3 h, PhysicalMaterial material ) {
+  // m stands for the normals of the bumps that reflect l to v.
+  vec3 slope = h / max( dot( n, h ), 1e-4 ) - n;
+  vec2 gain = roughcastShares * roughcastShares;
+  #ifdef USE_ANISOTROPY
+    vec3 t = material.anisotropyT, b = material.anisotropyB;
+    vec3 m = normalize( n + gain.x * dot( slope, t ) * t + gain.y * dot( slope, b ) * b );
+  #else
+    vec3 m = normalize( n + gain.x * slope );
+  #endif
+  float dotML = saturate( dot( m, l ) ), dotMV = saturate( dot( m, v ) );
+  // The alphas of the base lobe.
+  vec2 alphas = sqrt( 1.0 - roughcastShares );
+  #ifdef USE_ANISOTROPY
+    alphas *= vec2( material.alphaT, pow2( material.roughness ) );
+    t = normalize( t - dot( t, m ) * m );
+    b = cross( m, t );
+    float term = V_GGX_SmithCorrelated_Anisotropic(
+      alphas.x, alphas.y, dot( t, v ), dot( b, v ), dot( t, l ), dot( b, l ), dotMV, dotML );
+  #else
+    float term = V_GGX_SmithCorrelated( alphas.x * pow2( material.roughness ), dotML, dotMV );
+  #endif
+  return term * dot( n, m ) * dotML / max( dot( n, l ), 1e-4 );
+}
+#define V_GGX_SmithCorrelated_Anisotropic( at, ab, tv, bv, tl, bl, nv, nl ) \
+  roughcastVisibility( lightDir, viewDir, normal, halfDir, material )
+#define V_GGX_SmithCorrelated( alpha, nl, nv ) roughcastVisibility( lightDir, viewDir, normal, halfDir, material )
+`;
+
 /** Goes after `#include <lights_physical_pars_fragment>`: the environment as an anisotropic lobe reflects it. */
 export const surroundings = /* glsl */ `
 #if defined( USE_ANISOTROPY ) && defined( USE_ENVMAP )
+  // Adds what a facet reflects, with the albedo of the base lobe at its own angle, and its albedo.
+  void roughcastReflect(
+    vec3 view, vec3 facet, float base, float roughness,
+    inout PhysicalMaterial material, inout vec3 sum, inout vec3 albedos
+  ) {
+    vec2 dfg = texture2D( dfgLUT, vec2( base, saturate( dot( facet, view ) ) ) ).rg;
+    vec3 albedo = material.specularColorBlended * dfg.x + material.specularF90 * dfg.y;
+    sum += albedo * getIBLRadiance( view, facet, roughness );
+    albedos += albedo;
+    material.dfg += dfg;
+  }
+
   // Averages what facets reflect, each with the roughness of the base lobe. Facets are weighted by their area in the
   // map and do not hide each other, as in an unfiltered map. three.js' single look-up along a bent normal is far too
   // bright on spheres. Weights by the visible area of real facets (B. Walter et al., 2007, eq. 41) are too bright on
-  // planes.
-  vec3 roughcastRadiance( vec3 view, vec3 n, vec3 t, vec3 b, float alphaT, float alphaB, float base ) {
+  // planes. three.js multiplies the result by the albedo, so that this becomes the mean albedo of the facets.
+  vec3 roughcastRadiance( vec3 view, vec3 n, float base, inout PhysicalMaterial material ) {
     const int PAIRS = 8;
     // Pi over the golden ratio: directions and their opposites cover the circle evenly.
     const float ANGLE = 1.94161104;
@@ -103,21 +151,23 @@ export const surroundings = /* glsl */ `
     const float WIDTH = 1.3;
     // The spread of the facets is S = A' - alpha_b^2 1, which is 2 c K for an isotropic base lobe. A quarter of the
     // smaller spread is left to blur, since there are few facets.
-    vec2 spread = max( vec2( pow2( alphaT ), pow2( alphaB ) ) - pow4( base ), 0.0 );
+    vec2 spread = max( vec2( pow2( material.alphaT ), pow4( material.roughness ) ) - pow4( base ), 0.0 );
     float blur = 0.25 * spread.y;
     spread = sqrt( WIDTH * ( spread - blur ) );
     float roughness = sqrt( sqrt( pow4( base ) + blur ) );
-    vec3 sum = vec3( 0.0 );
+    vec3 sum = vec3( 0.0 ), albedos = vec3( 0.0 );
+    material.dfg = vec2( 0.0 );
     for ( int i = 0; i < PAIRS; i ++ ) {
       // Slopes at quantiles of a normal distribution, on a spiral, each with the opposite slope: their mean is 0, and
       // the signs of the axes do not matter.
       float radius = sqrt( - log( 1.0 - ( float( i ) + 0.5 ) / float( PAIRS ) ) ), angle = ANGLE * float( i );
       vec2 slope = radius * spread * vec2( cos( angle ), sin( angle ) );
-      vec3 tilt = slope.x * t + slope.y * b;
-      sum += getIBLRadiance( view, normalize( n + tilt ), roughness );
-      sum += getIBLRadiance( view, normalize( n - tilt ), roughness );
+      vec3 tilt = slope.x * material.anisotropyT + slope.y * material.anisotropyB;
+      roughcastReflect( view, normalize( n + tilt ), base, roughness, material, sum, albedos );
+      roughcastReflect( view, normalize( n - tilt ), base, roughness, material, sum, albedos );
     }
-    return sum / float( 2 * PAIRS );
+    material.dfg /= float( 2 * PAIRS );
+    return sum / max( albedos, vec3( 1e-6 ) );
   }
 #endif
 `;
@@ -139,7 +189,7 @@ float roughcastBase = material.roughness;
 export const reflection = /* glsl */ `
 #if defined( USE_ANISOTROPY ) && defined( USE_ENVMAP )
   #define getIBLAnisotropyRadiance( view, n, roughness, b, strength ) \
-    roughcastRadiance( view, n, material.anisotropyT, b, material.alphaT, pow2( roughness ), roughcastBase )
+    roughcastRadiance( view, n, roughcastBase, material )
 #endif
 #include <lights_fragment_maps>
 #undef getIBLAnisotropyRadiance
@@ -207,12 +257,17 @@ export const roughen = /* glsl */ `
     t = e.x * roughcastE1 + e.y * roughcastE2;
     material.anisotropyT = normalize( t - dot( t, normal ) * normal );
     material.anisotropyB = cross( normal, material.anisotropyT );
+    // K along the axes of the lobe.
+    float kt = dot( roughcastK, vec3( e.x * e.x, 2.0 * e.x * e.y, e.y * e.y ) );
+    vec2 bumps = 2.0 * roughcastCorrection * vec2( kt, roughcastK.x + roughcastK.z - kt );
+    roughcastShares = clamp( bumps / vec2( major, minor ), 0.0, 1.0 );
   }
   #elif defined( ROUGHCAST_DEVIATION )
     // Different scales of u and v make the lobe anisotropic. This shader has isotropic lobes only, so it takes the
     // mean.
-    float roughcastSquared =
-      pow2( pow2( material.roughness ) ) + roughcastCorrection * ( roughcastK.x + roughcastK.z );
-    material.roughness = sqrt( sqrt( min( roughcastSquared, 1.0 ) ) );
+    float bumps = roughcastCorrection * ( roughcastK.x + roughcastK.z );
+    float squared = min( pow4( material.roughness ) + bumps, 1.0 );
+    roughcastShares = vec2( min( bumps / squared, 1.0 ) );
+    material.roughness = sqrt( sqrt( squared ) );
   #endif
 `;
