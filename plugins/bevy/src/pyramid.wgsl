@@ -27,6 +27,38 @@ struct Pyramid {
 @group(#{MATERIAL_BIND_GROUP}) @binding(103) var roughness_texture: texture_2d<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(104) var roughness_sampler: sampler;
 
+// The roughness of the base lobe, its alphas along T and B, and the shares of the bumps in the squared alphas of the
+// whole lobe.
+var<private> base_roughness: f32;
+var<private> base_alphas: vec2<f32>;
+var<private> shares: vec2<f32>;
+// The directions to the light and to the eye in the frame of the lobe: T, B and N.
+var<private> to_light: vec3<f32>;
+var<private> to_eye: vec3<f32>;
+
+// Smith's term is that of facets that hide each other. Bumps of a map do not, so that each of them has the term of the
+// base lobe.
+fn visibility() -> f32 {
+    let l = to_light;
+    let v = to_eye;
+    // g is the normal of one bump, which stands for all bumps that reflect l to v.
+    let h = normalize(l + v);
+    let g = normalize(vec3(shares * shares * h.xy / max(h.z, 1e-4), 1.0));
+    let t = normalize(vec3(1.0, 0.0, 0.0) - g.x * g);
+    let b = cross(g, t);
+    let light = vec3(base_alphas * vec2(dot(t, l), dot(b, l)), saturate(dot(g, l)));
+    let eye = vec3(base_alphas * vec2(dot(t, v), dot(b, v)), saturate(dot(g, v)));
+    let sides = max(light.z * length(eye) + eye.z * length(light), 1e-6);
+    return 0.5 / sides * g.z * light.z / max(l.z, 1e-4);
+}
+
+// Returns the input of a light with the light between microfacets of the base lobe: bumps do not light each other.
+fn with_base(input: ptr<function, lighting::LightingInput>) -> lighting::LightingInput {
+    var base = *input;
+    base.F_ab = lighting::F_AB(base_roughness, base.layers[lighting::LAYER_BASE].NdotV);
+    return base;
+}
+
 #ifdef STANDARD_MATERIAL_ANISOTROPY
 // Bevy squares alpha once more, to roughness^4, where KHR_materials_anisotropy has alpha_b = roughness^2.
 override fn bevy_pbr::lighting::specular_anisotropy(
@@ -36,29 +68,13 @@ override fn bevy_pbr::lighting::specular_anisotropy(
     roughness: f32,
     specular_intensity: f32,
 ) -> vec3<f32> {
-    return lighting::specular_anisotropy(input, derived_input, L, sqrt(roughness), specular_intensity);
-}
-#endif
-
-// The shares of the bumps in the squared alphas of the lobe, along T and B.
-var<private> shares: vec2<f32> = vec2(0.0);
-
-// Smith's term is that of facets that hide each other. Bumps of a map do not, so that each of them has the term of the
-// base lobe. l and v are in the frame of the lobe: T, B and N.
-fn visibility(whole: vec2<f32>, l: vec3<f32>, v: vec3<f32>) -> f32 {
-    // m stands for the normals of the bumps that reflect l to v.
-    let h = normalize(l + v);
-    let m = normalize(vec3(shares * shares * h.xy / max(h.z, 1e-4), 1.0));
-    let alphas = whole * sqrt(1.0 - shares);
-    let t = normalize(vec3(1.0, 0.0, 0.0) - m.x * m);
-    let b = cross(m, t);
-    let light = vec3(alphas * vec2(dot(t, l), dot(b, l)), saturate(dot(m, l)));
-    let eye = vec3(alphas * vec2(dot(t, v), dot(b, v)), saturate(dot(m, v)));
-    let sides = max(light.z * length(eye) + eye.z * length(light), 1e-6);
-    return 0.5 / sides * m.z * light.z / max(l.z, 1e-4);
+    var base = with_base(input);
+    let to_lobe = transpose(mat3x3(base.Ta, base.Ba, base.layers[lighting::LAYER_BASE].N));
+    to_light = to_lobe * L;
+    to_eye = to_lobe * base.V;
+    return lighting::specular_anisotropy(&base, derived_input, L, sqrt(roughness), specular_intensity);
 }
 
-#ifdef STANDARD_MATERIAL_ANISOTROPY
 override fn bevy_pbr::lighting::V_GGX_anisotropic(
     at: f32,
     ab: f32,
@@ -69,7 +85,7 @@ override fn bevy_pbr::lighting::V_GGX_anisotropic(
     TdotL: f32,
     BdotL: f32,
 ) -> f32 {
-    return visibility(vec2(at, ab), vec3(TdotL, BdotL, NdotL), vec3(TdotV, BdotV, NdotV));
+    return visibility();
 }
 #else
 override fn bevy_pbr::lighting::specular(
@@ -78,20 +94,17 @@ override fn bevy_pbr::lighting::specular(
     roughness: f32,
     specular_intensity: f32,
 ) -> vec3<f32> {
-    let n = (*input).layers[lighting::LAYER_BASE].N;
+    var base = with_base(input);
+    let n = base.layers[lighting::LAYER_BASE].N;
     let h = (*derived_input).H;
     // Any axes do, since the lobe is isotropic.
     let t = normalize(cross(n, select(vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0), abs(n.y) < 0.7)));
     let to_lobe = transpose(mat3x3(t, cross(n, t), n));
-    let v = to_lobe * (*input).V;
-    let l = to_lobe * (2.0 * dot((*input).V, h) * h - (*input).V);
-    let smith = lighting::V_SmithGGXCorrelated(
-        roughness,
-        (*input).layers[lighting::LAYER_BASE].NdotV,
-        (*derived_input).NdotL,
-    );
-    let light = lighting::specular(input, derived_input, roughness, specular_intensity);
-    return light * visibility(vec2(roughness), l, v) / max(smith, 1e-6);
+    to_eye = to_lobe * base.V;
+    to_light = to_lobe * (2.0 * dot(base.V, h) * h - base.V);
+    let light = lighting::specular(&base, derived_input, roughness, specular_intensity);
+    let n_dot_v = base.layers[lighting::LAYER_BASE].NdotV;
+    return light * visibility() / max(lighting::V_SmithGGXCorrelated(roughness, n_dot_v, (*derived_input).NdotL), 1e-6);
 }
 #endif
 
@@ -173,6 +186,7 @@ fn roughen(input: ptr<function, PbrInput>, frame: Frame, k: vec3<f32>) {
     // The slopes of the bumps have the variance c tr K.
     mean_normal = inverseSqrt(1.0 + pyramid.correction_factor * (k.x + k.z));
     let alpha = lighting::perceptualRoughnessToRoughness((*input).material.perceptual_roughness);
+    let bumps = 2.0 * pyramid.correction_factor * k;
 #ifdef STANDARD_MATERIAL_ANISOTROPY
     // The base lobe, in the frame of K.
     let strength = (*input).anisotropy_strength;
@@ -180,8 +194,8 @@ fn roughen(input: ptr<function, PbrInput>, frame: Frame, k: vec3<f32>) {
     var axis = vec2(dot((*input).anisotropy_T, frame.e1), dot((*input).anisotropy_T, frame.e2));
     axis /= max(length(axis), 1e-6);
     let across = alpha * alpha;
-    var a = vec3(across, 0.0, across) + (along * along - across) * axis.xxy * axis.xyy;
-    a += 2.0 * pyramid.correction_factor * k;
+    let base = vec3(across, 0.0, across) + (along * along - across) * axis.xxy * axis.xyy;
+    let a = base + bumps;
     // Eigenvalues, and the axis of the larger one.
     let middle = 0.5 * (a.x + a.z);
     let difference = 0.5 * (a.x - a.z);
@@ -200,17 +214,22 @@ fn roughen(input: ptr<function, PbrInput>, frame: Frame, k: vec3<f32>) {
     let t = e.x * frame.e1 + e.y * frame.e2;
     (*input).anisotropy_T = normalize(t - dot(t, (*input).N) * (*input).N);
     (*input).anisotropy_B = cross((*input).N, (*input).anisotropy_T);
-    // K along the axes of the lobe.
-    let kt = dot(k, vec3(e.x * e.x, 2.0 * e.x * e.y, e.y * e.y));
-    let bumps = 2.0 * pyramid.correction_factor * vec2(kt, k.x + k.z - kt);
-    shares = saturate(bumps / vec2(major, minor));
+    // Base lobe and bumps along the axes of the lobe.
+    let square = vec3(e.x * e.x, 2.0 * e.x * e.y, e.y * e.y);
+    let base_t = dot(base, square);
+    let bumps_t = dot(bumps, square);
+    let squares = max(vec2(base_t, base.x + base.z - base_t), vec2(across));
+    let bump_squares = max(vec2(bumps_t, bumps.x + bumps.z - bumps_t), vec2(0.0));
+    base_alphas = sqrt(squares);
+    shares = bump_squares / (squares + bump_squares);
 #else
     // Different scales of u and v make the lobe anisotropic. This shader has isotropic lobes only, so it takes the
     // mean.
-    let bumps = pyramid.correction_factor * (k.x + k.z);
-    let squared = min(alpha * alpha + bumps, 1.0);
-    shares = vec2(saturate(bumps / squared));
-    (*input).material.perceptual_roughness = sqrt(sqrt(squared));
+    let mean_bumps = 0.5 * (bumps.x + bumps.z);
+    let squared = alpha * alpha + mean_bumps;
+    base_alphas = vec2(alpha);
+    shares = vec2(mean_bumps / squared);
+    (*input).material.perceptual_roughness = sqrt(sqrt(min(squared, 1.0)));
 #endif
 }
 
@@ -242,6 +261,8 @@ fn bumps(in: VertexOutput, is_front: bool, input: ptr<function, PbrInput>) {
 @fragment
 fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> FragmentOutput {
     var input = pbr_input_from_standard_material(in, is_front);
+    base_roughness = input.material.perceptual_roughness;
+    base_alphas = vec2(lighting::perceptualRoughnessToRoughness(base_roughness));
 #ifdef VERTEX_TANGENTS
 #ifdef VERTEX_UVS_A
     bumps(in, is_front, &input);

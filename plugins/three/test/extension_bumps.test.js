@@ -24,7 +24,10 @@ const SLOPES = {
 };
 
 /** Returns the isotropic lobe of an alpha about z, of which bumps are a share. */
-const lobe = (alpha, share) => ({ ...FLAT, alphas: [alpha, alpha], shares: [share, share] });
+function lobe(alpha, share) {
+  const base = alpha * Math.sqrt(1 - share);
+  return { ...FLAT, alphas: [alpha, alpha], baseAlphas: [base, base], shares: [share, share] };
+}
 
 /** Returns evenly spread unit vectors that are at least 0.2 above the plane z = 0. */
 function directions(count, seed) {

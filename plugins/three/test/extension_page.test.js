@@ -37,7 +37,7 @@ test('the worked example of the page is right', () => {
   for (const name of ['eigenvalues', 'axis', 'alphas', 'roughness', 'strength']) {
     assertPrinted(found[name], example[name], name);
   }
-  assertPrinted(reader.shares(extension, k, found), example.sharesOfBumps, 'B_t and B_b');
+  assertPrinted(reader.parts(extension, base, k, found.axis).shares, example.shares, 'P_t and P_b');
 });
 
 /** The surface of the plane in fixtures/real after it is stretched: p_u = 3 T and p_v = -B / 2, in units per repeat. */

@@ -29,11 +29,11 @@ function point({ material, engine: { leastRoughness } }, surfaceThere, texel) {
   const lost = extension.roughnessTexture && texel(extension.roughnessTexture);
   const k = reader.scaledCovariance(frame, reader.covariance(extension, lost));
   const { roughness, lobe } = baseLobe(material, frame, surfaceThere, texel, leastRoughness);
-  const parameters = reader.parameters(reader.roughened(extension, lobe, k), roughness ** 4);
-  const axes = reader.axes(frame, normal, parameters.axis);
-  const shares = reader.shares(extension, k, parameters);
+  const { alphas, axis } = reader.parameters(reader.roughened(extension, lobe, k), roughness ** 4);
+  const axes = reader.axes(frame, normal, axis);
+  const parts = reader.parts(extension, lobe, k, axis);
   const meanNormal = reader.meanNormal(extension, k);
-  return { normal, axes, alphas: parameters.alphas, shares, baseRoughness: roughness, meanNormal };
+  return { normal, axes, alphas, ...parts, baseRoughness: roughness, meanNormal };
 }
 
 /** Returns the radiance of a lit point ("Lights"): RGB. */

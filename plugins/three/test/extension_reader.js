@@ -113,35 +113,40 @@ export const lookUp = ({ normal, alphas: [alphaT, alphaB] }) => ({
   roughness: (alphaT * alphaB) ** 0.25,
 });
 
-/** Returns the shares of the bumps in the squared alphas ("Lights"), of K and of `parameters`. */
-export function shares({ correctionFactor }, [uu, uv, vv], { axis: [e1, e2], eigenvalues }) {
-  const along = uu * e1 * e1 + 2 * uv * e1 * e2 + vv * e2 * e2;
-  return [along, uu + vv - along].map((k, i) => Math.min((2 * correctionFactor * k) / eigenvalues[i], 1));
+/**
+ * Returns a_t and a_b, the alphas of the base lobe along the axes of the roughened lobe, and P_t and P_b, the shares of
+ * the bumps ("Lights").
+ */
+export function parts({ correctionFactor }, base, k, [e1, e2]) {
+  const along = ([uu, uv, vv]) => uu * e1 * e1 + 2 * uv * e1 * e2 + vv * e2 * e2;
+  const both = (matrix) => [along(matrix), matrix[0] + matrix[2] - along(matrix)];
+  const [squares, bumps] = [both(base), both(k).map((value) => 2 * correctionFactor * value)];
+  return { baseAlphas: squares.map(Math.sqrt), shares: bumps.map((bump, i) => bump / (squares[i] + bump)) };
 }
 
-/** Returns m, the normal of the bumps that reflect light along the half-vector h ("Lights"). */
+/** Returns g, the normal of the bump that reflects light along the half-vector h ("Lights"). */
 function bump({ normal: n, axes, shares }, h) {
-  const slopes = axes.map((axis) => dot(axis, h) / dot(n, h));
+  const slopes = axes.map((axis) => dot(axis, h) / Math.max(dot(n, h), 1e-4));
   return normalised(sum([n, 1], ...axes.map((axis, i) => [axis, shares[i] ** 2 * slopes[i]])));
 }
 
 /** Returns the distribution of a lobe at the half-vector h ("Lights"). */
 function distribution({ normal: n, axes: [t, b], alphas: [alphaT, alphaB] }, h) {
-  const stretched = Math.hypot(dot(t, h) / alphaT, dot(b, h) / alphaB, dot(n, h));
+  const stretched = Math.hypot(dot(t, h) / alphaT, dot(b, h) / alphaB, Math.max(dot(n, h), 0));
   return 1 / (Math.PI * alphaT * alphaB * stretched ** 4);
 }
 
-/** Returns the masking term times N_i (n' . m) ("Lights"), for the directions to the eye and to the light. */
+/** Returns the masking term times C_i (n' . g) ("Lights"), for the directions to the eye and to the light. */
 export function masking(lit, eye, light) {
-  const m = bump(lit, normalised(sum([eye, 1], [light, 1])));
-  const [baseT, baseB] = lit.alphas.map((alpha, i) => alpha * Math.sqrt(1 - lit.shares[i]));
-  const t = normalised(sum([lit.axes[0], 1], [m, -dot(lit.axes[0], m)]));
-  const b = cross(m, t);
-  const [towardsEye, towardsLight] = [eye, light].map((direction) => Math.max(dot(m, direction), 0));
+  const g = bump(lit, normalised(sum([eye, 1], [light, 1])));
+  const [alphaT, alphaB] = lit.baseAlphas;
+  const t = normalised(sum([lit.axes[0], 1], [g, -dot(lit.axes[0], g)]));
+  const b = cross(g, t);
+  const [towardsEye, towardsLight] = [eye, light].map((direction) => Math.max(dot(g, direction), 0));
   if (towardsLight === 0) return 0;
-  const length = (w, cosine) => Math.hypot(baseT * dot(t, w), baseB * dot(b, w), cosine);
+  const length = (w, cosine) => Math.hypot(alphaT * dot(t, w), alphaB * dot(b, w), cosine);
   const sides = towardsLight * length(eye, towardsEye) + towardsEye * length(light, towardsLight);
-  return (towardsLight * dot(lit.normal, m)) / (2 * sides);
+  return (towardsLight * dot(lit.normal, g)) / (2 * sides);
 }
 
 /**

@@ -37,13 +37,18 @@ function lobe([uu, uv, vv]) {
   return { ...DARK, roughness: Math.sqrt(across), anisotropy, anisotropyRotation: 0.5 * Math.atan2(2 * uv, uu - vv) };
 }
 
-/** Returns a material with the lobe A = [uu, uv, vv], of which `bumps` = [uu, uv, vv] are bumps. */
+/** Returns the alphas of the base lobe and the shares of bumps, from squared alphas along two axes. */
+const partsOf = (wholes, bumps) => ({
+  alphas: wholes.map((whole, i) => Math.sqrt(whole - bumps[i])),
+  shares: wholes.map((whole, i) => bumps[i] / whole),
+});
+
+/** Returns a material with the lobe A = [uu, uv, vv], of which `bumps` = [uu, uv, vv] are bumps, and both parts. */
 function bumpy(sum, bumps) {
   const own = lobe(sum);
   const [c, s] = [Math.cos(own.anisotropyRotation), Math.sin(own.anisotropyRotation)];
   const along = ([uu, uv, vv]) => [uu * c * c + 2 * uv * c * s + vv * s * s, uu * s * s - 2 * uv * c * s + vv * c * c];
-  const wholes = along(sum);
-  return { own, shares: along(bumps).map((bump, i) => bump / wholes[i]) };
+  return { own, parts: partsOf(along(sum), along(bumps)) };
 }
 
 const normal = ([u, v]) => [-u, -v, 1].map((c) => c / Math.hypot(u, v, 1));
@@ -74,7 +79,7 @@ const rough = (k) => bumpy(roughened(k), bumps(k));
 function isotropic(lambda1) {
   const bump = 2 * C * lambda1 ** 2;
   const squared = ALPHA ** 2 + bump;
-  return { own: { ...OWN, roughness: squared ** 0.25 }, shares: [bump / squared, bump / squared] };
+  return { own: { ...OWN, roughness: squared ** 0.25 }, parts: partsOf([squared, squared], [bump, bump]) };
 }
 const FLAT = { own: OWN, offset: [0, 0], lost: D, correctionFactor: C, frame: 'unit' };
 
@@ -106,7 +111,7 @@ test('lambda_1 roughens isotropic and anisotropic base lobes alike in all direct
 test('bumps lose no light to each other', options, async () => {
   const metal = { metalness: 1, color: 0xffffff };
   for (const lost of [D, [0.3]]) {
-    const { own: whole, shares } = lost === D ? rough(K) : isotropic(0.3);
+    const { own: whole, parts } = lost === D ? rough(K) : isotropic(0.3);
     const drawn = await page.evaluate((o) => window.pyramid(o), {
       ...FLAT,
       plane: PLANE,
@@ -115,7 +120,7 @@ test('bumps lose no light to each other', options, async () => {
     });
     const three = await page.evaluate((o) => window.plain(o), {
       own: { ...whole, ...metal },
-      shares,
+      parts,
       normal: [0, 0, 1],
       plane: PLANE,
     });

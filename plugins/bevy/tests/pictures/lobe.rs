@@ -1,4 +1,5 @@
-//! The expected pixels: GGX with the visibility term and the multiple scattering of Bevy's shader.
+//! The expected pixels: GGX with the masking term of docs/extension/README.md, and the multiple scattering of Bevy's
+//! shader.
 
 use std::f32::consts::PI;
 
@@ -51,16 +52,17 @@ impl Lobe {
         let bumps = Vec2::new(axis.dot(self.bumps * axis), axis.perp().dot(self.bumps * axis.perp()));
         let squared = Vec2::new(centre + radius, centre - radius);
         let shares = bumps / squared;
-        let m = (shares * shares * h.truncate() / h.z).extend(1.0).normalize();
-        let t = (Vec3::X - m.x * m).normalize();
-        let (v, l) = [v, l].map(|d| Vec3::new(t.dot(d), m.cross(t).dot(d), m.dot(d).max(0.0))).into();
+        let g = (shares * shares * h.truncate() / h.z).extend(1.0).normalize();
+        let t = (Vec3::X - g.x * g).normalize();
+        let (v, l) = [v, l].map(|d| Vec3::new(t.dot(d), g.cross(t).dot(d), g.dot(d).max(0.0))).into();
         let length = |d: Vec3| ((squared - bumps).dot(d.truncate() * d.truncate()) + d.z * d.z).sqrt();
-        0.5 * l.z * m.z / (l.z * length(v) + v.z * length(l))
+        0.5 * l.z * g.z / (l.z * length(v) + v.z * length(l))
     }
 
-    /// Returns the sum of Bevy's F_AB, a polynomial of Unreal Engine 4. Multiple scattering adds what is missing to 1.
+    /// Returns the sum of Bevy's F_AB, a polynomial of Unreal Engine 4, for the base lobe. Multiple scattering adds
+    /// what is missing to 1.
     fn reflected_once(self, n_dot_v: f32) -> f32 {
-        let (centre, radius) = self.mean_and_radius();
+        let (centre, radius) = Self { a: self.a - self.bumps, ..self }.mean_and_radius();
         let roughness = (centre - radius).powf(0.25);
         let r = [-1.0, -0.0275, -0.572, 0.022].map(|c| c * roughness);
         let r = [r[0] + 1.0, r[1] + 0.0425, r[2] + 1.04, r[3] - 0.04];

@@ -92,31 +92,29 @@ export const normal = /* glsl */ `
  * of facets that hide each other. Bumps of a map do not, so that each of them has the term of the base lobe.
  */
 export const visibility = /* glsl */ `
-// The shares of the bumps in the squared alphas of the lobe, along T and B.
-vec2 roughcastShares = vec2( 0.0 );
+// The alphas of the base lobe along T and B, and the shares of the bumps in the squared alphas of the lobe.
+vec2 roughcastAlphas, roughcastShares;
 float roughcastVisibility( vec3 l, vec3 v, vec3 n, vec3 h, PhysicalMaterial material ) {
-  // m stands for the normals of the bumps that reflect l to v.
-  vec3 slope = h / max( dot( n, h ), 1e-4 ) - n;
+  // g is the normal of one bump, which stands for all bumps that reflect l to v.
+  float dotNH = dot( n, h );
+  vec3 slope = ( h - dotNH * n ) / max( dotNH, 1e-4 );
   vec2 gain = roughcastShares * roughcastShares;
   #ifdef USE_ANISOTROPY
     vec3 t = material.anisotropyT, b = material.anisotropyB;
-    vec3 m = normalize( n + gain.x * dot( slope, t ) * t + gain.y * dot( slope, b ) * b );
+    vec3 g = normalize( n + gain.x * dot( slope, t ) * t + gain.y * dot( slope, b ) * b );
   #else
-    vec3 m = normalize( n + gain.x * slope );
+    vec3 g = normalize( n + gain.x * slope );
   #endif
-  float dotML = saturate( dot( m, l ) ), dotMV = saturate( dot( m, v ) );
-  // The alphas of the base lobe.
-  vec2 alphas = sqrt( 1.0 - roughcastShares );
+  float dotGL = saturate( dot( g, l ) ), dotGV = saturate( dot( g, v ) );
   #ifdef USE_ANISOTROPY
-    alphas *= vec2( material.alphaT, pow2( material.roughness ) );
-    t = normalize( t - dot( t, m ) * m );
-    b = cross( m, t );
+    t = normalize( t - dot( t, g ) * g );
+    b = cross( g, t );
     float term = V_GGX_SmithCorrelated_Anisotropic(
-      alphas.x, alphas.y, dot( t, v ), dot( b, v ), dot( t, l ), dot( b, l ), dotMV, dotML );
+      roughcastAlphas.x, roughcastAlphas.y, dot( t, v ), dot( b, v ), dot( t, l ), dot( b, l ), dotGV, dotGL );
   #else
-    float term = V_GGX_SmithCorrelated( alphas.x * pow2( material.roughness ), dotML, dotMV );
+    float term = V_GGX_SmithCorrelated( roughcastAlphas.x, dotGL, dotGV );
   #endif
-  return term * dot( n, m ) * dotML / max( dot( n, l ), 1e-4 );
+  return term * dot( n, g ) * dotGL / max( dot( n, l ), 1e-4 );
 }
 #define V_GGX_SmithCorrelated_Anisotropic( at, ab, tv, bv, tl, bl, nv, nl ) \
   roughcastVisibility( lightDir, viewDir, normal, halfDir, material )
@@ -141,7 +139,7 @@ export const surroundings = /* glsl */ `
   // Averages what facets reflect, each with the roughness of the base lobe. Facets are weighted by their area in the
   // map and do not hide each other, as in an unfiltered map. three.js' single look-up along a bent normal is far too
   // bright on spheres. Weights by the visible area of real facets (B. Walter et al., 2007, eq. 41) are too bright on
-  // planes. three.js multiplies the result by the albedo, so that this becomes the mean albedo of the facets.
+  // planes. three.js multiplies the result by the mean albedo, so that the sum is divided by the albedos here.
   vec3 roughcastRadiance( vec3 view, vec3 n, float base, inout PhysicalMaterial material ) {
     const int PAIRS = 8;
     // Pi over the golden ratio: directions and their opposites cover the circle evenly.
@@ -153,7 +151,7 @@ export const surroundings = /* glsl */ `
     // smaller spread is left to blur, since there are few facets.
     vec2 spread = max( vec2( pow2( material.alphaT ), pow4( material.roughness ) ) - pow4( base ), 0.0 );
     float blur = 0.25 * spread.y;
-    spread = sqrt( WIDTH * ( spread - blur ) );
+    spread = sqrt( WIDTH * max( spread - blur, 0.0 ) );
     float roughness = sqrt( sqrt( pow4( base ) + blur ) );
     vec3 sum = vec3( 0.0 ), albedos = vec3( 0.0 );
     material.dfg = vec2( 0.0 );
@@ -218,6 +216,8 @@ export const baseLostLight = 'vec2( roughcastBase, dotNVms )';
 /** Goes after `#include <lights_physical_fragment>`: roughens the lobe, A' = A + 2 c K. */
 export const roughen = /* glsl */ `
   float roughcastBase = material.roughness;
+  roughcastAlphas = vec2( pow2( material.roughness ) );
+  roughcastShares = vec2( 0.0 );
   #if defined( ROUGHCAST_FACTOR ) || defined( ROUGHCAST_DEVIATION )
     // D or lambda_1, filtered by the sampler.
     vec3 roughcastD = mix( roughcastRoughnessMin, roughcastRoughnessMax, texture2D( bumpMap, vBumpMapUv ).rgb );
@@ -241,8 +241,9 @@ export const roughen = /* glsl */ `
     vec3 t = anisotropyV.x * normalize( tbn[ 0 ] ) + sign( normalScale.y ) * anisotropyV.y * normalize( tbn[ 1 ] );
     vec2 axis = vec2( dot( t, roughcastE1 ), dot( t, roughcastE2 ) );
     axis /= max( length( axis ), 1e-6 );
-    vec3 a = vec3( across, 0.0, across ) + ( along - across ) * axis.xxy * axis.xyy;
-    a += 2.0 * roughcastCorrection * roughcastK;
+    vec3 base = vec3( across, 0.0, across ) + ( along - across ) * axis.xxy * axis.xyy;
+    vec3 bumps = 2.0 * roughcastCorrection * roughcastK;
+    vec3 a = base + bumps;
     // Eigenvalues, and the axis of the larger one.
     float mean = 0.5 * ( a.x + a.z ), difference = 0.5 * ( a.x - a.z ), radius = length( vec2( difference, a.y ) );
     float major = min( mean + radius, 1.0 ), minor = clamp( mean - radius, across, 1.0 );
@@ -257,17 +258,20 @@ export const roughen = /* glsl */ `
     t = e.x * roughcastE1 + e.y * roughcastE2;
     material.anisotropyT = normalize( t - dot( t, normal ) * normal );
     material.anisotropyB = cross( normal, material.anisotropyT );
-    // K along the axes of the lobe.
-    float kt = dot( roughcastK, vec3( e.x * e.x, 2.0 * e.x * e.y, e.y * e.y ) );
-    vec2 bumps = 2.0 * roughcastCorrection * vec2( kt, roughcastK.x + roughcastK.z - kt );
-    roughcastShares = clamp( bumps / vec2( major, minor ), 0.0, 1.0 );
+    // Base lobe and bumps along the axes of the lobe.
+    vec3 square = vec3( e.x * e.x, 2.0 * e.x * e.y, e.y * e.y );
+    float baseT = dot( base, square ), bumpsT = dot( bumps, square );
+    vec2 squares = max( vec2( baseT, base.x + base.z - baseT ), across );
+    vec2 bumpSquares = max( vec2( bumpsT, bumps.x + bumps.z - bumpsT ), 0.0 );
+    roughcastAlphas = sqrt( squares );
+    roughcastShares = bumpSquares / ( squares + bumpSquares );
   }
   #elif defined( ROUGHCAST_DEVIATION )
     // Different scales of u and v make the lobe anisotropic. This shader has isotropic lobes only, so it takes the
     // mean.
     float bumps = roughcastCorrection * ( roughcastK.x + roughcastK.z );
-    float squared = min( pow4( material.roughness ) + bumps, 1.0 );
-    roughcastShares = vec2( min( bumps / squared, 1.0 ) );
-    material.roughness = sqrt( sqrt( squared ) );
+    float squared = pow4( material.roughness ) + bumps;
+    roughcastShares = vec2( bumps / squared );
+    material.roughness = sqrt( sqrt( min( squared, 1.0 ) ) );
   #endif
 `;
