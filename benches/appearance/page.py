@@ -58,8 +58,9 @@ METHOD = """
   settings at their defaults: `auto` may choose any model and size. *isotropic* has `--model isotropic`. Plain mips and
   peers have 8 bits per channel without block compression, and LEAN has half floats. *plain mips, UASTC* is
   `--model none`.
-- **Pyramid.** The lobe is A' = A + 2 c K, as the plugins shade lights. The plugin of three.js averages the environment
-  over the slopes of the bumps, which is not done here.
+- **Pyramid.** The lobe is A' = A + 2 c K, with the masking of all its roughness. The plugins have the masking of the
+  base lobe, since bumps do not hide each other, and that of three.js averages the environment over the slopes of the
+  bumps. Neither is done here.
 - **Not here.** MIPNet (A. Gauthier et al., "MIPNet: Neural normal-to-anisotropic-roughness MIP mapping", 2022) learns
   normals and anisotropic roughness by a loss on rendered pictures. Its authors publish the training program, but no
   trained network, since their training materials are proprietary. A network that we trained on materials of our own
