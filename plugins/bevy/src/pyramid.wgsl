@@ -37,7 +37,7 @@ var<private> to_light: vec3<f32>;
 var<private> to_eye: vec3<f32>;
 
 // Smith's term is that of facets that hide each other. Bumps of a map do not, so that each of them has the term of the
-// base lobe.
+// base lobe. It replaces Bevy's terms, whose arguments lack these directions.
 fn visibility() -> f32 {
     let l = to_light;
     let v = to_eye;
@@ -102,9 +102,11 @@ override fn bevy_pbr::lighting::specular(
     let to_lobe = transpose(mat3x3(t, cross(n, t), n));
     to_eye = to_lobe * base.V;
     to_light = to_lobe * (2.0 * dot(base.V, h) * h - base.V);
-    let light = lighting::specular(&base, derived_input, roughness, specular_intensity);
-    let n_dot_v = base.layers[lighting::LAYER_BASE].NdotV;
-    return light * visibility() / max(lighting::V_SmithGGXCorrelated(roughness, n_dot_v, (*derived_input).NdotL), 1e-6);
+    return lighting::specular(&base, derived_input, roughness, specular_intensity);
+}
+
+override fn bevy_pbr::lighting::V_SmithGGXCorrelated(roughness: f32, NdotV: f32, NdotL: f32) -> f32 {
+    return visibility();
 }
 #endif
 

@@ -210,11 +210,11 @@ test('a main direction needs no tangents', options, async () => {
 });
 
 test('no light is negative where a bump faces away from the eye', options, async () => {
-  const rough = { ...FLAT, own: { ...OWN, roughness: 0.1 }, lost: [0.9], correctionFactor: 1 };
+  const steep = { ...FLAT, own: { ...OWN, roughness: 0.1 }, lost: [0.9], correctionFactor: 1 };
   const lit = [];
   for (let degrees = 0; degrees < 360; degrees += 15) {
     const [u, v] = [Math.cos, Math.sin].map((f) => 12 * f((degrees * Math.PI) / 180));
-    const drawn = await page.evaluate((o) => window.pyramid(o), { ...rough, plane: PLANE, offset: [u, v] });
+    const drawn = await page.evaluate((o) => window.pyramid(o), { ...steep, plane: PLANE, offset: [u, v] });
     const light = drawn.filter((_, i) => i % 4 < 3);
     assert.ok(Math.min(...light) >= 0, `${degrees} degrees: ${Math.min(...light)}`);
     lit.push(Math.max(...light));
